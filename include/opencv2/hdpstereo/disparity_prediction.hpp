@@ -1,0 +1,79 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_DISPARITY_PREDICTION_HPP
+#define OPENCV_HDPSTEREO_DISPARITY_PREDICTION_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace stereo {
+
+//! @addtogroup hdpstereo
+//! @{
+
+/** @brief How the disparities of two consecutive pyramid layers go together: the Hierarchical Disparity
+Prediction Model of @cite Luo2015HDP, section 2.2.
+
+For each layer l it holds a Gaussian mixture over the offset \f$o = D_{l+1} - \lfloor D_l / 2 \rfloor\f$ of
+a pixel's disparity in layer l + 1 from half its disparity in layer l, so that
+\f$P(D_{l+1} = i | D_l = j) = GMM_l(i - \lfloor j / 2 \rfloor)\f$. Layer 0 is the image itself. Offsets are
+in whole pixels of layer l + 1.
+ */
+class CV_EXPORTS_W DisparityPredictionModel : public Algorithm
+{
+public:
+    //! Training set of the published models
+    enum Published
+    {
+        PUBLISHED_LARGE = 0, //!< Middlebury 2006 at full size (about 1390 x 1110); 3 layers
+        PUBLISHED_SMALL = 1  //!< Middlebury 2006 at half size (about 695 x 555); 2 layers
+    };
+
+    /** @brief Number of layers l the model has a mixture for. A matcher of L layers needs L - 1. */
+    CV_WRAP virtual int getNumLayers() const = 0;
+
+    /** @brief Appends the mixture of layer getNumLayers().
+    @param means Means \f$\mu_l(k)\f$ in pixels of layer l + 1: vector of K >= 1 finite numbers.
+    @param sigmas Standard deviations \f$\sigma_l(k)\f$ in the same unit: K finite numbers > 0.
+    @param weights Mixing coefficients \f$\pi_l(k)\f$: K numbers in [0, 1], their sum 1 within 0.001.
+    @throws cv::Exception if an argument is not so; the model is unchanged.
+     */
+    CV_WRAP virtual void addLayer(const std::vector<double>& means, const std::vector<double>& sigmas,
+                                  const std::vector<double>& weights) = 0;
+
+    /** @brief The mixture of a layer, see addLayer().
+    @param layer 0 .. getNumLayers() - 1.
+    @param means, sigmas, weights Receive K numbers each.
+     */
+    CV_WRAP virtual void getLayer(int layer, CV_OUT std::vector<double>& means,
+                                  CV_OUT std::vector<double>& sigmas,
+                                  CV_OUT std::vector<double>& weights) const = 0;
+
+    /** @brief \f$GMM_l(o)\f$, the density of the mixture at an offset.
+    @param layer 0 .. getNumLayers() - 1.
+    @param offset o in pixels of layer + 1.
+     */
+    CV_WRAP virtual double density(int layer, double offset) const = 0;
+
+    /** @brief Creates a model without layers. */
+    CV_WRAP static Ptr<DisparityPredictionModel> create();
+
+    /** @brief Creates one of the two models that the paper's authors trained.
+    @param which One of DisparityPredictionModel::Published.
+     */
+    CV_WRAP static Ptr<DisparityPredictionModel> createPublished(int which);
+
+    /** @brief Reads a model that save() or write() made.
+    @param filename XML, YAML or JSON file of cv::FileStorage.
+    @throws cv::Exception if the file cannot be read or does not hold a model.
+     */
+    CV_WRAP static Ptr<DisparityPredictionModel> load(const String& filename);
+};
+
+//! @}
+
+} // namespace stereo
+} // namespace cv
+
+#endif

@@ -1,0 +1,172 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_HDP_TREE_MATCHER_HPP
+#define OPENCV_HDPSTEREO_HDP_TREE_MATCHER_HPP
+
+#include "opencv2/core/version.hpp"
+#if CV_VERSION_MAJOR >= 5
+#include "opencv2/stereo.hpp"
+#else
+#include "opencv2/calib3d.hpp"
+#endif
+#include "opencv2/hdpstereo/disparity_prediction.hpp"
+#include "opencv2/hdpstereo/tree_strategy.hpp"
+
+namespace cv {
+namespace stereo {
+
+//! @addtogroup hdpstereo
+//! @{
+
+/** @brief Stereo matching over disparity trees with hierarchical disparity prediction @cite Luo2015HDP.
+
+compute() takes a rectified pair: CV_8UC1 or CV_8UC3 (BGR), both images of one size and type. The result is
+what cv::StereoMatcher promises: the disparity of every pixel of the left image as CV_16SC1, times 16
+(StereoMatcher::DISP_SCALE); a pixel (x, y) of the left image shows the same point as (x - disparity, y) of
+the right one. Pixels that a filter rejects get (minDisparity - 1) * 16. Unlike cv::StereoSGBM the matcher
+leaves no border of invalid pixels: candidates outside of the right image are compared with its nearest
+column. Images of any size from 1 x 1 and any number of disparities are allowed, also more disparities than
+columns.
+
+The parameters that cv::StereoMatcher declares mean what they mean there:
+- minDisparity: the smallest disparity in pixels, of any sign.
+- numDisparities: number of candidates, > 0, no multiple of 16 needed. The largest disparity is
+  minDisparity + numDisparities - 1; minDisparity - 1 and this one must fit into CV_16S, times 16.
+- blockSize: the side of the square window over which the matching cost is averaged, odd, 1..31; 1, as in the
+  paper, is one pixel.
+- disp12MaxDiff: largest allowed difference, in pixels, between the disparity of a left pixel and the largest one
+  that maps to the same pixel of the right image; other pixels become invalid. <= 0 turns the check off.
+- speckleWindowSize, speckleRange: see cv::filterSpeckles; speckleRange is in pixels, a window size of 0 turns the
+  filter off.
+
+The result does not depend on the number of threads nor on the processor's SIMD width. A matcher may be used from one thread at a time; two
+matchers never share state. Reused for pairs of the same size it keeps its buffers.
+
+Setters throw cv::Exception for values out of their range and leave the matcher as it was. What depends on several
+parameters or on the images is checked by compute(), before it does any work.
+ */
+class CV_EXPORTS_W HDPTreeMatcher : public cv::StereoMatcher
+{
+public:
+    //! Sets of parameters. A preset only sets values that have setters of their own.
+    enum
+    {
+        PRESET_PAPER = 0 //!< the system that made the paper's tables, HDP+MST; see also setTreeStrategy()
+    };
+
+    //! Value of delta0, beta and the disparity median that leaves the choice to the matcher
+    enum
+    {
+        AUTO = -1
+    };
+
+    /** @brief Rule 1 and Rule 2 of the spanning trees; createMinimumSpanningTree() by default.
+
+    The paper's systems are HDP+MST, HDP+ST and HDP+RT with prediction, MST, ST and RT without it, and M+MST, M+ST
+    and M+RT without prediction and with the median prefilter.
+    @param strategy Not empty. The matcher keeps the pointer and only reads through it.
+     */
+    CV_WRAP virtual void setTreeStrategy(const Ptr<TreeStrategy>& strategy) = 0;
+    /** @copybrief setTreeStrategy @sa setTreeStrategy */
+    CV_WRAP virtual Ptr<TreeStrategy> getTreeStrategy() const = 0;
+
+    /** @brief Whether to match coarse to fine with predicted intervals (true), or the plain tree algorithm: the
+    image itself, over the full range (false). */
+    CV_WRAP virtual void setUsePrediction(bool usePrediction) = 0;
+    /** @copybrief setUsePrediction @sa setUsePrediction */
+    CV_WRAP virtual bool getUsePrediction() const = 0;
+
+    /** @brief Whether edge weights come from a 3 x 3 median of the image (the paper's M+ systems) instead of the image
+    itself. The matching cost always uses the image itself. */
+    CV_WRAP virtual void setUseMedianPrefilter(bool useMedianPrefilter) = 0;
+    /** @copybrief setUseMedianPrefilter @sa setUseMedianPrefilter */
+    CV_WRAP virtual bool getUseMedianPrefilter() const = 0;
+
+    /** @brief Number of pyramid layers, the image itself included: 1..16, 3 by default. Layers that would have no
+    pixel are left out. Without effect if prediction is off. */
+    CV_WRAP virtual void setNumLayers(int numLayers) = 0;
+    /** @copybrief setNumLayers @sa setNumLayers */
+    CV_WRAP virtual int getNumLayers() const = 0;
+
+    /** @brief The model behind the predicted intervals (section 2.2).
+    @param model A model of at least numLayers - 1 layers, or an empty pointer (default) for the published one:
+    DisparityPredictionModel::PUBLISHED_LARGE for images at least 1000 pixels wide, PUBLISHED_SMALL below. The matcher
+    keeps the pointer.
+     */
+    CV_WRAP virtual void setPredictionModel(const Ptr<DisparityPredictionModel>& model) = 0;
+    /** @copybrief setPredictionModel @sa setPredictionModel */
+    CV_WRAP virtual Ptr<DisparityPredictionModel> getPredictionModel() const = 0;
+
+    /** @brief \f$\delta_0\f$ of the criterion that ends the growth of a predicted interval (section 3.1); layer l uses
+    \f$\delta_l = 2^l \delta_0\f$. In [0, 1): the smaller, the wider the intervals. HDPTreeMatcher::AUTO (default):
+    0.064 for images at least 1000 pixels wide, 0.004 below, the values that made the paper's tables. */
+    CV_WRAP virtual void setDelta0(double delta0) = 0;
+    /** @copybrief setDelta0 @sa setDelta0 */
+    CV_WRAP virtual double getDelta0() const = 0;
+
+    /** @brief \f$\beta\f$ of DT-Rule 2 (section 3.2): two trees are joined if their intervals overlap by at least this
+    share of their union, in [0, 1]. HDPTreeMatcher::AUTO (default): 0.6 for images at least 1000 pixels wide, 0.95
+    below. */
+    CV_WRAP virtual void setBeta(double beta) = 0;
+    /** @copybrief setBeta @sa setBeta */
+    CV_WRAP virtual double getBeta() const = 0;
+
+    /** @brief \f$\gamma\f$ of the similarity \f$\exp(-W(p, q) / \gamma)\f$ of two pixels at distance W in their tree
+    (section 3.3), in intensity levels, finite, > 0; 25.5 by default. */
+    CV_WRAP virtual void setGamma(double gamma) = 0;
+    /** @copybrief setGamma @sa setGamma */
+    CV_WRAP virtual double getGamma() const = 0;
+
+    /** @brief Truncation of the colour difference in the matching cost
+    \f$M = \alpha \min(\overline{|I_c - I'_c|}, \tau_c) + (1 - \alpha) \min(|\nabla_x - \nabla'_x|, \tau_g)\f$: the
+    mean over the channels, in intensity levels, finite, >= 0; 10 by default. */
+    CV_WRAP virtual void setColorTruncation(double colorTruncation) = 0;
+    /** @copybrief setColorTruncation @sa setColorTruncation */
+    CV_WRAP virtual double getColorTruncation() const = 0;
+
+    /** @brief Truncation \f$\tau_g\f$ of the difference of the horizontal gradients, see setColorTruncation(); in
+    intensity levels a pixel, finite, >= 0; 2 by default. */
+    CV_WRAP virtual void setGradientTruncation(double gradientTruncation) = 0;
+    /** @copybrief setGradientTruncation @sa setGradientTruncation */
+    CV_WRAP virtual double getGradientTruncation() const = 0;
+
+    /** @brief Weight \f$\alpha\f$ of the colour difference against the gradient, see setColorTruncation(); in [0, 1];
+    0.11 by default. */
+    CV_WRAP virtual void setColorWeight(double colorWeight) = 0;
+    /** @copybrief setColorWeight @sa setColorWeight */
+    CV_WRAP virtual double getColorWeight() const = 0;
+
+    /** @brief Side of the median filter over each layer's disparities, in pixels of the layer: 0 (none), an odd number
+    3..31, or HDPTreeMatcher::AUTO (default): 7 with prediction, 5 without, as in the paper's tables. */
+    CV_WRAP virtual void setDisparityMedianSize(int size) = 0;
+    /** @copybrief setDisparityMedianSize @sa setDisparityMedianSize */
+    CV_WRAP virtual int getDisparityMedianSize() const = 0;
+
+    /** @brief Share of the disparity range that the last compute() searched, \f$R_l\f$ of the paper's Table 1.
+    @param ratios Receives a number in [0, 1] per layer, the finest first; empty before the first compute().
+     */
+    CV_WRAP virtual void getSearchRatios(CV_OUT std::vector<double>& ratios) const = 0;
+
+    /** @brief Wall time of each stage in the last compute(), the layers together.
+    @param stages Receives the names of the stages in the order in which they first ran.
+    @param milliseconds Receives a time per stage.
+     */
+    CV_WRAP virtual void getStageTimes(CV_OUT std::vector<String>& stages,
+                                       CV_OUT std::vector<double>& milliseconds) const = 0;
+
+    /** @brief Creates a matcher.
+    @param minDisparity Smallest disparity in pixels.
+    @param numDisparities Number of candidates, > 0.
+    @param preset HDPTreeMatcher::PRESET_PAPER.
+     */
+    CV_WRAP static Ptr<HDPTreeMatcher> create(int minDisparity = 0, int numDisparities = 64,
+                                              int preset = HDPTreeMatcher::PRESET_PAPER);
+};
+
+//! @}
+
+} // namespace stereo
+} // namespace cv
+
+#endif

@@ -1,0 +1,102 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_TREE_STRATEGY_HPP
+#define OPENCV_HDPSTEREO_TREE_STRATEGY_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace stereo {
+
+//! @addtogroup hdpstereo
+//! @{
+
+/** @brief What a spanning tree algorithm knows of a tree under construction. */
+struct TreeState
+{
+    int size;        //!< number of pixels, >= 1
+    uchar maxWeight; //!< the largest weight of the edges inside the tree, 0 for a single pixel
+};
+
+/** @brief How the spanning trees of a layer are built: Rule 1 and Rule 2 of @cite Luo2015HDP, section 3.2.
+
+The edges of the layer's graph are tried one after another (Rule 1 gives the order); an edge joins the two
+trees at its ends, if they are different, when Rule 2 allows it. The rules that take disparity into account
+(DT-Rule 1 and 2) are the matcher's and apply to every strategy.
+
+Derive from this class to plug in a tree of your own:
+
+@code{.cpp}
+    // Horizontal edges first, then the vertical ones, each by rows.
+    class RowTree : public cv::stereo::TreeStrategy
+    {
+    public:
+        void orderEdges(const cv::Mat&, std::vector<int>& edges) const
+        {
+            std::stable_partition(edges.begin(), edges.end(), [](int e) { return e % 2 == 0; });
+        }
+        bool mayJoin(int, const cv::stereo::TreeState&, const cv::stereo::TreeState&) const { return true; }
+        cv::String getDefaultName() const { return "my.RowTree"; }
+    };
+
+    matcher->setTreeStrategy(cv::makePtr<RowTree>());
+@endcode
+
+A strategy is only read while a pair is matched. Both rules must be pure functions of their arguments, or
+the results of the matcher are not reproducible. What they throw leaves compute() and the matcher usable.
+ */
+class CV_EXPORTS_W TreeStrategy : public Algorithm
+{
+public:
+    /** @brief Rule 1: the order in which edges are tried.
+
+    An edge is a number: edge 2 * i joins pixel i = y * width + x to its right neighbour, edge 2 * i + 1 to the
+    neighbour below.
+    @param weights The edges' weights: the largest absolute difference over the colour channels. CV_8UC2 of the
+    layer's size, continuous, so that weights.ptr()[e] is the weight of edge e.
+    @param edges The edges that DT-Rule 1 left (without prediction all edges of the image), by number. To be
+    brought into the order in which they are tried; none may be added, removed or repeated.
+     */
+    virtual void orderEdges(const Mat& weights, std::vector<int>& edges) const = 0;
+
+    /** @brief Rule 2: may this edge join these two trees?
+
+    Called only for ends that are in different trees.
+    @param weight The edge's weight, 0..255.
+    @param a, b The trees at the edge's two ends, before they are joined.
+     */
+    virtual bool mayJoin(int weight, const TreeState& a, const TreeState& b) const = 0;
+
+    /** @brief Whether a joined tree searches the union of its parts' disparity intervals (true, the
+    paper's DT-Rule 2), or keeps the interval of its larger part. */
+    virtual bool unitesIntervals() const { return true; }
+
+    /** @brief Whether, without prediction, the trees that Rule 2 left apart are joined into one spanning
+    tree by a second pass over the edges in the same order. */
+    virtual bool linksTrees() const { return true; }
+};
+
+/** @brief Minimum spanning tree @cite Yang2012MST: edges by ascending weight, every edge may join. */
+CV_EXPORTS_W Ptr<TreeStrategy> createMinimumSpanningTree();
+
+/** @brief Segment tree @cite Mei2013ST: edges by ascending weight; two trees a and b are joined by an edge
+of weight w only if \f$w \le \min(w_{max}(a) + k/|a|,\; w_{max}(b) + k/|b|)\f$.
+
+A joined tree keeps the disparity interval of its larger part. Without prediction the segments are linked
+into one tree afterwards.
+@param k How readily small segments grow, finite, >= 0. The larger, the larger the segments.
+ */
+CV_EXPORTS_W Ptr<TreeStrategy> createSegmentTree(double k = 1200);
+
+/** @brief Random tree (@cite Luo2015HDP, section 4.1): edges in random order, every edge may join.
+@param seed Seed of the shuffle, >= 0. The same seed gives the same tree on every machine.
+ */
+CV_EXPORTS_W Ptr<TreeStrategy> createRandomTree(int seed = 0);
+
+//! @}
+
+} // namespace stereo
+} // namespace cv
+
+#endif

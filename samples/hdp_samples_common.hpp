@@ -1,0 +1,290 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// What the samples share: command line checks, disparity and point cloud files, masks and errors, pictures.
+//
+// A disparity map is a CV_32FC1 Mat here, in pixels; NO_DISPARITY marks pixels that have none.
+
+#ifndef OPENCV_HDPSTEREO_SAMPLES_COMMON_HPP
+#define OPENCV_HDPSTEREO_SAMPLES_COMMON_HPP
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "opencv2/core.hpp"
+#include "opencv2/core/utility.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
+#include "opencv2/hdpstereo.hpp"
+
+namespace hdp_samples {
+
+using cv::Mat;
+using cv::String;
+
+const float NO_DISPARITY = std::numeric_limits<float>::infinity();
+
+inline void fail(const String& message)
+{
+    throw std::runtime_error(message);
+}
+
+inline Mat knownPixels(const Mat& disparity)
+{
+    return disparity < NO_DISPARITY;
+}
+
+// ---- Command line
+
+//! Refuses what cv::CommandLineParser ignores: unknown options, options without their value ("--output FILE"),
+//! flags with a value, and more positional arguments than declared.
+inline void checkArguments(int argc, const char* const argv[], const cv::CommandLineParser& parser,
+                           const std::vector<String>& flags, int maxPositional)
+{
+    int positional = 0;
+    for (int i = 1; i < argc; i++)
+    {
+        const String argument = argv[i];
+        if (argument.size() < 2 || argument[0] != '-')
+        {
+            if (++positional > maxPositional)
+                fail("unexpected argument '" + argument + "'");
+            continue;
+        }
+        const String option = argument.substr(0, argument.find('='));
+        const String name = option.substr(option.compare(0, 2, "--") == 0 ? 2 : 1);
+        try
+        {
+            parser.has(name);
+        }
+        catch (const cv::Exception&)
+        {
+            fail("unknown option '" + option + "'");
+        }
+        const bool isFlag = std::find(flags.begin(), flags.end(), name) != flags.end();
+        if (isFlag && option != argument)
+            fail("option '" + option + "' takes no value");
+        if (!isFlag && option.size() + 1 >= argument.size())
+            fail("option '" + option + "' needs a value: " + option + "=VALUE");
+    }
+}
+
+//! The number given for an option, all of it a number within [low, high].
+inline double getNumber(const cv::CommandLineParser& parser, const String& name, double low, double high)
+{
+    const String text = parser.get<String>(name);
+    double value = 0;
+    size_t end = 0;
+    try
+    {
+        value = std::stod(text, &end);
+    }
+    catch (const std::logic_error&)
+    {
+        end = 0;
+    }
+    if (end == 0 || end != text.size() || !(value >= low && value <= high))
+        fail(cv::format("--%s=%s: not a number from %g to %g", name.c_str(), text.c_str(), low, high));
+    return value;
+}
+
+//! As getNumber() for whole numbers.
+inline int getInteger(const cv::CommandLineParser& parser, const String& name, int low, int high)
+{
+    const double value = getNumber(parser, name, low, high);
+    if (value != std::floor(value))
+        fail("--" + name + "=" + parser.get<String>(name) + ": not a whole number");
+    return int(value);
+}
+
+// ---- Files
+
+inline bool hasExtension(const String& path, const String& extension)
+{
+    const size_t dot = path.rfind('.');
+    String end = dot == String::npos ? String() : path.substr(dot);
+    std::transform(end.begin(), end.end(), end.begin(), [](char c) { return char(std::tolower(uchar(c))); });
+    return end == extension;
+}
+
+inline Mat readImage(const String& path, int flags)
+{
+    Mat image;
+    try
+    {
+        image = cv::imread(path, flags);
+    }
+    catch (const cv::Exception&)
+    {
+    }
+    if (image.empty())
+        fail("cannot read the image '" + path + "'");
+    return image;
+}
+
+inline void writeImage(const String& path, const Mat& image)
+{
+    bool written = false;
+    try
+    {
+        written = cv::imwrite(path, image);
+    }
+    catch (const cv::Exception&)
+    {
+    }
+    if (!written)
+        fail("cannot write '" + path + "'");
+}
+
+//! Reads a disparity map: 8-bit image (disparity * 1), 16-bit image (disparity * 256), both with 0 where there is no
+//! disparity, or PFM (not finite where there is none). A scale other than 0 takes the place of 1 and 256.
+inline Mat readDisparity(const String& path, double scale = 0)
+{
+    const Mat image = readImage(path, cv::IMREAD_UNCHANGED);
+    if (image.channels() != 1)
+        fail("'" + path + "' is a color image, not a disparity map");
+    const bool isFloat = image.depth() == CV_32F;
+    if (scale == 0)
+        scale = image.depth() == CV_16U ? 256 : 1;
+
+    Mat disparity;
+    image.convertTo(disparity, CV_32F);
+    disparity /= scale; // not a factor of 1 / scale, which rounds differently
+    const Mat known = isFloat ? Mat(cv::abs(image) <= std::numeric_limits<float>::max()) : Mat(image != 0);
+    disparity.setTo(NO_DISPARITY, ~known);
+    return disparity;
+}
+
+//! Writes FILE.pfm (NO_DISPARITY is infinity) or a 16-bit FILE.png: disparity * 256, where 0 means no disparity, so
+//! that a disparity of 0 is written as 1. Returns how many disparities a PNG cannot hold: those below 0 or from 256
+//! on. They are written as none.
+inline int writeDisparity(const String& path, const Mat& disparity)
+{
+    if (hasExtension(path, ".pfm"))
+    {
+        writeImage(path, disparity);
+        // cv::imwrite does not notice a full disk here.
+        std::ifstream file(path.c_str(), std::ios::binary | std::ios::ate);
+        if (file.tellg() < std::streamoff(disparity.total() * sizeof(float)))
+            fail("cannot write '" + path + "'");
+        return 0;
+    }
+    const Mat fits = (disparity >= 0) & (disparity < 256);
+    Mat fitting = disparity.clone(), image;
+    fitting.setTo(0, ~fits);
+    fitting.convertTo(image, CV_16U, 256);
+    image.setTo(1, fits & (image == 0));
+    writeImage(path, image);
+    return cv::countNonZero(knownPixels(disparity)) - cv::countNonZero(fits);
+}
+
+//! Writes the pixels that have a disparity, in the colors of the CV_8UC3 image, as a binary PLY file. Returns how many.
+inline int writePointCloud(const String& path, const Mat& disparity, const Mat& image, const cv::Matx44d& Q)
+{
+    Mat points, depth;
+    cv::reprojectImageTo3D(disparity, points, Q);
+    cv::extractChannel(points, depth, 2);
+    const Mat finite = knownPixels(disparity) & (cv::abs(depth) < std::numeric_limits<float>::max());
+    const int count = cv::countNonZero(finite);
+
+    const uint16_t one = 1;
+    const bool littleEndian = *reinterpret_cast<const uchar*>(&one) == 1;
+    std::ofstream file(path.c_str(), std::ios::binary);
+    file << "ply\nformat binary_" << (littleEndian ? "little" : "big") << "_endian 1.0\nelement vertex " << count
+         << "\nproperty float x\nproperty float y\nproperty float z"
+         << "\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+    for (int y = 0; y < points.rows; y++)
+    {
+        for (int x = 0; x < points.cols; x++)
+        {
+            const cv::Vec3b bgr = image.at<cv::Vec3b>(y, x), rgb(bgr[2], bgr[1], bgr[0]);
+            if (finite.at<uchar>(y, x))
+            {
+                file.write(points.ptr<char>(y, x), sizeof(cv::Vec3f));
+                file.write(reinterpret_cast<const char*>(rgb.val), sizeof(rgb.val));
+            }
+        }
+    }
+    file.close();
+    if (!file)
+        fail("cannot write '" + path + "'");
+    return count;
+}
+
+//! The map that a cv::StereoMatcher computed, in pixels.
+inline Mat toPixels(const Mat& disparity16, int minDisparity)
+{
+    Mat disparity;
+    disparity16.convertTo(disparity, CV_32F, 1.0 / 16);
+    disparity.setTo(NO_DISPARITY, disparity < minDisparity);
+    return disparity;
+}
+
+// ---- Errors
+
+//! Pixels of known truth that the right image shows too: those where the right truth, at x - floor(d), is equal.
+inline Mat nonOccludedPixels(const Mat& truth, const Mat& rightTruth)
+{
+    Mat mask = Mat::zeros(truth.size(), CV_8U);
+    for (int y = 0; y < truth.rows; y++)
+    {
+        for (int x = 0; x < truth.cols; x++)
+        {
+            const float d = truth.at<float>(y, x);
+            const float xr = d < NO_DISPARITY ? float(x) - std::floor(d) : -1.f;
+            if (xr >= 0 && xr < float(truth.cols) && rightTruth.at<float>(y, int(xr)) == d)
+                mask.at<uchar>(y, x) = 255;
+        }
+    }
+    return mask;
+}
+
+//! Pixels of the mask whose error is at least the threshold, or that have no disparity.
+inline Mat wrongPixels(const Mat& disparity, const Mat& truth, const Mat& mask, double threshold)
+{
+    Mat error;
+    cv::absdiff(disparity, truth, error);
+    return (error >= threshold) & mask;
+}
+
+//! Share of the mask in percent.
+inline double percent(const Mat& pixels, const Mat& mask)
+{
+    return 100. * cv::countNonZero(pixels) / std::max(cv::countNonZero(mask), 1);
+}
+
+// ---- Pictures
+
+//! The map in colors, from blue (far) by green to orange (near); black where there is no disparity.
+inline Mat colorPicture(const Mat& disparity)
+{
+    const Mat known = knownPixels(disparity);
+    std::vector<float> values;
+    for (int y = 0; y < disparity.rows; y++)
+        std::copy_if(disparity.ptr<float>(y), disparity.ptr<float>(y) + disparity.cols, std::back_inserter(values),
+                     [](float d) { return d < NO_DISPARITY; });
+    std::sort(values.begin(), values.end());
+    // A few outliers shall not take all the colors.
+    const float low = values.empty() ? 0.f : values[values.size() / 100];
+    const float high = values.empty() ? 1.f : std::max(values[values.size() - 1 - values.size() / 100], low + 1.f);
+
+    // Both ends of the color map are left out: they are near black and red, which mean something else here.
+    Mat levels = cv::max(cv::min(disparity, high), low), picture;
+    levels.convertTo(levels, CV_8U, 150. / (high - low), 20 - 150. / (high - low) * low);
+    cv::applyColorMap(levels, picture, cv::COLORMAP_TURBO);
+    picture.setTo(cv::Scalar::all(0), ~known);
+    return picture;
+}
+
+} // namespace hdp_samples
+
+#endif

@@ -1,0 +1,268 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Matches a rectified stereo pair with cv::stereo::HDPTreeMatcher: writes the disparity, a picture of it and a point
+// cloud, and prints the time of each stage, the share of the disparity range searched, and the error if the truth is
+// known.
+
+#include <iostream>
+
+#include "opencv2/core/utils/logger.hpp"
+#include "opencv2/hdpstereo.hpp"
+
+#include "hdp_samples_common.hpp"
+
+using namespace cv;
+using namespace hdp_samples;
+using cv::stereo::HDPTreeMatcher;
+
+static const char* const KEYS =
+    "{help h ?         |       | print this and exit }"
+    "{@left            |       | left image of a rectified pair }"
+    "{@right           |       | right image }"
+    "{preset           | paper | set of parameters: paper }"
+    "{tree             | mst   | spanning tree: mst (minimum), st (segment) or rt (random) }"
+    "{no-prediction    |       | the plain tree algorithm over the full range }"
+    "{median-prefilter |       | edge weights from a 3 x 3 median of the image }"
+    "{min-disparity    | 0     | smallest disparity in pixels }"
+    "{num-disparities  |       | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
+    "{threads          |       | number of threads; all processors if not given }"
+    "{output           |       | disparity: FILE.png (16 bit, times 256, 0 = none) or FILE.pfm (float, inf = none) }"
+    "{picture          |       | disparity in colors: far blue, near orange, none black; with --truth, errors of 2 and "
+    "more are red, and pixels that are not judged black }"
+    "{truth            |       | left disparity: PNG of 8 bit (0 = unknown) or 16 bit (times 256, 0 = unknown) or PFM }"
+    "{truth-right      |       | right disparity; occluded pixels are then not judged }"
+    "{truth-scale      |       | what a disparity of 1 is in the truth files, if not 1 (8 bit, PFM) or 256 (16 bit) }"
+    "{point-cloud      |       | colored points: FILE.ply; needs --Q, or --focal and --baseline }"
+    "{Q                |       | file with the 4 x 4 matrix Q of cv::stereoRectify }"
+    "{focal            |       | focal length in pixels; the principal point is the center of the image }"
+    "{baseline         |       | distance of the cameras, in the unit of the points }";
+
+static const std::vector<String> FLAGS = {"help", "h", "?", "no-prediction", "median-prefilter"};
+
+struct Truth
+{
+    Mat disparity;
+    Mat judged; // mask of the pixels that count
+    bool nonOccluded;
+};
+
+static void checkOptions(const CommandLineParser& parser)
+{
+    if (!parser.has("@left") || !parser.has("@right"))
+        fail("a left and a right image are needed, see --help");
+
+    const String output = parser.get<String>("output"), picture = parser.get<String>("picture");
+    if (!output.empty() && !hasExtension(output, ".png") && !hasExtension(output, ".pfm"))
+        fail("--output=" + output + ": neither a .png nor a .pfm file");
+    if (!picture.empty() && !haveImageWriter(picture))
+        fail("--picture=" + picture + ": not a kind of image that can be written");
+
+    if ((parser.has("truth-right") || parser.has("truth-scale")) && !parser.has("truth"))
+        fail("--truth-right and --truth-scale need --truth");
+    const bool camera = parser.has("focal") && parser.has("baseline");
+    if (parser.has("point-cloud") && parser.has("Q") == camera)
+        fail("--point-cloud needs either --Q, or --focal and --baseline");
+    if (!parser.has("point-cloud") && (parser.has("Q") || parser.has("focal") || parser.has("baseline")))
+        fail("--Q, --focal and --baseline need --point-cloud");
+}
+
+static void readPair(const CommandLineParser& parser, Mat& left, Mat& right)
+{
+    left = readImage(parser.get<String>("@left"), IMREAD_COLOR);
+    right = readImage(parser.get<String>("@right"), IMREAD_COLOR);
+    if (left.size() != right.size())
+        fail(format("the images differ in size: %d x %d and %d x %d", left.cols, left.rows, right.cols, right.rows));
+}
+
+static Mat readTruthFile(const CommandLineParser& parser, const String& option, Size size)
+{
+    const double scale = parser.has("truth-scale") ? getNumber(parser, "truth-scale", 1e-3, 1e6) : 0;
+    const Mat disparity = readDisparity(parser.get<String>(option), scale);
+    if (disparity.size() != size)
+        fail(format("--%s is %d x %d, the images are %d x %d", option.c_str(), disparity.cols, disparity.rows,
+                    size.width, size.height));
+    return disparity;
+}
+
+static Truth readTruth(const CommandLineParser& parser, Size size)
+{
+    Truth truth;
+    truth.disparity = readTruthFile(parser, "truth", size);
+    truth.nonOccluded = parser.has("truth-right");
+    truth.judged = truth.nonOccluded
+                       ? nonOccludedPixels(truth.disparity, readTruthFile(parser, "truth-right", size))
+                       : knownPixels(truth.disparity);
+    if (countNonZero(truth.judged) == 0)
+        fail("--truth knows no pixel" + String(truth.nonOccluded ? " that --truth-right agrees with" : ""));
+    return truth;
+}
+
+static Matx44d readCamera(const CommandLineParser& parser, Size size)
+{
+    if (!parser.has("Q"))
+    {
+        const double f = getNumber(parser, "focal", 1e-3, 1e9), b = getNumber(parser, "baseline", 1e-9, 1e9);
+        return Matx44d(1, 0, 0, -0.5 * (size.width - 1),  //
+                       0, 1, 0, -0.5 * (size.height - 1), //
+                       0, 0, 0, f,                        //
+                       0, 0, 1 / b, 0);
+    }
+    Mat Q;
+    try
+    {
+        FileStorage(parser.get<String>("Q"), FileStorage::READ)["Q"] >> Q;
+    }
+    catch (const cv::Exception&)
+    {
+    }
+    if (Q.size() != Size(4, 4) || Q.channels() != 1)
+        fail("cannot read a 4 x 4 matrix Q from '" + parser.get<String>("Q") + "'");
+    Q.convertTo(Q, CV_64F);
+    return Matx44d(Q.ptr<double>());
+}
+
+static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, Size size)
+{
+    const String preset = parser.get<String>("preset"), tree = parser.get<String>("tree");
+    if (preset != "paper")
+        fail("--preset=" + preset + ": unknown, there is: paper");
+
+    const int limit = 1 << 15; // the matcher itself is stricter
+    const int minDisparity = getInteger(parser, "min-disparity", -limit, limit);
+    const int numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, limit)
+                                                             : std::max(int(alignSize(size.width / 5, 16)), 16);
+    Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, numDisparities, HDPTreeMatcher::PRESET_PAPER);
+
+    if (tree == "mst")
+        matcher->setTreeStrategy(stereo::createMinimumSpanningTree());
+    else if (tree == "st")
+        matcher->setTreeStrategy(stereo::createSegmentTree());
+    else if (tree == "rt")
+        matcher->setTreeStrategy(stereo::createRandomTree());
+    else
+        fail("--tree=" + tree + ": unknown, there are: mst, st, rt");
+    matcher->setUsePrediction(!parser.has("no-prediction"));
+    matcher->setUseMedianPrefilter(parser.has("median-prefilter"));
+    return matcher;
+}
+
+//! The system's name in the paper's tables, such as HDP+MST.
+static String systemName(const CommandLineParser& parser)
+{
+    String name = parser.get<String>("tree");
+    std::transform(name.begin(), name.end(), name.begin(), [](char c) { return char(std::toupper(uchar(c))); });
+    return (parser.has("median-prefilter") ? "M+" : "") + String(parser.has("no-prediction") ? "" : "HDP+") + name;
+}
+
+static void printWork(const HDPTreeMatcher& matcher, double totalMilliseconds)
+{
+    std::vector<String> stages;
+    std::vector<double> milliseconds, ratios;
+    matcher.getStageTimes(stages, milliseconds);
+    matcher.getSearchRatios(ratios);
+    for (size_t i = 0; i < stages.size(); i++)
+        std::cout << format("%-11s%-24s%10.1f ms\n", i == 0 ? "time" : "", stages[i].c_str(), milliseconds[i]);
+    std::cout << format("%-11s%-24s%10.1f ms\n", "", "in all", totalMilliseconds);
+    for (size_t i = 0; i < ratios.size(); i++)
+        std::cout << format("%-11slayer %-18d%10.2f %%\n", i == 0 ? "searched" : "", int(i), 100 * ratios[i]);
+}
+
+static void printErrors(const Mat& disparity, const Truth& truth)
+{
+    for (int threshold = 1; threshold <= 2; threshold++)
+        std::cout << format("%-11serr>=%-19d%10.2f %%\n", threshold == 1 ? "wrong" : "", threshold,
+                            percent(wrongPixels(disparity, truth.disparity, truth.judged, threshold), truth.judged));
+    std::cout << format("%-11sof %d pixels with known truth%s\n", "", countNonZero(truth.judged),
+                        truth.nonOccluded ? " that are not occluded" : "");
+}
+
+static void saveDisparity(const String& path, const Mat& disparity)
+{
+    const int lost = writeDisparity(path, disparity);
+    std::cout << "written    " << path << std::endl;
+    if (lost > 0)
+        std::cerr << "warning: " << lost << " disparities are below 0 or above 255.99, which a 16-bit PNG cannot hold; "
+                  << "they are written as 0 (none). A .pfm file holds all." << std::endl;
+}
+
+static void savePicture(const String& path, const Mat& disparity, const Truth& truth)
+{
+    Mat picture = colorPicture(disparity);
+    if (!truth.disparity.empty())
+    {
+        picture.setTo(Scalar::all(0), ~truth.judged);
+        const Mat wrong = wrongPixels(disparity, truth.disparity, truth.judged, 2);
+        picture.setTo(Scalar(0, 0, 255), wrong & knownPixels(disparity));
+    }
+    writeImage(path, picture);
+    std::cout << "written    " << path << std::endl;
+}
+
+static void savePointCloud(const String& path, const Mat& disparity, const Mat& image, const Matx44d& Q)
+{
+    const int count = writePointCloud(path, disparity, image, Q);
+    std::cout << "written    " << path << " (" << count << " points)" << std::endl;
+}
+
+static void run(const CommandLineParser& parser)
+{
+    checkOptions(parser);
+    if (parser.has("threads"))
+        setNumThreads(getInteger(parser, "threads", 1, 1024));
+
+    Mat left, right;
+    readPair(parser, left, right);
+    const Truth truth = parser.has("truth") ? readTruth(parser, left.size()) : Truth();
+    const Matx44d Q = parser.has("point-cloud") ? readCamera(parser, left.size()) : Matx44d();
+
+    Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.size());
+    const int minDisparity = matcher->getMinDisparity();
+    std::cout << format("images     %d x %d, disparities %d to %d\n", left.cols, left.rows, minDisparity,
+                        minDisparity + matcher->getNumDisparities() - 1)
+              << "system     " << systemName(parser) << " (preset " << parser.get<String>("preset")
+              << ", threads " << getNumThreads() << ")" << std::endl;
+
+    Mat disparity16;
+    TickMeter timer;
+    timer.start();
+    matcher->compute(left, right, disparity16);
+    timer.stop();
+    const Mat disparity = toPixels(disparity16, minDisparity);
+
+    printWork(*matcher, timer.getTimeMilli());
+    if (!truth.disparity.empty())
+        printErrors(disparity, truth);
+    if (parser.has("output"))
+        saveDisparity(parser.get<String>("output"), disparity);
+    if (parser.has("picture"))
+        savePicture(parser.get<String>("picture"), disparity, truth);
+    if (parser.has("point-cloud"))
+        savePointCloud(parser.get<String>("point-cloud"), disparity, left, Q);
+}
+
+int main(int argc, char** argv)
+{
+    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below, in one line
+    try
+    {
+        CommandLineParser parser(argc, argv, KEYS);
+        parser.about("Disparity of a rectified stereo pair: non-local matching, hierarchical disparity prediction.\n");
+        checkArguments(argc, argv, parser, FLAGS, 2);
+        if (parser.has("help"))
+            parser.printMessage();
+        else
+            run(parser);
+        return 0;
+    }
+    catch (const cv::Exception& e)
+    {
+        std::cerr << "error: " << e.err << std::endl;
+    }
+    catch (const std::exception& e)
+    {
+        std::cerr << "error: " << e.what() << std::endl;
+    }
+    return 1;
+}

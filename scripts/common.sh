@@ -1,0 +1,131 @@
+# shellcheck shell=bash
+# What the other scripts share; they read this file with "source".
+
+set -euo pipefail
+
+checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=$checkout/build # everything the scripts make is in here, but the demo's pictures
+# shellcheck disable=SC2034  # for the others
+jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
+TIMEFORMAT='   (%1R s; %1U s + %1S s of processor time)'
+
+say()
+{
+    printf '== %s\n' "$*"
+}
+
+fail()
+{
+    printf 'error: %s\n' "$*" >&2
+    exit 1
+}
+
+as_root()
+{
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        echo "not root, and there is no sudo" >&2
+        return 1
+    fi
+}
+
+# install_packages PACKAGE...: those that are missing.
+install_packages()
+{
+    local package missing=()
+    if ! command -v apt-get >/dev/null; then
+        say "No apt-get here: going on with what is installed (on Debian it would be: $*)"
+        return
+    fi
+    for package in "$@"; do
+        [[ $(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null) == ?i* ]] || missing+=("$package")
+    done
+    [ ${#missing[@]} -gt 0 ] || return 0
+
+    local log=$build/install.log
+    mkdir -p "$build"
+    say "Installing ${missing[*]} with what they need (takes a minute or two)"
+    # The update's own status does not matter: the packages may be known, or in the archives that did answer.
+    if as_root apt-get -q update >"$log" 2>&1;
+        as_root env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends "${missing[@]}" \
+            >>"$log" 2>&1; then
+        return
+    fi
+    tail -n 5 "$log" >&2
+    say "Could NOT install ${missing[*]}: no network? (all of the messages: $log)"
+    for package in cmake c++ make tar; do
+        command -v "$package" >/dev/null || fail "nothing can be built without $package"
+    done
+    say "Going on with what is installed"
+}
+
+# The source of the installed OpenCV, from Debian's source package. Debian's binary packages have neither OpenCV's test
+# framework nor its build files nor the pictures of its samples. apt-get is given a source list of its own, so this needs
+# neither root nor any change to the system.
+
+# fetch_tarball: sets $tarball; fails if there is none.
+fetch_tarball()
+{
+    local version upstream apt list uri size hash
+    version=$(dpkg-query -W -f '${source:Version}' libopencv-dev 2>/dev/null) || return 1
+    upstream=${version%-*}
+    upstream=${upstream#*:}
+    tarball=$build/opencv_$upstream.orig.tar.xz
+    [ ! -e "$tarball" ] || return 0
+
+    apt=$build/apt
+    mkdir -p "$apt/sources" "$apt/lists/partial" "$apt/cache/archives/partial"
+    for list in /etc/apt/sources.list.d/*.sources; do
+        [ ! -e "$list" ] || sed 's/^Types:.*/Types: deb-src/' "$list" >"$apt/sources/${list##*/}"
+    done
+    cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list 2>/dev/null |
+        sed -n -E 's/^deb(-src)? /deb-src /p' | sort -u >"$apt/sources/lines.list" || true
+
+    local options=(-q -o Dir::Etc::SourceList=/dev/null -o "Dir::Etc::SourceParts=$apt/sources"
+        -o "Dir::State::Lists=$apt/lists" -o "Dir::Cache=$apt/cache"
+        -o APT::Sandbox::User=root -o Acquire::Retries=2 -o Acquire::http::Timeout=30)
+    apt-get "${options[@]}" update >"$apt/log" 2>&1 || true
+    # Any Debian revision of this version will do, they share this file; apt-helper checks the hash.
+    read -r uri _ size hash < <(
+        { apt-get "${options[@]}" --print-uris --tar-only source "opencv=$version" 2>>"$apt/log" ||
+            apt-get "${options[@]}" --print-uris --tar-only source opencv 2>>"$apt/log"; } |
+            grep -F "/opencv_${upstream//+/%2b}.orig.tar.xz'"
+    ) || true
+    say "Fetching OpenCV's source, ${tarball##*/}, from Debian's archive${size:+ ($((size / 1000000)) MB)}"
+    if [ -z "${uri:-}" ] ||
+        ! /usr/lib/apt/apt-helper "${options[@]}" download-file "${uri//\'/}" "$tarball.part" "$hash" >>"$apt/log" 2>&1; then
+        grep -E '^(Err:|  |W: Failed)' "$apt/log" | tail -n 2 >&2 || true
+        say "Could NOT fetch it: no network? (all of the messages: $apt/log)"
+        return 1
+    fi
+    mv "$tarball.part" "$tarball"
+}
+
+# unpack_tarball DIRECTORY [PATTERN...]: the files of these names, or all.
+unpack_tarball()
+{
+    local directory=$1
+    shift
+    [ ! -d "$directory" ] || return 0
+    say "Unpacking ${tarball##*/}"
+    rm -rf "$directory.part"
+    mkdir -p "$directory.part"
+    tar -xf "$tarball" -C "$directory.part" --strip-components=1 --wildcards "$@" ||
+        fail "$tarball does not unpack; remove it to fetch it again"
+    mv "$directory.part" "$directory"
+}
+
+# find_opencv_source: sets OPENCV_SOURCE_DIR, if it is not set, to a directory with what tests and demo read of it.
+find_opencv_source()
+{
+    if [ -z "${OPENCV_SOURCE_DIR:-}" ]; then
+        fetch_tarball || return 1
+        local directory=${tarball##*/}
+        directory=$build/${directory%.orig.tar.xz}
+        unpack_tarball "$directory" '*/modules/ts/*' '*/modules/core/include/*' '*/samples/data/aloe*'
+        OPENCV_SOURCE_DIR=$directory
+    fi
+}

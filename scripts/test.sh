@@ -1,0 +1,80 @@
+#!/bin/bash
+# Installs what is missing, builds the module with its tests against the installed OpenCV, and runs them.
+#   scripts/test.sh                       tests, and one short round of the performance tests
+#   scripts/test.sh --sanitize            tests, under AddressSanitizer and UndefinedBehaviorSanitizer
+#   scripts/test.sh [--sanitize] OPTION...  the tests alone, with these options of theirs, e.g. --gtest_filter=...
+# OPENCV_SOURCE_DIR=<OpenCV's source> in the environment: uses that one instead of Debian's source package.
+# shellcheck source-path=SCRIPTDIR source=common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+sanitize=
+if [ "${1:-}" = --sanitize ]; then
+    sanitize=1
+    shift
+fi
+
+passed=0
+failed=0
+
+# run_tests PROGRAM [OPTION...]: adds to the counts. A program that dies counts as a failed test.
+run_tests()
+{
+    local program=$1 log status=0 ok skipped bad
+    shift
+    log=$directory/${program##*/}.log
+    time "$program" "$@" 2>&1 | tee "$log" || status=$?
+    ok=$(grep -c '^\[       OK \]' "$log") || true
+    skipped=$(grep -c '^\[     SKIP \]' "$log") || true
+    bad=$(grep -c '^\[  FAILED  \].* ms)$' "$log") || true
+    if ! grep -q '^\[==========\] .* ran\.' "$log" || { [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; }; then
+        say "${program##*/} died, or ended wrongly, with status $status"
+        bad=$((bad + 1))
+    fi
+    [ "$skipped" -eq 0 ] || say "$skipped tests of ${program##*/} skipped themselves, for want of data"
+    passed=$((passed + ok - skipped))
+    failed=$((failed + bad))
+}
+
+install_packages build-essential cmake libopencv-dev
+
+directory=$build/release
+options=()
+targets=(all)
+if [ -n "$sanitize" ]; then
+    directory=$build/sanitize
+    options=("-DHDPSTEREO_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=RelWithDebInfo
+        "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1")
+    targets=(opencv_test_hdpstereo)
+fi
+
+if ! find_opencv_source; then
+    say "Without it there is no test framework: building the library and the samples only"
+    cmake -S "$checkout" -B "$directory" "${options[@]}"
+    cmake --build "$directory" --parallel "$jobs"
+    fail "built, but NOT tested"
+fi
+
+say "Building in $directory"
+time {
+    cmake -S "$checkout" -B "$directory" -DOPENCV_SOURCE_DIR="$OPENCV_SOURCE_DIR" "${options[@]}"
+    cmake --build "$directory" --parallel "$jobs" --target "${targets[@]}"
+}
+
+export OPENCV_TEST_DATA_PATH=$checkout/testdata                # reference data
+export OPENCV_SAMPLES_DATA_PATH=$OPENCV_SOURCE_DIR/samples/data # the Aloe pair
+if [ -n "$sanitize" ]; then
+    # opencv_ts catches SIGSEGV, which would hide where it came from.
+    export ASAN_OPTIONS=handle_segv=2:detect_stack_use_after_return=1:strict_string_checks=1${ASAN_OPTIONS:+:$ASAN_OPTIONS}
+    export UBSAN_OPTIONS=print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}
+fi
+
+say "Running the tests${sanitize:+ under AddressSanitizer and UndefinedBehaviorSanitizer}"
+run_tests "$directory/bin/opencv_test_hdpstereo" "$@"
+if [ -z "$sanitize" ] && [ $# -eq 0 ] && [ -x "$directory/bin/opencv_perf_hdpstereo" ]; then
+    say "Running the performance tests, one round of the smallest images"
+    run_tests "$directory/bin/opencv_perf_hdpstereo" "--gtest_param_filter=*640x480*" \
+        --perf_min_samples=1 --perf_force_samples=1
+fi
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]

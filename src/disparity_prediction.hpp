@@ -1,0 +1,42 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_SRC_DISPARITY_PREDICTION_HPP
+#define OPENCV_HDPSTEREO_SRC_DISPARITY_PREDICTION_HPP
+
+#include "opencv2/hdpstereo/disparity_prediction.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+//! Disparities first .. last; empty if last < first. Stored in Mats as CV_16UC2.
+struct DisparityInterval
+{
+    ushort first, last;
+
+    bool empty() const { return last < first; }
+    int size() const { return last - first + 1; }
+};
+
+/** PixelIntv of every disparity of layer l + 1 (section 3.1).
+@param model The model; its mixture of this layer is used.
+@param layer l.
+@param prior P(D_l) up to a factor, for D_l = 0 .. d_l.
+@param upperDisparities d_{l+1} + 1.
+@param delta delta_l.
+@param intervals intervals[i] receives PixelIntv given D_{l+1} = i: the mode of row i of P(D_l | D_{l+1}) and its
+neighbours, in turns to the left and to the right while their share of the probability exceeds delta; empty if the
+whole row is 0. */
+CV_EXPORTS void predictIntervals(const DisparityPredictionModel& model, int layer, const std::vector<double>& prior,
+                                 int upperDisparities, double delta, std::vector<DisparityInterval>& intervals);
+
+//! PixelIntv of every pixel of a layer: intervals[D_{l+1}] of the pixel above it. upper: CV_16UC1; pixelIntv: CV_16UC2.
+CV_EXPORTS void assignIntervals(const Mat& upper, Size size, const std::vector<DisparityInterval>& intervals,
+                                Mat& pixelIntv);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif

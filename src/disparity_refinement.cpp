@@ -1,0 +1,77 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "disparity_refinement.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+//! cv::medianBlur in horizontal stripes side by side; each stripe sees its neighbours' rows.
+void medianBlurStripes(const Mat& image, int size, Mat& filtered)
+{
+    const int radius = size / 2, stripes = std::max(1, std::min(16, image.rows / (4 * size)));
+    filtered.create(image.size(), image.type());
+    parallel_for_(Range(0, stripes), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+        {
+            const Range rows(image.rows * i / stripes, image.rows * (i + 1) / stripes);
+            const Range seen(std::max(rows.start - radius, 0), std::min(rows.end + radius, image.rows));
+            Mat stripe;
+            medianBlur(image.rowRange(seen), stripe, size);
+            stripe.rowRange(rows.start - seen.start, rows.end - seen.start).copyTo(filtered.rowRange(rows));
+        }
+    });
+}
+
+} // namespace
+
+void medianDisparity(const Mat& disparity, int size, Mat& filtered)
+{
+    // cv::medianBlur takes large windows in 8 bit only. A median commutes with monotone functions, and a value is the
+    // sum of its slices min(max(value - 255 k, 0), 255), so it is the sum of the slices' medians.
+    double largest;
+    minMaxLoc(disparity, 0, &largest);
+    Mat slice, median;
+    disparity.convertTo(slice, CV_8U);
+    medianBlurStripes(slice, size, median);
+    median.convertTo(filtered, CV_16U);
+    for (int below = 255; below < largest; below += 255)
+    {
+        disparity.convertTo(slice, CV_8U, 1, -below);
+        medianBlurStripes(slice, size, median);
+        add(filtered, median, filtered, noArray(), CV_16U);
+    }
+}
+
+void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
+{
+    const int scale = 16;
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        std::vector<int> nearest(disparity.cols);
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            short* row = disparity.ptr<short>(y);
+            std::fill(nearest.begin(), nearest.end(), INT_MIN);
+            for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int right = x - cvRound(row[x] / (double)scale);
+                if (row[x] != invalid && right >= 0 && right < disparity.cols)
+                    nearest[right] = std::max<int>(nearest[right], row[x]);
+            }
+            for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int right = x - cvRound(row[x] / (double)scale);
+                if (right >= 0 && right < disparity.cols && nearest[right] - row[x] > maxDiff * scale)
+                    row[x] = invalid;
+            }
+        }
+    });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

@@ -1,0 +1,24 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_DISPARITY_REFINEMENT_HPP
+#define OPENCV_HDPSTEREO_DISPARITY_REFINEMENT_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+//! Median of size x size pixels, borders replicated. disparity: CV_16UC1.
+CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& filtered);
+
+//! Marks the pixels as invalid whose disparity differs by more than maxDiff pixels from the largest one that maps to the
+//! same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
+CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif

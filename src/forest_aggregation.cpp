@@ -1,0 +1,248 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "forest_aggregation.hpp"
+
+#include <cfloat>
+#include <cmath>
+#include <mutex>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+// Candidates that are aggregated together: a tree with more is walked in chunks, so memory stays O(pixels).
+const int chunk = 8;
+
+// Smaller trees are aggregated by one thread each.
+const int largeTree = 1 << 15;
+
+// Work, in aggregated costs, of a task of small trees
+const int64 taskWork = 1 << 16;
+
+template <int lanes>
+void aggregate(const TreeWalk& walk, int size, int width, const MatchingCost& cost, const EdgeSimilarity& similarity,
+               int first, float* aggregated)
+{
+    for (int i = 0; i < size; ++i)
+        cost.evaluate<lanes>(walk.pixels[i] / width, walk.pixels[i] % width, first, aggregated + (size_t)i * lanes);
+
+    for (int i = size - 1; i > 0; --i) // leaves to root
+    {
+        const float s = similarity.table[walk.weights[i]];
+        const float* child = aggregated + (size_t)i * lanes;
+        float* parent = aggregated + (size_t)walk.parents[i] * lanes;
+        for (int k = 0; k < lanes; ++k)
+            parent[k] += s * child[k];
+    }
+    for (int i = 1; i < size; ++i) // root to leaves
+    {
+        const float s = similarity.table[walk.weights[i]], own = 1 - s * s;
+        float* child = aggregated + (size_t)i * lanes;
+        const float* parent = aggregated + (size_t)walk.parents[i] * lanes;
+        for (int k = 0; k < lanes; ++k)
+            child[k] = s * parent[k] + own * child[k];
+    }
+}
+
+//! The first of the lowest costs.
+int lowestCost(const float* cost, int count, float& lowest)
+{
+    int winner = 0;
+    lowest = cost[0];
+    for (int k = 1; k < count; ++k)
+    {
+        winner = cost[k] < lowest ? k : winner;
+        lowest = std::min(cost[k], lowest);
+    }
+    return winner;
+}
+
+struct Aggregation
+{
+    const DisparityForest& forest;
+    const MatchingCost& cost;
+    const EdgeSimilarity similarity;
+    ushort* disparity;
+
+    int width() const { return forest.links.cols; }
+
+    //! Aggregates a chunk of candidates and takes over the winners that beat those of other chunks.
+    void takeWinners(const TreeWalk& walk, int size, int first, int count, std::vector<float>& aggregated,
+                     std::vector<float>& lowest, std::vector<ushort>& winner) const
+    {
+        const int lanes = aggregateTree(walk, size, width(), cost, similarity, first, count, aggregated);
+        for (int i = 0; i < size; ++i)
+        {
+            float low;
+            const int candidate = first + lowestCost(&aggregated[(size_t)i * lanes], count, low);
+            if (low < lowest[i] || (low == lowest[i] && candidate < winner[i]))
+            {
+                lowest[i] = low;
+                winner[i] = (ushort)candidate;
+            }
+        }
+    }
+
+    void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
+    {
+        const int first = tree.interval.first, count = tree.interval.size();
+        if (count <= 0)
+        {
+            // An empty interval never joins another one.
+            disparity[tree.root] = 0;
+            return;
+        }
+        walkTree(forest, tree, scratch.walk);
+        const int* pixels = scratch.walk.pixels.data();
+        if (count == 1)
+            for (int i = 0; i < tree.size; ++i)
+                disparity[pixels[i]] = (ushort)first;
+        else if (count <= chunk)
+        {
+            const int lanes = aggregateTree(scratch.walk, tree.size, width(), cost, similarity, first, count,
+                                            scratch.aggregated);
+            float low;
+            for (int i = 0; i < tree.size; ++i)
+                disparity[pixels[i]] = (ushort)(first + lowestCost(&scratch.aggregated[(size_t)i * lanes], count, low));
+        }
+        else
+        {
+            scratch.lowest.assign(tree.size, FLT_MAX);
+            scratch.winner.assign(tree.size, 0);
+            for (int x = first; x < first + count; x += chunk)
+                takeWinners(scratch.walk, tree.size, x, std::min(chunk, first + count - x), scratch.aggregated,
+                            scratch.lowest, scratch.winner);
+            for (int i = 0; i < tree.size; ++i)
+                disparity[pixels[i]] = scratch.winner[i];
+        }
+    }
+};
+
+//! Lends each thread its scratch memory.
+class ScratchLoan
+{
+public:
+    ScratchLoan(AggregationBuffers& buffers, std::mutex& mutex) : buffers_(buffers), mutex_(mutex)
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        if (buffers_.idle.empty())
+            scratch_.reset(new AggregationScratch);
+        else
+        {
+            scratch_ = std::move(buffers_.idle.back());
+            buffers_.idle.pop_back();
+        }
+    }
+    ~ScratchLoan()
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        buffers_.idle.push_back(std::move(scratch_));
+    }
+    AggregationScratch& operator*() const { return *scratch_; }
+
+private:
+    AggregationBuffers& buffers_;
+    std::mutex& mutex_;
+    std::unique_ptr<AggregationScratch> scratch_;
+};
+
+//! A large tree with many candidates: its chunks side by side. A winner is the lowest pair (cost, candidate), which does
+//! not depend on the order in which chunks end.
+void processLarge(const Aggregation& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
+{
+    std::mutex mutex;
+    ScratchLoan result(buffers, mutex);
+    TreeWalk& walk = (*result).walk;
+    std::vector<float>& lowest = (*result).lowest;
+    std::vector<ushort>& winner = (*result).winner;
+    walkTree(aggregation.forest, tree, walk);
+    lowest.assign(tree.size, FLT_MAX);
+    winner.assign(tree.size, 0);
+
+    std::mutex resultMutex;
+    const int first = tree.interval.first, count = tree.interval.size(), chunks = (count + chunk - 1) / chunk;
+    // At most 8 at once bounds the memory.
+    parallel_for_(Range(0, chunks), [&](const Range& range) {
+        ScratchLoan loan(buffers, mutex);
+        AggregationScratch& scratch = *loan;
+        scratch.lowest.assign(tree.size, FLT_MAX);
+        scratch.winner.assign(tree.size, 0);
+        for (int i = range.start; i < range.end; ++i)
+            aggregation.takeWinners(walk, tree.size, first + i * chunk, std::min(chunk, count - i * chunk),
+                                    scratch.aggregated, scratch.lowest, scratch.winner);
+        std::lock_guard<std::mutex> lock(resultMutex);
+        for (int i = 0; i < tree.size; ++i)
+            if (scratch.lowest[i] < lowest[i] || (scratch.lowest[i] == lowest[i] && scratch.winner[i] < winner[i]))
+            {
+                lowest[i] = scratch.lowest[i];
+                winner[i] = scratch.winner[i];
+            }
+    }, std::min(chunks, 8));
+    for (int i = 0; i < tree.size; ++i)
+        aggregation.disparity[walk.pixels[i]] = winner[i];
+}
+
+} // namespace
+
+EdgeSimilarity::EdgeSimilarity(double gamma)
+{
+    for (int w = 0; w < 256; ++w)
+        table[w] = (float)std::exp(-w / gamma);
+}
+
+int aggregateTree(const TreeWalk& walk, int size, int width, const MatchingCost& cost,
+                  const EdgeSimilarity& similarity, int first, int count, std::vector<float>& aggregated)
+{
+    const int lanes = count <= 4 ? 4 : 8;
+    if (aggregated.size() < (size_t)size * lanes)
+        aggregated.resize((size_t)size * lanes);
+    if (lanes == 4)
+        aggregate<4>(walk, size, width, cost, similarity, first, aggregated.data());
+    else
+        aggregate<8>(walk, size, width, cost, similarity, first, aggregated.data());
+    return lanes;
+}
+
+void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, AggregationBuffers& buffers,
+                     Mat& disparity)
+{
+    disparity.create(forest.links.size(), CV_16U);
+    const Aggregation aggregation = { forest, cost, EdgeSimilarity(gamma), disparity.ptr<ushort>() };
+
+    // Tasks of about the same work, in the order of the trees; large trees with many candidates are done one by one.
+    std::vector<Range> tasks;
+    int64 work = taskWork;
+    for (int t = 0; t < (int)forest.trees.size(); ++t)
+    {
+        const DisparityTree& tree = forest.trees[t];
+        if (tree.size >= largeTree && tree.interval.size() > chunk)
+        {
+            processLarge(aggregation, tree, buffers);
+            work = taskWork;
+            continue;
+        }
+        if (work >= taskWork)
+        {
+            tasks.push_back(Range(t, t));
+            work = 0;
+        }
+        tasks.back().end = t + 1;
+        work += (int64)tree.size * tree.interval.size();
+    }
+
+    std::mutex mutex;
+    parallel_for_(Range(0, (int)tasks.size()), [&](const Range& range) {
+        ScratchLoan scratch(buffers, mutex);
+        for (int i = range.start; i < range.end; ++i)
+            for (int t = tasks[i].start; t < tasks[i].end; ++t)
+                aggregation.processSmall(forest.trees[t], *scratch);
+    });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

@@ -1,0 +1,58 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
+#define OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
+
+#include <memory>
+#include "disparity_forest.hpp"
+#include "matching_cost.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+//! S(p, q) of neighbours: exp(-w / gamma) for each weight w.
+struct CV_EXPORTS EdgeSimilarity
+{
+    explicit EdgeSimilarity(double gamma);
+    float table[256];
+};
+
+/** The aggregated cost C(p, x) = sum over q in the tree of S(p, q) M(q, x) (section 3.3), in two passes.
+@param walk The tree's walk.
+@param size Number of pixels of the tree.
+@param width Columns of the layer.
+@param cost The layer's matching cost.
+@param similarity S of neighbours.
+@param first The first of up to 8 candidates x.
+@param count Their number.
+@param aggregated Receives C(walk.pixels[i], first + k) at [i * lanes + k], k < count.
+@return lanes, 4 or 8: 4 if count <= 4. */
+CV_EXPORTS int aggregateTree(const TreeWalk& walk, int size, int width, const MatchingCost& cost,
+                             const EdgeSimilarity& similarity, int first, int count, std::vector<float>& aggregated);
+
+//! Memory of one thread for the trees it works on
+struct AggregationScratch
+{
+    TreeWalk walk;
+    std::vector<float> aggregated;
+    std::vector<float> lowest;   // cost of the winner so far
+    std::vector<ushort> winner;  // by position in the walk
+};
+
+struct AggregationBuffers
+{
+    std::vector<std::unique_ptr<AggregationScratch> > idle;
+};
+
+//! Winner-takes-all over C(p, x), x in TreeIntv of the pixel's tree; 0 for pixels whose interval is empty. The lowest
+//! disparity wins a tie. disparity: CV_16UC1 of the layer's size.
+CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma,
+                                AggregationBuffers& buffers, Mat& disparity);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif

@@ -1,0 +1,464 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+
+#include "disparity_forest.hpp"
+#include "disparity_prediction.hpp"
+#include "disparity_refinement.hpp"
+#include "forest_aggregation.hpp"
+#include "image_pyramid.hpp"
+#include "matching_cost.hpp"
+#include "support_points.hpp"
+#include "tree_strategy.hpp"
+
+#include <limits>
+
+namespace cv {
+namespace stereo {
+
+using namespace hdp;
+
+namespace {
+
+const int largeImageWidth = 1000;
+const int maxBlockSize = 31;
+const int maxMedianSize = 31;
+const int maxLayers = 16;
+
+//! A value in a range, or an exception that names the argument and the range.
+template <typename T> T checked(T value, bool isValid, const char* name, const char* expected)
+{
+    if (!isValid)
+    {
+        std::ostringstream message;
+        message << name << " must be " << expected << ", not " << value;
+        CV_Error(Error::StsOutOfRange, message.str());
+    }
+    return value;
+}
+
+bool isFinite(double value)
+{
+    return std::abs(value) <= std::numeric_limits<double>::max();
+}
+
+//! What a preset sets and a file holds. Setters only take values that are valid by themselves; what depends on several
+//! of them or on the images is checked in compute().
+struct Parameters
+{
+    int minDisparity = 0;
+    int numDisparities = 64;
+    int blockSize = 1;
+    int speckleWindowSize = 0;
+    int speckleRange = 0;
+    int disp12MaxDiff = -1;
+
+    Ptr<TreeStrategy> treeStrategy = createMinimumSpanningTree();
+    Ptr<DisparityPredictionModel> predictionModel;
+    bool usePrediction = true;
+    bool useMedianPrefilter = false;
+    int numLayers = 3;
+    double delta0 = HDPTreeMatcher::AUTO;
+    double beta = HDPTreeMatcher::AUTO;
+    double gamma = 25.5;
+    double colorTruncation = 10;
+    double gradientTruncation = 2;
+    double colorWeight = 0.11;
+    int disparityMedianSize = HDPTreeMatcher::AUTO;
+
+    void setMinDisparity(int value) { minDisparity = value; }
+    void setNumDisparities(int value) { numDisparities = checked(value, value > 0, "numDisparities", "> 0"); }
+    void setBlockSize(int value)
+    {
+        blockSize = checked(value, value >= 1 && value <= maxBlockSize && value % 2 == 1, "blockSize", "odd, in 1..31");
+    }
+    void setSpeckleWindowSize(int value)
+    {
+        speckleWindowSize = checked(value, value >= 0, "speckleWindowSize", ">= 0");
+    }
+    void setSpeckleRange(int value)
+    {
+        speckleRange = checked(value, value >= 0 && value <= SHRT_MAX / StereoMatcher::DISP_SCALE, "speckleRange",
+                               "in 0..2047");
+    }
+    void setDisp12MaxDiff(int value) { disp12MaxDiff = value; }
+    void setTreeStrategy(const Ptr<TreeStrategy>& value)
+    {
+        if (!value)
+            CV_Error(Error::StsNullPtr, "treeStrategy must not be empty");
+        treeStrategy = value;
+    }
+    void setNumLayers(int value)
+    {
+        numLayers = checked(value, value >= 1 && value <= maxLayers, "numLayers", "in 1..16");
+    }
+    void setDelta0(double value)
+    {
+        delta0 = checked(value, value == HDPTreeMatcher::AUTO || (value >= 0 && value < 1), "delta0", "in [0, 1) or AUTO");
+    }
+    void setBeta(double value)
+    {
+        beta = checked(value, value == HDPTreeMatcher::AUTO || (value >= 0 && value <= 1), "beta", "in [0, 1] or AUTO");
+    }
+    void setGamma(double value) { gamma = checked(value, isFinite(value) && value > 0, "gamma", "finite and > 0"); }
+    void setColorTruncation(double value)
+    {
+        colorTruncation = checked(value, isFinite(value) && value >= 0, "colorTruncation", "finite and >= 0");
+    }
+    void setGradientTruncation(double value)
+    {
+        gradientTruncation = checked(value, isFinite(value) && value >= 0, "gradientTruncation", "finite and >= 0");
+    }
+    void setColorWeight(double value)
+    {
+        colorWeight = checked(value, value >= 0 && value <= 1, "colorWeight", "in [0, 1]");
+    }
+    void setDisparityMedianSize(int value)
+    {
+        const bool isValid = value == HDPTreeMatcher::AUTO || value == 0
+                             || (value >= 3 && value <= maxMedianSize && value % 2 == 1);
+        disparityMedianSize = checked(value, isValid, "disparityMedianSize", "0, odd in 3..31, or AUTO");
+    }
+};
+
+//! Reads a number if the file has it; throws if it is something else.
+template <typename T, typename Setter> void readNumber(const FileNode& fn, const char* key, Setter set)
+{
+    const FileNode node = fn[key];
+    if (node.empty())
+        return;
+    if (!node.isInt() && (std::is_integral<T>::value || !node.isReal()))
+        CV_Error(Error::StsParseError, format("%s must be a number", key));
+    set((T)node);
+}
+
+//! Adds up the wall time of each stage.
+class StageClock
+{
+public:
+    void restart()
+    {
+        stages.clear();
+        milliseconds.clear();
+    }
+
+    //! Runs a stage and adds its time to that of its name.
+    template <typename Stage> void run(const char* name, Stage stage)
+    {
+        const int64 start = getTickCount();
+        stage();
+        const double time = (double)(getTickCount() - start) * 1000 / getTickFrequency();
+        const size_t i = (size_t)(std::find(stages.begin(), stages.end(), name) - stages.begin());
+        if (i == stages.size())
+        {
+            stages.push_back(name);
+            milliseconds.push_back(0);
+        }
+        milliseconds[i] += time;
+    }
+
+    std::vector<String> stages;
+    std::vector<double> milliseconds;
+};
+
+class HDPTreeMatcherImpl CV_FINAL : public HDPTreeMatcher
+{
+public:
+    explicit HDPTreeMatcherImpl(const Parameters& parameters) : p_(parameters) {}
+
+    void compute(InputArray leftArray, InputArray rightArray, OutputArray disparityArray) CV_OVERRIDE
+    {
+        CV_TRACE_FUNCTION();
+        const Mat left = leftArray.getMat(), right = rightArray.getMat();
+        checkImages(left, right);
+        const LayerSettings settings = resolve(left.size());
+        clock_.restart();
+        searchRatios_.assign(settings.layers, 0);
+
+        clock_.run("image pyramid", [&] { buildPyramids(left, right, settings.layers); });
+        for (int layer = settings.layers - 1; layer >= 0; --layer)
+            matchLayer(layer, settings);
+
+        disparityArray.create(left.size(), CV_16S);
+        Mat disparity = disparityArray.getMat();
+        clock_.run("output", [&] { finish(disparity); });
+    }
+
+    // cv::StereoMatcher
+    int getMinDisparity() const CV_OVERRIDE { return p_.minDisparity; }
+    void setMinDisparity(int value) CV_OVERRIDE { p_.setMinDisparity(value); }
+    int getNumDisparities() const CV_OVERRIDE { return p_.numDisparities; }
+    void setNumDisparities(int value) CV_OVERRIDE { p_.setNumDisparities(value); }
+    int getBlockSize() const CV_OVERRIDE { return p_.blockSize; }
+    void setBlockSize(int value) CV_OVERRIDE { p_.setBlockSize(value); }
+    int getSpeckleWindowSize() const CV_OVERRIDE { return p_.speckleWindowSize; }
+    void setSpeckleWindowSize(int value) CV_OVERRIDE { p_.setSpeckleWindowSize(value); }
+    int getSpeckleRange() const CV_OVERRIDE { return p_.speckleRange; }
+    void setSpeckleRange(int value) CV_OVERRIDE { p_.setSpeckleRange(value); }
+    int getDisp12MaxDiff() const CV_OVERRIDE { return p_.disp12MaxDiff; }
+    void setDisp12MaxDiff(int value) CV_OVERRIDE { p_.setDisp12MaxDiff(value); }
+
+    // HDPTreeMatcher
+    Ptr<TreeStrategy> getTreeStrategy() const CV_OVERRIDE { return p_.treeStrategy; }
+    void setTreeStrategy(const Ptr<TreeStrategy>& value) CV_OVERRIDE { p_.setTreeStrategy(value); }
+    Ptr<DisparityPredictionModel> getPredictionModel() const CV_OVERRIDE { return p_.predictionModel; }
+    void setPredictionModel(const Ptr<DisparityPredictionModel>& value) CV_OVERRIDE { p_.predictionModel = value; }
+    bool getUsePrediction() const CV_OVERRIDE { return p_.usePrediction; }
+    void setUsePrediction(bool value) CV_OVERRIDE { p_.usePrediction = value; }
+    bool getUseMedianPrefilter() const CV_OVERRIDE { return p_.useMedianPrefilter; }
+    void setUseMedianPrefilter(bool value) CV_OVERRIDE { p_.useMedianPrefilter = value; }
+    int getNumLayers() const CV_OVERRIDE { return p_.numLayers; }
+    void setNumLayers(int value) CV_OVERRIDE { p_.setNumLayers(value); }
+    double getDelta0() const CV_OVERRIDE { return p_.delta0; }
+    void setDelta0(double value) CV_OVERRIDE { p_.setDelta0(value); }
+    double getBeta() const CV_OVERRIDE { return p_.beta; }
+    void setBeta(double value) CV_OVERRIDE { p_.setBeta(value); }
+    double getGamma() const CV_OVERRIDE { return p_.gamma; }
+    void setGamma(double value) CV_OVERRIDE { p_.setGamma(value); }
+    double getColorTruncation() const CV_OVERRIDE { return p_.colorTruncation; }
+    void setColorTruncation(double value) CV_OVERRIDE { p_.setColorTruncation(value); }
+    double getGradientTruncation() const CV_OVERRIDE { return p_.gradientTruncation; }
+    void setGradientTruncation(double value) CV_OVERRIDE { p_.setGradientTruncation(value); }
+    double getColorWeight() const CV_OVERRIDE { return p_.colorWeight; }
+    void setColorWeight(double value) CV_OVERRIDE { p_.setColorWeight(value); }
+    int getDisparityMedianSize() const CV_OVERRIDE { return p_.disparityMedianSize; }
+    void setDisparityMedianSize(int value) CV_OVERRIDE { p_.setDisparityMedianSize(value); }
+
+    void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE { ratios = searchRatios_; }
+
+    void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
+    {
+        stages = clock_.stages;
+        milliseconds = clock_.milliseconds;
+    }
+
+    // cv::Algorithm
+    String getDefaultName() const CV_OVERRIDE { return "hdpstereo_HDPTreeMatcher"; }
+
+    void write(FileStorage& fs) const CV_OVERRIDE
+    {
+        fs << "name" << getDefaultName()
+           << "minDisparity" << p_.minDisparity
+           << "numDisparities" << p_.numDisparities
+           << "blockSize" << p_.blockSize
+           << "speckleWindowSize" << p_.speckleWindowSize
+           << "speckleRange" << p_.speckleRange
+           << "disp12MaxDiff" << p_.disp12MaxDiff
+           << "usePrediction" << (int)p_.usePrediction
+           << "useMedianPrefilter" << (int)p_.useMedianPrefilter
+           << "numLayers" << p_.numLayers
+           << "delta0" << p_.delta0
+           << "beta" << p_.beta
+           << "gamma" << p_.gamma
+           << "colorTruncation" << p_.colorTruncation
+           << "gradientTruncation" << p_.gradientTruncation
+           << "colorWeight" << p_.colorWeight
+           << "disparityMedianSize" << p_.disparityMedianSize;
+        fs << "treeStrategy" << "{" << "strategy" << p_.treeStrategy->getDefaultName();
+        p_.treeStrategy->write(fs);
+        fs << "}";
+        if (p_.predictionModel)
+        {
+            fs << "predictionModel" << "{";
+            p_.predictionModel->write(fs);
+            fs << "}";
+        }
+    }
+
+    void read(const FileNode& fn) CV_OVERRIDE
+    {
+        if (!fn.isMap() || !fn["name"].isString() || (String)fn["name"] != getDefaultName())
+            CV_Error(Error::StsParseError, "name must be " + getDefaultName());
+        Parameters p; // what the file does not have gets its default
+        readNumber<int>(fn, "minDisparity", [&](int value) { p.setMinDisparity(value); });
+        readNumber<int>(fn, "numDisparities", [&](int value) { p.setNumDisparities(value); });
+        readNumber<int>(fn, "blockSize", [&](int value) { p.setBlockSize(value); });
+        readNumber<int>(fn, "speckleWindowSize", [&](int value) { p.setSpeckleWindowSize(value); });
+        readNumber<int>(fn, "speckleRange", [&](int value) { p.setSpeckleRange(value); });
+        readNumber<int>(fn, "disp12MaxDiff", [&](int value) { p.setDisp12MaxDiff(value); });
+        readNumber<int>(fn, "usePrediction", [&](int value) { p.usePrediction = value != 0; });
+        readNumber<int>(fn, "useMedianPrefilter", [&](int value) { p.useMedianPrefilter = value != 0; });
+        readNumber<int>(fn, "numLayers", [&](int value) { p.setNumLayers(value); });
+        readNumber<double>(fn, "delta0", [&](double value) { p.setDelta0(value); });
+        readNumber<double>(fn, "beta", [&](double value) { p.setBeta(value); });
+        readNumber<double>(fn, "gamma", [&](double value) { p.setGamma(value); });
+        readNumber<double>(fn, "colorTruncation", [&](double value) { p.setColorTruncation(value); });
+        readNumber<double>(fn, "gradientTruncation", [&](double value) { p.setGradientTruncation(value); });
+        readNumber<double>(fn, "colorWeight", [&](double value) { p.setColorWeight(value); });
+        readNumber<int>(fn, "disparityMedianSize", [&](int value) { p.setDisparityMedianSize(value); });
+        p.treeStrategy = readStrategy(fn["treeStrategy"]);
+        if (!fn["predictionModel"].empty())
+        {
+            p.predictionModel = DisparityPredictionModel::create();
+            p.predictionModel->read(fn["predictionModel"]);
+        }
+        p_ = p;
+    }
+
+private:
+    //! What the parameters amount to for an image.
+    struct LayerSettings
+    {
+        int layers;
+        Ptr<DisparityPredictionModel> model;
+        double delta0, beta;
+        int medianSize;
+    };
+
+    static void checkImages(const Mat& left, const Mat& right)
+    {
+        if (left.empty())
+            CV_Error(Error::StsBadArg, "left must not be empty");
+        if (left.dims != 2 || (left.type() != CV_8UC1 && left.type() != CV_8UC3))
+            CV_Error(Error::StsUnsupportedFormat, "left must be CV_8UC1 or CV_8UC3");
+        if (right.dims != 2 || right.size() != left.size())
+            CV_Error(Error::StsUnmatchedSizes, "right must have the size of left");
+        if (right.type() != left.type())
+            CV_Error(Error::StsUnmatchedFormats, "right must have the type of left");
+        if (left.total() > (size_t)INT_MAX / 2)
+            CV_Error(Error::StsOutOfRange, "left must have less than 2^30 pixels");
+    }
+
+    LayerSettings resolve(Size size) const
+    {
+        const int64 lowest = ((int64)p_.minDisparity - 1) * DISP_SCALE;
+        const int64 highest = ((int64)p_.minDisparity + p_.numDisparities - 1) * DISP_SCALE;
+        if (lowest < SHRT_MIN || highest > SHRT_MAX)
+            CV_Error(Error::StsOutOfRange, format("minDisparity and numDisparities must keep (minDisparity - 1) * %d and "
+                                                  "(minDisparity + numDisparities - 1) * %d in CV_16S",
+                                                  (int)DISP_SCALE, (int)DISP_SCALE));
+
+        const bool isLarge = size.width >= largeImageWidth;
+        LayerSettings settings;
+        settings.layers = p_.usePrediction ? countLayers(size, p_.numLayers) : 1;
+        settings.model = p_.predictionModel;
+        if (!settings.model)
+            settings.model = DisparityPredictionModel::createPublished(isLarge ? DisparityPredictionModel::PUBLISHED_LARGE
+                                                                               : DisparityPredictionModel::PUBLISHED_SMALL);
+        if (settings.model->getNumLayers() < settings.layers - 1)
+            CV_Error(Error::StsOutOfRange, format("predictionModel must have numLayers - 1 = %d layers, not %d",
+                                                  settings.layers - 1, settings.model->getNumLayers()));
+        settings.delta0 = p_.delta0 != AUTO ? p_.delta0 : isLarge ? 0.064 : 0.004;
+        settings.beta = p_.beta != AUTO ? p_.beta : isLarge ? 0.6 : 0.95;
+        settings.medianSize = p_.disparityMedianSize != AUTO ? p_.disparityMedianSize : p_.usePrediction ? 7 : 5;
+        return settings;
+    }
+
+    //! Section 2.1.
+    void buildPyramids(const Mat& left, const Mat& right, int layers)
+    {
+        left_.resize(layers);
+        right_.resize(layers);
+        left_[0] = left;
+        shiftColumns(right, p_.minDisparity, shiftedRight_);
+        right_[0] = shiftedRight_;
+        for (int layer = 1; layer < layers; ++layer)
+        {
+            halveImage(left_[layer - 1], left_[layer]);
+            halveImage(right_[layer - 1], right_[layer]);
+        }
+    }
+
+    //! Section 3: disparity_, that of the layer above, becomes that of this layer.
+    void matchLayer(int layer, const LayerSettings& settings)
+    {
+        const Mat &left = left_[layer], &right = right_[layer];
+        const int disparities = layerDisparities(p_.numDisparities, layer);
+        if (layer == settings.layers - 1)
+            clock_.run("disparity prediction", [&] {
+                pixelIntv_.create(left.size(), CV_16UC2);
+                pixelIntv_.setTo(Scalar(0, disparities - 1));
+            });
+        else
+        {
+            clock_.run("support points", [&] {
+                findSupportPoints(left, right, disparities, supportPoints_, points_);
+                disparityHistogram(points_, disparities, prior_);
+            });
+            clock_.run("disparity prediction", [&] {
+                predictIntervals(*settings.model, layer, prior_, layerDisparities(p_.numDisparities, layer + 1),
+                                 settings.delta0 * (1 << layer), intervals_);
+                assignIntervals(disparity_, left.size(), intervals_, pixelIntv_);
+            });
+        }
+
+        clock_.run("disparity forest", [&] {
+            if (p_.useMedianPrefilter)
+                medianBlur(left, guide_, 3);
+            buildForest(p_.useMedianPrefilter ? guide_ : left, pixelIntv_, *p_.treeStrategy, settings.beta,
+                        !p_.usePrediction, forestBuffers_, forest_);
+            searchRatios_[layer] = searchRatio(forest_, disparities);
+        });
+        clock_.run("matching cost", [&] {
+            const MatchingCostParams params = { (float)p_.colorTruncation, (float)p_.gradientTruncation,
+                                                (float)p_.colorWeight, p_.blockSize };
+            cost_.prepare(left, right, disparities, params);
+        });
+        clock_.run("cost aggregation", [&] { aggregateForest(forest_, cost_, p_.gamma, aggregation_, winner_); });
+        clock_.run("disparity median", [&] {
+            if (settings.medianSize > 0)
+                medianDisparity(winner_, settings.medianSize, disparity_);
+            else
+                swap(winner_, disparity_);
+        });
+    }
+
+    //! From candidates of layer 0 to what cv::StereoMatcher promises.
+    void finish(Mat& disparity)
+    {
+        const short invalid = (short)((p_.minDisparity - 1) * DISP_SCALE);
+        disparity_.convertTo(disparity, CV_16S, DISP_SCALE, (double)p_.minDisparity * DISP_SCALE);
+        if (p_.disp12MaxDiff > 0)
+            rejectOccluded(disparity, p_.disp12MaxDiff, invalid);
+        if (p_.speckleWindowSize > 0)
+            filterSpeckles(disparity, invalid, p_.speckleWindowSize, DISP_SCALE * p_.speckleRange, speckles_);
+    }
+
+    Ptr<TreeStrategy> readStrategy(const FileNode& fn) const
+    {
+        if (!fn.isMap() || !fn["strategy"].isString())
+            CV_Error(Error::StsParseError, "treeStrategy must name a strategy");
+        const String name = (String)fn["strategy"];
+        Ptr<TreeStrategy> strategy = createTreeStrategy(name);
+        if (strategy)
+            strategy->read(fn);
+        else if (name == p_.treeStrategy->getDefaultName()) // the caller's own, which only the caller can create
+            strategy = p_.treeStrategy;
+        else
+            CV_Error(Error::StsParseError, "treeStrategy: set a strategy named " + name + " before reading");
+        return strategy;
+    }
+
+    Parameters p_;
+    std::vector<double> searchRatios_;
+    StageClock clock_;
+
+    // Buffers that are kept between calls
+    std::vector<Mat> left_, right_;
+    Mat shiftedRight_, guide_;
+    SupportPointBuffers supportPoints_;
+    Mat points_;
+    std::vector<double> prior_;
+    std::vector<DisparityInterval> intervals_;
+    Mat pixelIntv_;
+    ForestBuffers forestBuffers_;
+    DisparityForest forest_;
+    MatchingCost cost_;
+    AggregationBuffers aggregation_;
+    Mat winner_, disparity_, speckles_;
+};
+
+} // namespace
+
+Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities, int preset)
+{
+    checked(preset, preset == PRESET_PAPER, "preset", "PRESET_PAPER");
+    Parameters parameters; // its defaults are those of PRESET_PAPER
+    parameters.setMinDisparity(minDisparity);
+    parameters.setNumDisparities(numDisparities);
+    return makePtr<HDPTreeMatcherImpl>(parameters);
+}
+
+} // namespace stereo
+} // namespace cv

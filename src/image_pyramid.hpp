@@ -1,0 +1,35 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_IMAGE_PYRAMID_HPP
+#define OPENCV_HDPSTEREO_IMAGE_PYRAMID_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+// The graph pyramid of section 2.1 with S = 2. Functions of the stages are exported for the tests only.
+
+//! Number of layers, at most numLayers, in which an image of this size has at least one pixel.
+CV_EXPORTS int countLayers(Size size, int numLayers);
+
+//! d_l + 1 = floor((numDisparities - 1) / 2^l) + 1: the number of candidates of layer l.
+inline int layerDisparities(int numDisparities, int layer)
+{
+    return ((numDisparities - 1) >> layer) + 1;
+}
+
+//! G_{l+1} of G_l: means of 2 x 2 pixels, truncated to 8 bit; an odd last row or column is left out.
+CV_EXPORTS void halveImage(const Mat& image, Mat& half);
+
+//! The right image moved by minDisparity, so that candidates count from 0: shifted(x) = right(x - minDisparity),
+//! the nearest column where there is none.
+CV_EXPORTS void shiftColumns(const Mat& right, int minDisparity, Mat& shifted);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif

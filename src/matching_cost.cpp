@@ -1,0 +1,145 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "matching_cost.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+// Columns behind the last candidate that evaluate() may read
+const int padding = 8;
+
+// Units of a gradient in one intensity level a pixel: the largest, 255, still fits into 16 bit
+const int gradientScale = 128;
+
+// Of the right image's first column and of what lies beyond it: further than any truncation from a real gradient
+const int noGradient = SHRT_MAX;
+
+//! Grey levels, 0.299 R + 0.587 G + 0.114 B, in 1 / 65536. Rounded to whole levels they cost accuracy: the gradients of
+//! smooth surfaces are below one level.
+void greyLevels(const uchar* pixels, int count, int channels, int* grey)
+{
+    if (channels == 1)
+        for (int x = 0; x < count; ++x)
+            grey[x] = pixels[x] * 65536;
+    else
+        for (int x = 0; x < count; ++x, pixels += 3)
+            grey[x] = 7471 * pixels[0] + 38470 * pixels[1] + 19595 * pixels[2];
+}
+
+//! The central difference of the grey levels along each row, in 1 / gradientScale levels; at the ends the one-sided
+//! difference counts in full.
+void horizontalGradient(const Mat& image, Mat& gradient)
+{
+    const int width = image.cols, last = width - 1;
+    gradient.create(image.size(), CV_16S);
+    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
+        std::vector<int> grey(width + 1);
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const int* g = grey.data();
+            short* d = gradient.ptr<short>(y);
+            greyLevels(image.ptr(y), width, image.channels(), grey.data());
+            for (int x = 1; x < last; ++x)
+                d[x] = (short)((g[x + 1] - g[x - 1] + 512) >> 10);
+            d[0] = last > 0 ? (short)((g[1] - g[0] + 256) >> 9) : 0;
+            d[last] = last > 0 ? (short)((g[last] - g[last - 1] + 256) >> 9) : 0;
+        }
+    });
+}
+
+//! Copies a channel into rows of bordered with `before` and `after` more columns and `radius` more rows around it,
+//! all from the nearest pixel; mirrored on request.
+template <typename T>
+void copyBordered(const Mat& image, int channel, int radius, int before, int after, bool mirrored, Mat bordered)
+{
+    const int step = image.channels(), width = image.cols;
+    parallel_for_(Range(0, bordered.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const T* from = image.ptr<T>(std::min(std::max(y - radius, 0), image.rows - 1)) + channel;
+            T* to = bordered.ptr<T>(y);
+            if (mirrored)
+                for (int x = 0; x < width; ++x)
+                    to[before + x] = from[(width - 1 - x) * step];
+            else
+                for (int x = 0; x < width; ++x)
+                    to[before + x] = from[x * step];
+            std::fill(to, to + before, to[before]);
+            std::fill(to + before + width, to + before + width + after, to[before + width - 1]);
+        }
+    });
+}
+
+} // namespace
+
+void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities, const MatchingCostParams& params)
+{
+    params_ = params;
+    radius_ = params.blockSize / 2;
+    width_ = left.cols;
+    const int channels = left.channels(), rows = left.rows + 2 * radius_;
+
+    const Mat images[] = { left, right };
+    for (int side = 0; side < 2; ++side)
+    {
+        const Mat& image = images[side];
+        const bool mirrored = side == 1;
+        horizontalGradient(image, gradient_);
+        if (mirrored)
+            gradient_.col(0).setTo(Scalar::all(noGradient));
+        const int after = mirrored ? radius_ + numDisparities + padding : radius_;
+        Mat& color = mirrored ? right_ : left_;
+        Mat& gradient = mirrored ? rightGradient_ : leftGradient_;
+        color.create(channels * rows, width_ + radius_ + after, CV_8U);
+        gradient.create(rows, color.cols, CV_16S);
+        for (int c = 0; c < channels; ++c)
+            copyBordered<uchar>(image, c, radius_, radius_, after, mirrored, color.rowRange(c * rows, (c + 1) * rows));
+        copyBordered<short>(gradient_, 0, radius_, radius_, after, mirrored, gradient);
+    }
+}
+
+template <int lanes> void MatchingCost::evaluate(int y, int x, int first, float* cost) const
+{
+    const int rows = leftGradient_.rows, channels = left_.rows / rows, blockSize = params_.blockSize;
+    // The means over the channels and the window and the gradient's units are left to the weights.
+    const float colorTruncation = params_.colorTruncation * channels;
+    const float gradientTruncation = params_.gradientTruncation * gradientScale;
+    const float area = (float)(blockSize * blockSize);
+    const float colorWeight = params_.colorWeight / (channels * area);
+    const float gradientWeight = (1 - params_.colorWeight) / (gradientScale * area);
+
+    float sum[lanes] = { 0 };
+    for (int dy = 0; dy < blockSize; ++dy)
+    {
+        for (int dx = 0; dx < blockSize; ++dx)
+        {
+            const int mirroredX = width_ - 1 - x + 2 * radius_ - dx + first;
+            int color[lanes] = { 0 };
+            for (int c = 0; c < channels; ++c)
+            {
+                const int pixel = left_.ptr(c * rows + y + dy)[x + dx];
+                const uchar* candidates = right_.ptr(c * rows + y + dy) + mirroredX;
+                for (int k = 0; k < lanes; ++k)
+                    color[k] += std::abs(pixel - candidates[k]);
+            }
+            const int slope = leftGradient_.ptr<short>(y + dy)[x + dx];
+            const short* slopes = rightGradient_.ptr<short>(y + dy) + mirroredX;
+            for (int k = 0; k < lanes; ++k)
+                sum[k] += colorWeight * std::min((float)color[k], colorTruncation)
+                        + gradientWeight * std::min((float)std::abs(slope - slopes[k]), gradientTruncation);
+        }
+    }
+    std::copy(sum, sum + lanes, cost);
+}
+
+template CV_EXPORTS void MatchingCost::evaluate<4>(int y, int x, int first, float* cost) const;
+template CV_EXPORTS void MatchingCost::evaluate<8>(int y, int x, int first, float* cost) const;
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

@@ -1,0 +1,126 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "tree_strategy.hpp"
+
+#include <limits>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+void sortByWeight(const Mat& weights, std::vector<int>& edges)
+{
+    const uchar* weight = weights.ptr();
+    const int stripes = 8;
+    const size_t stripe = (edges.size() + stripes - 1) / stripes;
+    size_t places[stripes][256] = { { 0 } }; // first numbers of edges, then where the next one goes
+    parallel_for_(Range(0, stripes), [&](const Range& range) {
+        for (int s = range.start; s < range.end; ++s)
+            for (size_t i = stripe * s; i < std::min(stripe * (s + 1), edges.size()); ++i)
+                ++places[s][weight[edges[i]]];
+    });
+    size_t place = 0;
+    for (int w = 0; w < 256; ++w)
+        for (int s = 0; s < stripes; ++s)
+        {
+            const size_t count = places[s][w];
+            places[s][w] = place;
+            place += count;
+        }
+    std::vector<int> sorted(edges.size());
+    parallel_for_(Range(0, stripes), [&](const Range& range) {
+        for (int s = range.start; s < range.end; ++s)
+            for (size_t i = stripe * s; i < std::min(stripe * (s + 1), edges.size()); ++i)
+                sorted[places[s][weight[edges[i]]]++] = edges[i];
+    });
+    edges.swap(sorted);
+}
+
+namespace {
+
+double checkedK(double k)
+{
+    if (!(k >= 0 && k <= std::numeric_limits<double>::max()))
+        CV_Error(Error::StsOutOfRange, "k must be finite and >= 0");
+    return k;
+}
+
+int checkedSeed(int seed)
+{
+    if (seed < 0)
+        CV_Error(Error::StsOutOfRange, "seed must be >= 0");
+    return seed;
+}
+
+//! A parameter of a strategy's node in a file.
+FileNode parameter(const FileNode& fn, const char* key, bool isInteger)
+{
+    const FileNode node = fn[key];
+    if (!node.isInt() && (isInteger || !node.isReal()))
+        CV_Error(Error::StsParseError, format("%s must be %s", key, isInteger ? "an integer" : "a number"));
+    return node;
+}
+
+} // namespace
+
+SegmentTree::SegmentTree(double k) : k_(checkedK(k)) {}
+
+void SegmentTree::write(FileStorage& fs) const
+{
+    fs << "k" << k_;
+}
+
+void SegmentTree::read(const FileNode& fn)
+{
+    k_ = checkedK((double)parameter(fn, "k", false));
+}
+
+RandomTree::RandomTree(int seed) : seed_(checkedSeed(seed)) {}
+
+void RandomTree::orderEdges(const Mat&, std::vector<int>& edges) const
+{
+    RNG rng((uint64)seed_ + 1); // the state 0 of cv::RNG stands for another one
+    for (int i = (int)edges.size() - 1; i > 0; --i)
+        std::swap(edges[i], edges[rng.uniform(0, i + 1)]);
+}
+
+void RandomTree::write(FileStorage& fs) const
+{
+    fs << "seed" << seed_;
+}
+
+void RandomTree::read(const FileNode& fn)
+{
+    seed_ = checkedSeed((int)parameter(fn, "seed", true));
+}
+
+Ptr<TreeStrategy> createTreeStrategy(const String& name)
+{
+    const Ptr<TreeStrategy> strategies[] = { createMinimumSpanningTree(), createSegmentTree(), createRandomTree() };
+    for (const Ptr<TreeStrategy>& strategy : strategies)
+        if (strategy->getDefaultName() == name)
+            return strategy;
+    return Ptr<TreeStrategy>();
+}
+
+} // namespace hdp
+
+Ptr<TreeStrategy> createMinimumSpanningTree()
+{
+    return makePtr<hdp::MinimumSpanningTree>();
+}
+
+Ptr<TreeStrategy> createSegmentTree(double k)
+{
+    return makePtr<hdp::SegmentTree>(k);
+}
+
+Ptr<TreeStrategy> createRandomTree(int seed)
+{
+    return makePtr<hdp::RandomTree>(seed);
+}
+
+} // namespace stereo
+} // namespace cv

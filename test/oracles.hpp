@@ -1,0 +1,490 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_TEST_ORACLES_HPP
+#define OPENCV_HDPSTEREO_TEST_ORACLES_HPP
+
+// The stages of the method written down a second time, from the paper's formulas: slow, short and obviously right.
+// Nothing here calls the library, except for the strategies' Rule 1 and 2 and the parameters of the prediction model.
+
+#include "test_precomp.hpp"
+#include "../src/disparity_forest.hpp"
+#include "../src/disparity_prediction.hpp"
+#include "../src/matching_cost.hpp"
+
+namespace opencv_test {
+namespace oracle {
+
+inline int clamped(int i, int size)
+{
+    return std::max(0, std::min(i, size - 1));
+}
+
+//! Grey levels in 8 bit
+inline Mat grey(const Mat& image)
+{
+    Mat result = image;
+    if (image.channels() == 3)
+        cv::cvtColor(image, result, COLOR_BGR2GRAY);
+    return result;
+}
+
+//! Grey levels that are not rounded
+inline Mat_<double> exactGrey(const Mat& image)
+{
+    Mat_<double> result(image.size());
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+        {
+            const uchar* pixel = image.ptr(y) + x * image.channels();
+            result(y, x) = image.channels() == 1 ? pixel[0] : 0.114 * pixel[0] + 0.587 * pixel[1] + 0.299 * pixel[2];
+        }
+    return result;
+}
+
+//! Section 2.1: the mean of 2 x 2 pixels, truncated; floor(size / 2).
+inline Mat halve(const Mat& image)
+{
+    const int channels = image.channels();
+    Mat half(image.rows / 2, image.cols / 2, image.type());
+    for (int y = 0; y < half.rows; ++y)
+        for (int x = 0; x < half.cols; ++x)
+            for (int c = 0; c < channels; ++c)
+            {
+                int sum = 0;
+                for (int dy = 0; dy < 2; ++dy)
+                    for (int dx = 0; dx < 2; ++dx)
+                        sum += image.ptr(2 * y + dy)[(2 * x + dx) * channels + c];
+                half.ptr(y)[x * channels + c] = (uchar)(sum / 4);
+            }
+    return half;
+}
+
+//! Section 3.3: M(p, x), averaged over a window; rows and columns clamped to the images.
+class Cost
+{
+public:
+    Cost(const Mat& left, const Mat& right, const hdp::MatchingCostParams& params)
+        : left_(left), right_(right), leftGrey_(exactGrey(left)), rightGrey_(exactGrey(right)), params_(params)
+    {
+    }
+
+    double operator()(int y, int x, int disparity) const
+    {
+        const int radius = params_.blockSize / 2;
+        double sum = 0;
+        for (int dy = -radius; dy <= radius; ++dy)
+            for (int dx = -radius; dx <= radius; ++dx)
+                sum += ofPixel(clamped(y + dy, left_.rows), clamped(x + dx, left_.cols),
+                               clamped(x + dx - disparity, left_.cols));
+        return sum / (params_.blockSize * params_.blockSize);
+    }
+
+private:
+    double ofPixel(int y, int x, int matched) const
+    {
+        const int channels = left_.channels();
+        double color = 0;
+        for (int c = 0; c < channels; ++c)
+            color += std::abs(left_.ptr(y)[x * channels + c] - right_.ptr(y)[matched * channels + c]);
+        color /= channels;
+        const double gradients = std::abs(gradient(leftGrey_, y, x) - gradient(rightGrey_, y, matched));
+        return params_.colorWeight * std::min(color, (double)params_.colorTruncation) +
+               (1. - params_.colorWeight) * std::min(gradients, (double)params_.gradientTruncation);
+    }
+
+    //! Central difference; at the borders one-sided and not halved.
+    static double gradient(const Mat_<double>& levels, int y, int x)
+    {
+        const double* row = levels[y];
+        const int last = levels.cols - 1;
+        if (last == 0)
+            return 0;
+        if (x == 0)
+            return row[1] - row[0];
+        if (x == last)
+            return row[last] - row[last - 1];
+        return (row[x + 1] - row[x - 1]) / 2.;
+    }
+
+    Mat left_, right_;
+    Mat_<double> leftGrey_, rightGrey_;
+    hdp::MatchingCostParams params_;
+};
+
+//! ELAS's support points by direct search.
+class SupportPoints
+{
+public:
+    SupportPoints(const Mat& left, const Mat& right, int numDisparities) : numDisparities_(numDisparities)
+    {
+        grey_[0] = grey(left);
+        grey_[1] = grey(right);
+    }
+
+    //! CV_16SC1: the disparity of every 4th pixel or -1
+    Mat find() const
+    {
+        const int rows = grey_[0].rows, cols = grey_[0].cols;
+        Mat grid((rows + 3) / 4, (cols + 3) / 4, CV_16SC1, Scalar(-1));
+        for (int i = 0; i < grid.rows; ++i)
+            for (int j = 0; j < grid.cols; ++j)
+            {
+                const int d = bestDisparity(0, 4 * j, 4 * i);
+                if (d < 0)
+                    continue;
+                const int back = bestDisparity(1, 4 * j - d, 4 * i);
+                if (back >= 0 && std::abs(d - back) <= 2)
+                    grid.at<short>(i, j) = (short)d;
+            }
+
+        Mat points = grid.clone();
+        for (int i = 0; i < grid.rows; ++i)
+            for (int j = 0; j < grid.cols; ++j)
+                if (grid.at<short>(i, j) >= 0 && countSupporters(grid, i, j) < 4)
+                    points.at<short>(i, j) = -1;
+        return points;
+    }
+
+private:
+    static int countSupporters(const Mat& grid, int i, int j)
+    {
+        int count = 0;
+        for (int y = std::max(i - 4, 0); y <= std::min(i + 4, grid.rows - 1); ++y)
+            for (int x = std::max(j - 4, 0); x <= std::min(j + 4, grid.cols - 1); ++x)
+                if (grid.at<short>(y, x) >= 0 && std::abs(grid.at<short>(y, x) - grid.at<short>(i, j)) <= 4)
+                    ++count;
+        return count;
+    }
+
+    //! Sobel over 3 x 3 pixels along x or y, in 8 bit around 128
+    int gradient(int view, int u, int v, bool alongX) const
+    {
+        int sum = 0;
+        for (int i = -1; i <= 1; ++i)
+        {
+            const int weight = i == 0 ? 2 : 1;
+            const Mat& image = grey_[view];
+            sum += weight * (alongX ? image.at<uchar>(v + i, u + 1) - image.at<uchar>(v + i, u - 1)
+                                    : image.at<uchar>(v + 1, u + i) - image.at<uchar>(v - 1, u + i));
+        }
+        return saturate_cast<uchar>(cvFloor(sum / 4.) + 128);
+    }
+
+    std::vector<int> descriptor(int view, int u, int v) const
+    {
+        static const int alongX[12][2] = { { 0, -2 }, { -2, -1 }, { 0, -1 }, { 2, -1 }, { -1, 0 }, { 0, 0 },
+                                           { 0, 0 },  { 1, 0 },   { -2, 1 }, { 0, 1 },  { 2, 1 },  { 0, 2 } };
+        static const int alongY[4][2] = { { 0, -1 }, { -1, 0 }, { 1, 0 }, { 0, 1 } };
+        std::vector<int> result;
+        for (int i = 0; i < 12; ++i)
+            result.push_back(gradient(view, u + alongX[i][0], v + alongX[i][1], true));
+        for (int i = 0; i < 4; ++i)
+            result.push_back(gradient(view, u + alongY[i][0], v + alongY[i][1], false));
+        return result;
+    }
+
+    int dissimilarity(int leftU, int rightU, int v) const
+    {
+        int sum = 0;
+        for (int dv = -2; dv <= 2; dv += 4)
+            for (int du = -2; du <= 2; du += 4)
+            {
+                const std::vector<int> a = descriptor(0, leftU + du, v + dv), b = descriptor(1, rightU + du, v + dv);
+                for (int i = 0; i < 16; ++i)
+                    sum += std::abs(a[i] - b[i]);
+            }
+        return sum;
+    }
+
+    //! The disparity of a point of the left (view 0) or right image, -1 if it is rejected.
+    int bestDisparity(int view, int u, int v) const
+    {
+        const int rows = grey_[0].rows, cols = grey_[0].cols;
+        if (u < 5 || u > cols - 6 || v < 5 || v > rows - 6)
+            return -1;
+        int texture = 0;
+        const std::vector<int> own = descriptor(view, u, v);
+        for (int i = 0; i < 16; ++i)
+            texture += std::abs(own[i] - 128);
+        const int largest = std::min(numDisparities_ - 1, view == 0 ? u - 5 : cols - u - 6);
+        if (texture < 10 || largest < 10)
+            return -1;
+
+        int best = INT_MAX, second = INT_MAX, bestDisparity = -1;
+        for (int d = 0; d <= largest; ++d)
+        {
+            const int e = view == 0 ? dissimilarity(u, u - d, v) : dissimilarity(u + d, u, v);
+            if (e < best)
+            {
+                best = e;
+                bestDisparity = d;
+            }
+            else if (e < second)
+                second = e;
+        }
+        return second < INT_MAX && (float)best < 0.95f * (float)second ? bestDisparity : -1;
+    }
+
+    Mat grey_[2];
+    int numDisparities_;
+};
+
+//! P(D_l): the disparities of the support points, 0 left out; uniform without any.
+inline std::vector<double> histogram(const Mat& points, int numDisparities)
+{
+    std::vector<double> result(numDisparities, 0);
+    for (int i = 0; i < points.rows; ++i)
+        for (int j = 0; j < points.cols; ++j)
+            if (points.at<short>(i, j) > 0)
+                ++result[points.at<short>(i, j)];
+    if (std::count(result.begin(), result.end(), 0.) == numDisparities)
+        result.assign(numDisparities, 1);
+    return result;
+}
+
+//! GMM_l(o), section 2.2
+inline double density(const DisparityPredictionModel& model, int layer, double offset)
+{
+    std::vector<double> means, sigmas, weights;
+    model.getLayer(layer, means, sigmas, weights);
+    double sum = 0;
+    for (size_t k = 0; k < means.size(); ++k)
+    {
+        const double z = (offset - means[k]) / sigmas[k];
+        sum += weights[k] * std::exp(-z * z / 2) / (sigmas[k] * std::sqrt(2 * CV_PI));
+    }
+    return sum;
+}
+
+//! P(D_l | D_{l+1}): rows D_{l+1}, columns D_l, by Bayes' theorem (section 2.2)
+inline Mat_<double> posterior(const DisparityPredictionModel& model, int layer, const std::vector<double>& prior,
+                              int upperDisparities)
+{
+    Mat_<double> result(upperDisparities, (int)prior.size());
+    for (int i = 0; i < result.rows; ++i)
+    {
+        double sum = 0;
+        for (int j = 0; j < result.cols; ++j)
+            sum += result(i, j) = density(model, layer, i - j / 2) * prior[j];
+        for (int j = 0; j < result.cols && sum > 0; ++j)
+            result(i, j) /= sum;
+    }
+    return result;
+}
+
+//! PixelIntv of a row of P(D_l | D_{l+1}), section 3.1; empty if nothing is possible.
+inline hdp::DisparityInterval pixelInterval(const Mat_<double>& row, double delta)
+{
+    const int mode = (int)(std::max_element(row.begin(), row.end()) - row.begin());
+    hdp::DisparityInterval interval = { 1, 0 };
+    double c = row(mode);
+    if (!(c > 0))
+        return interval;
+    int first = mode, last = mode;
+    for (bool grown = true; grown;)
+    {
+        grown = false;
+        if (first > 0 && row(first - 1) / (c + row(first - 1)) > delta)
+        {
+            c += row(--first);
+            grown = true;
+        }
+        if (last + 1 < row.cols && row(last + 1) / (c + row(last + 1)) > delta)
+        {
+            c += row(++last);
+            grown = true;
+        }
+    }
+    interval.first = (ushort)first;
+    interval.last = (ushort)last;
+    return interval;
+}
+
+inline int edgeWeight(const Mat& image, int p, int q)
+{
+    const int channels = image.channels();
+    int weight = 0;
+    for (int c = 0; c < channels; ++c)
+        weight = std::max(weight, std::abs(image.ptr(p / image.cols)[p % image.cols * channels + c] -
+                                           image.ptr(q / image.cols)[q % image.cols * channels + c]));
+    return weight;
+}
+
+//! CV_8UC2: the weights of the edges to the right and below, 0 at the border
+inline Mat edgeWeights(const Mat& image)
+{
+    Mat weights(image.size(), CV_8UC2, Scalar::all(0));
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+        {
+            const int p = y * image.cols + x;
+            if (x + 1 < image.cols)
+                weights.at<Vec2b>(y, x)[0] = (uchar)edgeWeight(image, p, p + 1);
+            if (y + 1 < image.rows)
+                weights.at<Vec2b>(y, x)[1] = (uchar)edgeWeight(image, p, p + image.cols);
+        }
+    return weights;
+}
+
+struct Tree
+{
+    std::vector<int> pixels;
+    int first, last, maxWeight;
+
+    bool empty() const { return last < first; }
+};
+
+//! A pixel's neighbours in its tree and the weights of the edges to them
+typedef std::vector<std::vector<std::pair<int, int> > > Adjacency;
+
+struct Forest
+{
+    std::vector<int> treeOf; // pixel -> index into trees
+    std::vector<Tree> trees; // those that were joined to others have no pixels
+    Adjacency neighbours;
+    std::vector<int> joined; // edges 2 * p (to the right of p) and 2 * p + 1 (below p), ascending
+};
+
+//! Section 3.2: Kruskal's algorithm with a strategy's Rule 1 and 2 and DT-Rules 1 and 2. pixelIntv: CV_16UC2.
+inline Forest buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link)
+{
+    const int width = image.cols, pixels = image.cols * image.rows;
+    Forest forest;
+    forest.neighbours.resize(pixels);
+    for (int p = 0; p < pixels; ++p)
+    {
+        const Vec2w interval = pixelIntv.at<Vec2w>(p / width, p % width);
+        const Tree tree = { std::vector<int>(1, p), interval[0], interval[1], 0 };
+        forest.treeOf.push_back(p);
+        forest.trees.push_back(tree);
+    }
+
+    std::vector<int> edges;
+    for (int e = 0; e < 2 * pixels; ++e)
+    {
+        const int p = e / 2, q = e % 2 == 0 ? p + 1 : p + width;
+        if (e % 2 == 0 ? q % width == 0 : q >= pixels)
+            continue;
+        const Tree &a = forest.trees[p], &b = forest.trees[q];
+        const bool disjoint = a.empty() || b.empty() || a.last < b.first || b.last < a.first;
+        if (!(disjoint && edgeWeight(image, p, q) > 7)) // DT-Rule 1
+            edges.push_back(e);
+    }
+    strategy.orderEdges(edgeWeights(image), edges); // Rule 1
+
+    for (int pass = 0; pass < (link && strategy.linksTrees() ? 2 : 1); ++pass)
+        for (size_t i = 0; i < edges.size(); ++i)
+        {
+            const int p = edges[i] / 2, q = edges[i] % 2 == 0 ? p + 1 : p + width;
+            if (forest.treeOf[p] == forest.treeOf[q])
+                continue;
+            Tree &a = forest.trees[forest.treeOf[p]], &b = forest.trees[forest.treeOf[q]];
+            const int weight = edgeWeight(image, p, q);
+            const TreeState stateA = { (int)a.pixels.size(), (uchar)a.maxWeight };
+            const TreeState stateB = { (int)b.pixels.size(), (uchar)b.maxWeight };
+            if (pass == 0 && !strategy.mayJoin(weight, stateA, stateB)) // Rule 2
+                continue;
+            const int hullFirst = std::min(a.first, b.first), hullLast = std::max(a.last, b.last);
+            const int common = std::max(0, std::min(a.last, b.last) - std::max(a.first, b.first) + 1);
+            if (a.empty() || b.empty() || common < beta * (hullLast - hullFirst + 1)) // DT-Rule 2
+                continue;
+
+            const bool keepB = a.pixels.size() < b.pixels.size(); // equal parts: the one on the left or above
+            a.first = strategy.unitesIntervals() ? hullFirst : keepB ? b.first : a.first;
+            a.last = strategy.unitesIntervals() ? hullLast : keepB ? b.last : a.last;
+            a.maxWeight = std::max(weight, std::max(a.maxWeight, b.maxWeight));
+            for (size_t k = 0; k < b.pixels.size(); ++k)
+                forest.treeOf[b.pixels[k]] = forest.treeOf[p];
+            a.pixels.insert(a.pixels.end(), b.pixels.begin(), b.pixels.end());
+            b.pixels.clear();
+            forest.neighbours[p].push_back(std::make_pair(q, weight));
+            forest.neighbours[q].push_back(std::make_pair(p, weight));
+            forest.joined.push_back(edges[i]);
+        }
+    std::sort(forest.joined.begin(), forest.joined.end());
+    return forest;
+}
+
+//! Section 3.3: S(p, q) of a pixel p and every pixel q of its tree, along the path between them.
+inline std::vector<std::pair<int, double> > similarities(const Adjacency& neighbours, int p, double gamma)
+{
+    struct Reached
+    {
+        int pixel, from, distance;
+    };
+    const Reached start = { p, -1, 0 };
+    std::vector<Reached> reached(1, start);
+    std::vector<std::pair<int, double> > result;
+    for (size_t i = 0; i < reached.size(); ++i)
+    {
+        const Reached here = reached[i];
+        result.push_back(std::make_pair(here.pixel, std::exp(-here.distance / gamma)));
+        const std::vector<std::pair<int, int> >& next = neighbours[here.pixel];
+        for (size_t k = 0; k < next.size(); ++k)
+            if (next[k].first != here.from)
+            {
+                const Reached there = { next[k].first, here.pixel, here.distance + next[k].second };
+                reached.push_back(there);
+            }
+    }
+    return result;
+}
+
+//! Section 3.3: C(p, x), x = first .. last, the explicit sum over the pixels of the tree. cost: M, rows pixels,
+//! columns disparities.
+inline std::vector<double> aggregated(const Adjacency& neighbours, int p, double gamma, const Mat_<double>& cost,
+                                      int first, int last)
+{
+    std::vector<double> sums(std::max(last - first + 1, 0), 0);
+    const std::vector<std::pair<int, double> > support = similarities(neighbours, p, gamma);
+    for (size_t i = 0; i < support.size(); ++i)
+    {
+        const double* row = cost[support[i].first] + first;
+        for (size_t x = 0; x < sums.size(); ++x)
+            sums[x] += support[i].second * row[x];
+    }
+    return sums;
+}
+
+//! M of all pixels (rows) and disparities (columns)
+inline Mat_<double> costTable(const Cost& cost, Size size, int numDisparities)
+{
+    Mat_<double> table(size.area(), numDisparities);
+    for (int p = 0; p < table.rows; ++p)
+        for (int d = 0; d < numDisparities; ++d)
+            table(p, d) = cost(p / size.width, p % size.width, d);
+    return table;
+}
+
+//! The lowest of the disparities whose cost is smallest, up to rounding
+inline int winner(const std::vector<double>& costs)
+{
+    const double limit = *std::min_element(costs.begin(), costs.end()) * (1 + 1e-9);
+    int x = 0;
+    while (costs[x] > limit)
+        ++x;
+    return x;
+}
+
+//! Median of size x size pixels by sorting, borders replicated. image: CV_16UC1.
+inline Mat median(const Mat& image, int size)
+{
+    Mat result(image.size(), CV_16UC1);
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+        {
+            std::vector<ushort> window;
+            for (int dy = -(size / 2); dy <= size / 2; ++dy)
+                for (int dx = -(size / 2); dx <= size / 2; ++dx)
+                    window.push_back(image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)));
+            std::sort(window.begin(), window.end());
+            result.at<ushort>(y, x) = window[window.size() / 2];
+        }
+    return result;
+}
+
+} // namespace oracle
+} // namespace opencv_test
+
+#endif

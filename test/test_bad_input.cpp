@@ -1,0 +1,159 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+
+namespace opencv_test {
+namespace {
+
+const double infinity = std::numeric_limits<double>::infinity();
+const double notANumber = std::numeric_limits<double>::quiet_NaN();
+
+void expectBadPair(const Mat& left, const Mat& right, const std::string& argument)
+{
+    SCOPED_TRACE(testing::Message() << "left " << left.size() << " type " << left.type() << ", right " << right.size()
+                                    << " type " << right.type());
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 8);
+    Mat disparity;
+    expectRejected([&] { matcher->compute(left, right, disparity); }, argument);
+    EXPECT_TRUE(disparity.empty());
+
+    const Mat good(12, 16, CV_8UC3, Scalar::all(7));
+    EXPECT_NO_THROW(matcher->compute(good, good, disparity)) << "not usable afterwards";
+}
+
+TEST(HDPStereo_BadInput, empty_images)
+{
+    const Mat image(12, 16, CV_8UC3, Scalar::all(7));
+    expectBadPair(Mat(), Mat(), "left");
+    expectBadPair(Mat(), image, "left");
+    expectBadPair(image, Mat(), "right");
+    expectBadPair(Mat(0, 16, CV_8UC3), Mat(0, 16, CV_8UC3), "left");
+    expectBadPair(Mat(12, 0, CV_8UC1), Mat(12, 0, CV_8UC1), "left");
+    Mat disparity;
+    expectRejected([&] { HDPTreeMatcher::create()->compute(noArray(), image, disparity); }, "left");
+    expectRejected([&] { HDPTreeMatcher::create()->compute(image, noArray(), disparity); }, "right");
+}
+
+TEST(HDPStereo_BadInput, depths_and_channels)
+{
+    for (int type : { CV_16UC1, CV_16UC3, CV_16SC1, CV_32FC1, CV_32FC3, CV_64FC1, CV_8SC1, CV_8UC2, CV_8UC4 })
+    {
+        const Mat image(12, 16, type, Scalar::all(7));
+        expectBadPair(image, image, "left");
+        expectBadPair(Mat(12, 16, CV_8UC1), image, "right");
+    }
+    const int sizes[] = { 4, 5, 6 };
+    const Mat volume(3, sizes, CV_8UC1, Scalar(0));
+    expectBadPair(volume, volume, "left");
+}
+
+TEST(HDPStereo_BadInput, pairs_that_do_not_match)
+{
+    const Mat image(12, 16, CV_8UC3, Scalar::all(7));
+    expectBadPair(image, Mat(12, 17, CV_8UC3), "right");
+    expectBadPair(image, Mat(11, 16, CV_8UC3), "right");
+    expectBadPair(image, Mat(16, 12, CV_8UC3), "right");
+    expectBadPair(image, Mat(12, 16, CV_8UC1), "right");
+}
+
+TEST(HDPStereo_BadInput, output_of_a_fixed_other_type)
+{
+    const Mat image(12, 16, CV_8UC3, Scalar::all(7));
+    Mat_<float> disparity;
+    EXPECT_THROW(HDPTreeMatcher::create()->compute(image, image, disparity), cv::Exception);
+}
+
+//! A bad value leaves every parameter of the matcher as it was.
+template <typename Setter> void expectBadValue(const Setter& set, const std::string& argument)
+{
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-3, 40);
+    matcher->setGamma(17);
+    matcher->setBlockSize(3);
+    const std::string before = serialized(*matcher);
+    expectRejected([&] { set(*matcher); }, argument);
+    EXPECT_EQ(before, serialized(*matcher)) << "a bad " << argument << " changed the matcher";
+}
+
+TEST(HDPStereo_BadInput, setters)
+{
+    for (int bad : { 0, -1, INT_MIN })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setNumDisparities(bad); }, "numDisparities");
+    for (int bad : { 0, 2, 4, 30, -1, -3, 33, 101, INT_MAX, INT_MIN })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setBlockSize(bad); }, "blockSize");
+    for (int bad : { -1, INT_MIN })
+    {
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleWindowSize(bad); }, "speckleWindowSize");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleRange(bad); }, "speckleRange");
+    }
+    for (int bad : { 0, -1, 17, INT_MAX, INT_MIN })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setNumLayers(bad); }, "numLayers");
+    for (int bad : { 1, 2, 4, 30, 33, -2, -3, INT_MAX, INT_MIN })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityMedianSize(bad); }, "disparityMedianSize");
+    for (double bad : { -0.5, 1., 2., infinity, -infinity, notANumber })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setDelta0(bad); }, "delta0");
+    for (double bad : { -0.5, 1.0001, 2., infinity, -infinity, notANumber })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setBeta(bad); }, "beta");
+    for (double bad : { 0., -1., infinity, -infinity, notANumber })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setGamma(bad); }, "gamma");
+    for (double bad : { -1., infinity, -infinity, notANumber })
+    {
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setColorTruncation(bad); }, "colorTruncation");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setGradientTruncation(bad); }, "gradientTruncation");
+    }
+    for (double bad : { -0.1, 1.1, infinity, -infinity, notANumber })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setColorWeight(bad); }, "colorWeight");
+    expectBadValue([](HDPTreeMatcher& m) { m.setTreeStrategy(Ptr<TreeStrategy>()); }, "treeStrategy");
+}
+
+TEST(HDPStereo_BadInput, create)
+{
+    for (int bad : { 0, -1, INT_MIN })
+        expectRejected([bad] { HDPTreeMatcher::create(0, bad); }, "numDisparities");
+    for (int bad : { -1, 1000, INT_MAX })
+        expectRejected([bad] { HDPTreeMatcher::create(0, 64, bad); }, "preset");
+}
+
+TEST(HDPStereo_BadInput, disparities_that_do_not_fit_into_16_bit)
+{
+    const Mat image(12, 16, CV_8UC1, Scalar(7));
+    const int good[][2] = { { 0, 2048 }, { -2047, 4095 }, { 2047, 1 }, { -2047, 1 } };
+    for (const int* range : good)
+    {
+        SCOPED_TRACE(testing::Message() << range[1] << " from " << range[0]);
+        const Mat disparity = match(*HDPTreeMatcher::create(range[0], range[1]), image, image);
+        EXPECT_EQ(16 * range[0], disparity.at<short>(6, 8)); // a tie of all: the lowest
+    }
+    const int bad[][2] = { { 0, 2049 },  { 1, 2048 }, { -2048, 1 },       { 2048, 1 },
+                           { 0, INT_MAX }, { INT_MAX, 16 }, { INT_MIN, 16 }, { INT_MAX, INT_MAX } };
+    for (const int* range : bad)
+    {
+        SCOPED_TRACE(testing::Message() << range[1] << " from " << range[0]);
+        expectRejected([&] { match(*HDPTreeMatcher::create(range[0], range[1]), image, image); }, "isparit");
+    }
+}
+
+TEST(HDPStereo_BadInput, model_with_too_few_layers)
+{
+    const Mat image(24, 32, CV_8UC3, Scalar::all(7));
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 8);
+    matcher->setPredictionModel(DisparityPredictionModel::create());
+    expectRejected([&] { match(*matcher, image, image); }, "predictionModel");
+    matcher->setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL));
+    EXPECT_NO_THROW(match(*matcher, image, image));
+    matcher->setNumLayers(4);
+    expectRejected([&] { match(*matcher, image, image); }, "predictionModel");
+    matcher->setPredictionModel(Ptr<DisparityPredictionModel>()); // of the published ones only the large has 3 layers
+    expectRejected([&] { match(*matcher, image, image); }, "predictionModel");
+    matcher->setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE));
+    EXPECT_NO_THROW(match(*matcher, image, image));
+
+    matcher->setPredictionModel(DisparityPredictionModel::create());
+    EXPECT_NO_THROW(match(*matcher, image.row(0), image.row(0))) << "one layer only";
+    matcher->setUsePrediction(false);
+    EXPECT_NO_THROW(match(*matcher, image, image));
+}
+
+} // namespace
+} // namespace opencv_test

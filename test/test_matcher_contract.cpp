@@ -1,0 +1,569 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "paper_systems.hpp"
+#include "synthetic_pair.hpp"
+
+#include <thread>
+
+namespace opencv_test {
+namespace {
+
+const int disparities = 24;
+
+const SyntheticPair& testPair()
+{
+    static const SyntheticPair pair = makeSyntheticPair(Size(121, 90), disparities, 7);
+    return pair;
+}
+
+Ptr<HDPTreeMatcher> createMatcher(bool usePrediction = true, int minDisparity = 0, int numDisparities = disparities)
+{
+    const Ptr<HDPTreeMatcher> matcher =
+        HDPTreeMatcher::create(minDisparity, numDisparities, HDPTreeMatcher::PRESET_PAPER);
+    matcher->setUsePrediction(usePrediction);
+    return matcher;
+}
+
+//! Every value is a whole disparity in range.
+void expectWholeDisparities(const Mat& disparity, const HDPTreeMatcher& matcher)
+{
+    ASSERT_EQ(CV_16SC1, disparity.type());
+    const int first = matcher.getMinDisparity(), last = first + matcher.getNumDisparities() - 1;
+    for (const short d : Mat_<short>(disparity))
+    {
+        ASSERT_EQ(0, d % 16);
+        ASSERT_TRUE(d >= 16 * first && d <= 16 * last) << d / 16.;
+    }
+}
+
+////////////////////////////////////////////// parameters //////////////////////////////////////////////
+
+TEST(HDPStereo_MatcherContract, defaults)
+{
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, HDPTreeMatcher::PRESET_PAPER);
+    EXPECT_EQ(0, matcher->getMinDisparity());
+    EXPECT_EQ(64, matcher->getNumDisparities());
+    EXPECT_EQ(1, matcher->getBlockSize());
+    EXPECT_EQ(0, matcher->getSpeckleWindowSize());
+    EXPECT_LE(matcher->getDisp12MaxDiff(), 0);
+    EXPECT_EQ(createMinimumSpanningTree()->getDefaultName(), matcher->getTreeStrategy()->getDefaultName());
+    EXPECT_TRUE(matcher->getUsePrediction());
+    EXPECT_FALSE(matcher->getUseMedianPrefilter());
+    EXPECT_EQ(3, matcher->getNumLayers());
+    EXPECT_TRUE(matcher->getPredictionModel().empty());
+    EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getDelta0());
+    EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getBeta());
+    EXPECT_EQ(25.5, matcher->getGamma());
+    EXPECT_EQ(10, matcher->getColorTruncation());
+    EXPECT_EQ(2, matcher->getGradientTruncation());
+    EXPECT_EQ(0.11, matcher->getColorWeight());
+    EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getDisparityMedianSize());
+
+    const Ptr<HDPTreeMatcher> byDefault = HDPTreeMatcher::create();
+    EXPECT_EQ(0, byDefault->getMinDisparity());
+    EXPECT_EQ(64, byDefault->getNumDisparities());
+    EXPECT_EQ(-40, HDPTreeMatcher::create(-40, 100)->getMinDisparity());
+    EXPECT_EQ(100, HDPTreeMatcher::create(-40, 100)->getNumDisparities());
+    EXPECT_FALSE(matcher->getDefaultName().empty());
+    EXPECT_EQ(16, (int)StereoMatcher::DISP_SCALE);
+}
+
+#define EXPECT_KEEPS(matcher, Name, ...)                                                                               \
+    for (const auto value : { __VA_ARGS__ })                                                                           \
+    {                                                                                                                  \
+        matcher->set##Name(value);                                                                                     \
+        EXPECT_EQ(value, matcher->get##Name());                                                                        \
+    }
+
+TEST(HDPStereo_MatcherContract, setters_and_getters)
+{
+    const Ptr<HDPTreeMatcher> matcher = createMatcher();
+    EXPECT_KEEPS(matcher, MinDisparity, 5, 0, -128);
+    EXPECT_KEEPS(matcher, NumDisparities, 1, 17, 64, 300);
+    EXPECT_KEEPS(matcher, BlockSize, 3, 31, 1);
+    EXPECT_KEEPS(matcher, SpeckleWindowSize, 100, INT_MAX, 0);
+    EXPECT_KEEPS(matcher, SpeckleRange, 2, 2047, 0);
+    EXPECT_KEEPS(matcher, Disp12MaxDiff, 1, 0, -1, INT_MAX);
+    EXPECT_KEEPS(matcher, UsePrediction, false, true);
+    EXPECT_KEEPS(matcher, UseMedianPrefilter, true, false);
+    EXPECT_KEEPS(matcher, NumLayers, 1, 2, 16);
+    EXPECT_KEEPS(matcher, Delta0, 0., 0.064, 0.999, (double)HDPTreeMatcher::AUTO);
+    EXPECT_KEEPS(matcher, Beta, 0., 0.6, 1., (double)HDPTreeMatcher::AUTO);
+    EXPECT_KEEPS(matcher, Gamma, 1e-3, 25.5, 1e6);
+    EXPECT_KEEPS(matcher, ColorTruncation, 0., 7.5, 255.);
+    EXPECT_KEEPS(matcher, GradientTruncation, 0., 7.5, 255.);
+    EXPECT_KEEPS(matcher, ColorWeight, 0., 0.5, 1.);
+    EXPECT_KEEPS(matcher, DisparityMedianSize, 0, 3, 31, (int)HDPTreeMatcher::AUTO);
+    EXPECT_KEEPS(matcher, TreeStrategy, createSegmentTree(), createRandomTree());
+    EXPECT_KEEPS(matcher, PredictionModel, DisparityPredictionModel::create(), Ptr<DisparityPredictionModel>());
+}
+
+//! AUTO stands for the values that made the paper's tables, by the width of the image.
+TEST(HDPStereo_MatcherContract, automatic_values)
+{
+    for (int width : { 999, 1000 })
+        for (bool usePrediction : { false, true })
+        {
+            const SyntheticPair pair = makeSyntheticPair(Size(width, 24), 40, 8);
+            const Ptr<HDPTreeMatcher> automatic = createMatcher(usePrediction, 0, 40);
+            const Ptr<HDPTreeMatcher> written = createMatcher(usePrediction, 0, 40);
+            const bool isLarge = width >= 1000;
+            written->setDelta0(isLarge ? 0.064 : 0.004);
+            written->setBeta(isLarge ? 0.6 : 0.95);
+            written->setDisparityMedianSize(usePrediction ? 7 : 5);
+            written->setPredictionModel(DisparityPredictionModel::createPublished(
+                isLarge ? DisparityPredictionModel::PUBLISHED_LARGE : DisparityPredictionModel::PUBLISHED_SMALL));
+            expectIdentical(match(*written, pair.left, pair.right), match(*automatic, pair.left, pair.right));
+        }
+}
+
+//! Each parameter does something.
+TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
+{
+    typedef void (*Change)(HDPTreeMatcher&);
+    const Change changes[] = {
+        [](HDPTreeMatcher& m) { m.setMinDisparity(2); },
+        [](HDPTreeMatcher& m) { m.setNumDisparities(12); },
+        [](HDPTreeMatcher& m) { m.setBlockSize(3); },
+        [](HDPTreeMatcher& m) { m.setDisp12MaxDiff(1); },
+        [](HDPTreeMatcher& m) { m.setSpeckleWindowSize(100), m.setSpeckleRange(1); },
+        [](HDPTreeMatcher& m) { m.setTreeStrategy(createSegmentTree()); },
+        [](HDPTreeMatcher& m) { m.setTreeStrategy(createRandomTree()); },
+        [](HDPTreeMatcher& m) { m.setUsePrediction(false); },
+        [](HDPTreeMatcher& m) { m.setUseMedianPrefilter(true); },
+        [](HDPTreeMatcher& m) { m.setNumLayers(2); },
+        [](HDPTreeMatcher& m) { m.setDelta0(0.3); },
+        [](HDPTreeMatcher& m) { m.setBeta(0.1); },
+        [](HDPTreeMatcher& m) { m.setGamma(5); },
+        [](HDPTreeMatcher& m) { m.setColorTruncation(3); },
+        [](HDPTreeMatcher& m) { m.setGradientTruncation(8); },
+        [](HDPTreeMatcher& m) { m.setColorWeight(0.9); },
+        [](HDPTreeMatcher& m) { m.setDisparityMedianSize(0); },
+        [](HDPTreeMatcher& m) {
+            m.setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE));
+        },
+    };
+    const SyntheticPair& pair = testPair();
+    const Mat unchanged = match(*createMatcher(), pair.left, pair.right);
+    for (size_t i = 0; i < sizeof(changes) / sizeof(changes[0]); ++i)
+    {
+        const Ptr<HDPTreeMatcher> matcher = createMatcher();
+        changes[i](*matcher);
+        EXPECT_GT(countDifferent(unchanged, match(*matcher, pair.left, pair.right)), 0) << "change " << i;
+    }
+}
+
+////////////////////////////////////////////// images //////////////////////////////////////////////
+
+TEST(HDPStereo_MatcherContract, output_type_size_and_range)
+{
+    const SyntheticPair& pair = testPair();
+    for (const PaperSystem& system : paperSystems)
+    {
+        SCOPED_TRACE(system.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
+        const Mat disparity = match(*matcher, pair.left, pair.right);
+        EXPECT_EQ(pair.left.size(), disparity.size());
+        expectWholeDisparities(disparity, *matcher);
+    }
+}
+
+TEST(HDPStereo_MatcherContract, kinds_of_arrays)
+{
+    const SyntheticPair& pair = testPair();
+    for (bool usePrediction : { false, true })
+    {
+        const Ptr<HDPTreeMatcher> matcher = createMatcher(usePrediction);
+        const Mat left = pair.left.clone(), right = pair.right.clone();
+        const Mat expected = match(*matcher, left, right);
+        expectIdentical(pair.left, left); // the input is only read
+        expectIdentical(pair.right, right);
+
+        // Not continuous
+        Mat canvas(Size(left.cols + 40, 2 * left.rows + 30), CV_8UC3, Scalar(1, 200, 90));
+        Mat leftRegion = canvas(Rect(Point(7, 3), left.size())), rightRegion = canvas(Rect(Point(20, 110), left.size()));
+        left.copyTo(leftRegion);
+        right.copyTo(rightRegion);
+        expectIdentical(expected, match(*matcher, leftRegion, rightRegion));
+
+        expectIdentical(expected, match(*matcher, Mat3b(left), Mat3b(right)));
+
+        // Output kept where it is
+        Mat_<short> preallocated(left.size());
+        const uchar* const data = preallocated.data;
+        matcher->compute(left, right, preallocated);
+        EXPECT_EQ(data, preallocated.data);
+        expectIdentical(expected, preallocated);
+        Mat frame(left.rows + 10, left.cols + 10, CV_16SC1, Scalar(77));
+        Mat inFrame = frame(Rect(Point(5, 5), left.size()));
+        matcher->compute(left, right, inFrame);
+        expectIdentical(expected, frame(Rect(Point(5, 5), left.size())));
+        frame(Rect(Point(5, 5), left.size())).setTo(77);
+        EXPECT_EQ(0, cv::countNonZero(frame != 77)) << "written around the region";
+
+        // Output of another type or size
+        Mat other(3, 5, CV_32FC2);
+        matcher->compute(left, right, other);
+        expectIdentical(expected, other);
+
+        // Output in the place of an input
+        Mat both = left.clone();
+        matcher->compute(both, right, both);
+        expectIdentical(expected, both);
+    }
+}
+
+TEST(HDPStereo_MatcherContract, umat)
+{
+    const SyntheticPair& pair = testPair();
+    const Ptr<HDPTreeMatcher> matcher = createMatcher();
+    const Mat expected = match(*matcher, pair.left, pair.right);
+    for (int repetition = 0; repetition < 2; ++repetition)
+    {
+        UMat disparity;
+        {
+            UMat left, right; // released while the matcher lives on
+            pair.left.copyTo(left);
+            pair.right.copyTo(right);
+            matcher->compute(left, right, disparity);
+            expectIdentical(expected, match(*matcher, left, right));
+            left.setTo(Scalar::all(0)); // and free to be used
+            EXPECT_GT(countDifferent(expected, match(*matcher, left, right)), 0);
+        }
+        expectIdentical(expected, disparity.getMat(ACCESS_READ));
+    }
+}
+
+//! What a caller does to its images after compute() is none of the matcher's business.
+TEST(HDPStereo_MatcherContract, keeps_no_hold_of_the_input)
+{
+    const SyntheticPair& pair = testPair();
+    const Ptr<HDPTreeMatcher> matcher = createMatcher();
+    Mat left = pair.left.clone(), right = pair.right.clone();
+    const Mat expected = match(*matcher, left, right);
+    EXPECT_EQ(1, left.u->refcount) << "the matcher still refers to the left image";
+    EXPECT_EQ(1, right.u->refcount) << "the matcher still refers to the right image";
+    left.setTo(Scalar::all(0));
+    right.setTo(Scalar::all(255));
+    expectIdentical(expected, match(*matcher, pair.left, pair.right));
+    EXPECT_EQ(0, cv::countNonZero(left.reshape(1)));
+    EXPECT_EQ(0, cv::countNonZero(right.reshape(1) != 255));
+}
+
+TEST(HDPStereo_MatcherContract, one_channel_equals_three_equal_ones)
+{
+    Mat left, right;
+    cv::cvtColor(testPair().left, left, COLOR_BGR2GRAY);
+    cv::cvtColor(testPair().right, right, COLOR_BGR2GRAY);
+    Mat lefts[] = { left, left, left }, rights[] = { right, right, right };
+    Mat left3, right3;
+    cv::merge(lefts, 3, left3);
+    cv::merge(rights, 3, right3);
+    for (const PaperSystem& system : paperSystems)
+    {
+        SCOPED_TRACE(system.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
+        const Mat one = match(*matcher, left, right), three = match(*matcher, left3, right3);
+        // The mean over the channels is not exact in float.
+        EXPECT_LE(countDifferent(one, three), (int)one.total() / 200);
+    }
+}
+
+TEST(HDPStereo_MatcherContract, sizes_and_numbers_of_disparities)
+{
+    const Size sizes[] = { Size(1, 1), Size(1, 2), Size(2, 1), Size(1, 50),  Size(50, 1), Size(2, 2),   Size(3, 3), Size(2, 50),
+                           Size(50, 2), Size(4, 4), Size(5, 7), Size(11, 11), Size(12, 13), Size(33, 21), Size(64, 31) };
+    RNG rng(28);
+    for (const PaperSystem& system : paperSystems)
+        for (const Size& size : sizes)
+            for (int type : { CV_8UC1, CV_8UC3 })
+                for (int count : { 1, 2, 7, 16, 300 })
+                {
+                    SCOPED_TRACE(testing::Message() << system.name << ", " << size << ", " << count << " disparities");
+                    const Ptr<HDPTreeMatcher> matcher = createSystem(system, count);
+                    const Mat disparity =
+                        match(*matcher, patchyImage(rng, size, type), patchyImage(rng, size, type));
+                    ASSERT_EQ(size, disparity.size());
+                    expectWholeDisparities(disparity, *matcher);
+                }
+}
+
+TEST(HDPStereo_MatcherContract, any_number_of_layers)
+{
+    const SyntheticPair& pair = testPair();
+    const Ptr<HDPTreeMatcher> matcher = createMatcher();
+    const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
+    for (int layer = 0; layer < 15; ++layer)
+        model->addLayer(std::vector<double>(1, 0.2), std::vector<double>(1, 1.5), std::vector<double>(1, 1.));
+    matcher->setPredictionModel(model);
+    for (int layers = 1; layers <= 16; ++layers)
+    {
+        matcher->setNumLayers(layers);
+        expectWholeDisparities(match(*matcher, pair.left, pair.right), *matcher);
+        std::vector<double> ratios;
+        matcher->getSearchRatios(ratios);
+        EXPECT_EQ((size_t)std::min(layers, 7), ratios.size()) << "121 x 90 pixels halved 6 times are 1 x 1";
+    }
+}
+
+////////////////////////////////////////////// disparities //////////////////////////////////////////////
+
+TEST(HDPStereo_MatcherContract, one_disparity)
+{
+    const SyntheticPair& pair = testPair();
+    for (bool usePrediction : { false, true })
+        for (int minDisparity : { -7, 0, 9 })
+        {
+            const Mat disparity = match(*createMatcher(usePrediction, minDisparity, 1), pair.left, pair.right);
+            EXPECT_EQ(0, cv::countNonZero(disparity != 16 * minDisparity));
+        }
+}
+
+TEST(HDPStereo_MatcherContract, more_than_256_disparities)
+{
+    RNG rng(29);
+    const int shift = 300;
+    const Mat canvas = patchyImage(rng, Size(640 + shift, 48), CV_8UC3, 8);
+    const Mat left = canvas.colRange(0, 640), right = canvas.colRange(shift, 640 + shift);
+    for (bool usePrediction : { false, true })
+    {
+        const Mat disparity = match(*createMatcher(usePrediction, 0, 400), left, right);
+        const Mat inside = disparity.colRange(shift + 20, 640);
+        EXPECT_LE(cv::countNonZero(inside != 16 * shift), (int)inside.total() / 100) << "prediction " << usePrediction;
+    }
+}
+
+//! The right image moved by k columns, and the range with it: the same disparities + k, but for what the borders do.
+TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(240, 100), disparities, 9);
+    for (bool usePrediction : { false, true })
+    {
+        const Mat expected = match(*createMatcher(usePrediction), pair.left, pair.right);
+        for (int k : { 1, 6, 16, -1, -6, -16 })
+        {
+            SCOPED_TRACE(testing::Message() << "by " << k << ", prediction " << usePrediction);
+            Mat moved(pair.right.size(), pair.right.type());
+            for (int x = 0; x < moved.cols; ++x)
+                pair.right.col(std::max(0, std::min(x + k, moved.cols - 1))).copyTo(moved.col(x));
+            const Ptr<HDPTreeMatcher> matcher = createMatcher(usePrediction, k);
+            const Mat disparity = match(*matcher, pair.left, moved);
+            expectWholeDisparities(disparity, *matcher);
+            const Range inside(disparities + 20, moved.cols - 36);
+            const Mat difference = disparity.colRange(inside) - expected.colRange(inside);
+            // The columns that only one of the pairs has count in P(D_l), and so reach every pixel.
+            EXPECT_LE(cv::countNonZero(difference != 16 * k), (int)difference.total() / (usePrediction ? 50 : 200));
+        }
+    }
+}
+
+TEST(HDPStereo_MatcherContract, equal_images_have_disparity_0)
+{
+    const Mat left = testPair().left;
+    for (const PaperSystem& system : paperSystems)
+    {
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
+        if (system.usePrediction) // 0 is left out of P(D_l), see the paper's program
+            matcher->setMinDisparity(-4);
+        const Mat disparity = match(*matcher, left, left);
+        EXPECT_LE(cv::countNonZero(disparity != 0), (int)disparity.total() / 50) << system.name;
+    }
+}
+
+////////////////////////////////////////////// filters //////////////////////////////////////////////
+
+TEST(HDPStereo_MatcherContract, disp12MaxDiff_marks_occluded_pixels)
+{
+    const SyntheticPair& pair = testPair();
+    for (int minDisparity : { -5, 0 })
+    {
+        const Ptr<HDPTreeMatcher> matcher = createMatcher(true, minDisparity, disparities - minDisparity);
+        const short invalid = (short)(16 * (minDisparity - 1));
+        const Mat unfiltered = match(*matcher, pair.left, pair.right);
+        EXPECT_EQ(0, cv::countNonZero(unfiltered == invalid));
+        for (int maxDiff : { 0, -1, INT_MAX })
+        {
+            matcher->setDisp12MaxDiff(maxDiff);
+            expectIdentical(unfiltered, match(*matcher, pair.left, pair.right));
+        }
+
+        matcher->setDisp12MaxDiff(1);
+        const Mat filtered = match(*matcher, pair.left, pair.right);
+        const Mat rejected = filtered != unfiltered;
+        EXPECT_EQ(0, cv::countNonZero((filtered != invalid) & rejected)) << "changed to something else";
+        const int count = cv::countNonZero(rejected);
+        EXPECT_GT(count, 100);
+        // At least half of them are occluded or wrong.
+        int justified = 0;
+        for (int y = 0; y < rejected.rows; ++y)
+            for (int x = 0; x < rejected.cols; ++x)
+                justified += rejected.at<uchar>(y, x) &&
+                             (!pair.visible.at<uchar>(y, x) ||
+                              std::abs(unfiltered.at<short>(y, x) / 16. - pair.truth.at<float>(y, x)) >= 2);
+        EXPECT_GE(2 * justified, count);
+    }
+}
+
+TEST(HDPStereo_MatcherContract, speckles_as_filterSpeckles_removes_them)
+{
+    const SyntheticPair& pair = testPair();
+    for (int minDisparity : { -5, 0 })
+        for (int maxDiff : { -1, 1 })
+        {
+            const Ptr<HDPTreeMatcher> matcher = createMatcher(true, minDisparity, disparities - minDisparity);
+            matcher->setDisparityMedianSize(0); // leaves speckles
+            matcher->setDisp12MaxDiff(maxDiff);
+            Mat expected = match(*matcher, pair.left, pair.right);
+            const Mat unfiltered = expected.clone();
+            cv::filterSpeckles(expected, 16 * (minDisparity - 1), 60, 16 * 2);
+            ASSERT_GT(countDifferent(unfiltered, expected), 0);
+            matcher->setSpeckleWindowSize(60);
+            matcher->setSpeckleRange(2);
+            expectIdentical(expected, match(*matcher, pair.left, pair.right));
+        }
+}
+
+////////////////////////////////////////////// reproducible //////////////////////////////////////////////
+
+class ThreadCount
+{
+public:
+    ThreadCount() : before_(cv::getNumThreads()) {}
+    ~ThreadCount() { cv::setNumThreads(before_); }
+
+private:
+    int before_;
+};
+
+TEST(HDPStereo_MatcherContract, any_number_of_threads)
+{
+    const ThreadCount restore;
+    const SyntheticPair pair = makeSyntheticPair(Size(203, 151), 40, 10);
+    for (const PaperSystem& system : paperSystems)
+    {
+        Mat expected;
+        for (int threads : { 1, 2, 3, 8 })
+        {
+            SCOPED_TRACE(testing::Message() << system.name << ", " << threads << " threads");
+            cv::setNumThreads(threads);
+            const Ptr<HDPTreeMatcher> matcher = createSystem(system, 40);
+            matcher->setDisp12MaxDiff(2);
+            matcher->setSpeckleWindowSize(20);
+            matcher->setSpeckleRange(1);
+            const Mat disparity = match(*matcher, pair.left, pair.right);
+            if (threads == 1)
+                expected = disparity;
+            expectIdentical(expected, disparity);
+        }
+    }
+}
+
+TEST(HDPStereo_MatcherContract, reused_equals_fresh)
+{
+    const SyntheticPair whole = makeSyntheticPair(Size(140, 90), 20, 13);
+    const Ptr<HDPTreeMatcher> reused = createMatcher();
+    int i = 0;
+    for (const Size& size : { Size(90, 60), Size(31, 80), Size(2, 2), Size(90, 60), Size(131, 77), Size(1, 1) })
+        for (const PaperSystem& system : paperSystems)
+            for (bool inColor : { true, false })
+            {
+                SCOPED_TRACE(testing::Message() << system.name << ", " << size << (inColor ? ", colour" : ", grey"));
+                const Rect part(Point(i % 5, i % 7), size);
+                Mat left = whole.left(part), right = whole.right(part);
+                if (!inColor)
+                {
+                    cv::cvtColor(left, left, COLOR_BGR2GRAY);
+                    cv::cvtColor(right, right, COLOR_BGR2GRAY);
+                }
+                const int numDisparities = 10 + ++i % 13;
+                configure(*reused, system);
+                reused->setNumDisparities(numDisparities);
+                const Mat disparity = match(*reused, left, right);
+                expectIdentical(match(*createSystem(system, numDisparities), left, right), disparity);
+                expectIdentical(disparity, match(*reused, left, right));
+            }
+}
+
+TEST(HDPStereo_MatcherContract, matchers_share_nothing)
+{
+    const SyntheticPair& pair = testPair();
+    Mat expected[9], actual[9];
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 9; ++i)
+        expected[i] = match(*createSystem(paperSystems[i], disparities), pair.left, pair.right);
+    for (int i = 0; i < 9; ++i)
+    {
+        Mat& result = actual[i];
+        threads.push_back(std::thread([i, &pair, &result] {
+            const Ptr<HDPTreeMatcher> matcher = createSystem(paperSystems[i], disparities);
+            for (int repetition = 0; repetition < 3; ++repetition)
+                matcher->compute(pair.left, pair.right, result);
+        }));
+    }
+    for (std::thread& thread : threads)
+        thread.join();
+    for (int i = 0; i < 9; ++i)
+    {
+        SCOPED_TRACE(paperSystems[i].name);
+        expectIdentical(expected[i], actual[i]);
+    }
+}
+
+////////////////////////////////////////////// reports //////////////////////////////////////////////
+
+TEST(HDPStereo_MatcherContract, search_ratios)
+{
+    const SyntheticPair& pair = testPair();
+    const Ptr<HDPTreeMatcher> matcher = createMatcher();
+    std::vector<double> ratios(3, 7.);
+    matcher->getSearchRatios(ratios);
+    EXPECT_TRUE(ratios.empty());
+
+    match(*matcher, pair.left, pair.right);
+    matcher->getSearchRatios(ratios);
+    ASSERT_EQ(3u, ratios.size());
+    EXPECT_EQ(1, ratios[2]) << "the top layer searches the full range";
+    for (int layer = 0; layer < 2; ++layer)
+        EXPECT_TRUE(ratios[layer] > 0 && ratios[layer] < 1) << ratios[layer];
+
+    matcher->setUsePrediction(false);
+    match(*matcher, pair.left, pair.right);
+    matcher->getSearchRatios(ratios);
+    EXPECT_EQ(std::vector<double>(1, 1.), ratios);
+}
+
+TEST(HDPStereo_MatcherContract, stage_times)
+{
+    const SyntheticPair& pair = testPair();
+    const Ptr<HDPTreeMatcher> matcher = createMatcher();
+    std::vector<String> stages(2, "none"), again;
+    std::vector<double> times(3, 7.);
+    matcher->getStageTimes(stages, times);
+    EXPECT_TRUE(stages.empty() && times.empty());
+    for (int repetition = 0; repetition < 2; ++repetition)
+    {
+        const int64 start = cv::getTickCount();
+        match(*matcher, pair.left, pair.right);
+        const double all = (double)(cv::getTickCount() - start) * 1000 / cv::getTickFrequency();
+        again = stages;
+        matcher->getStageTimes(stages, times);
+        ASSERT_EQ(stages.size(), times.size());
+        EXPECT_GE(stages.size(), 5u);
+        double sum = 0;
+        for (size_t i = 0; i < stages.size(); ++i)
+        {
+            EXPECT_FALSE(stages[i].empty());
+            EXPECT_EQ(1, std::count(stages.begin(), stages.end(), stages[i])) << stages[i];
+            EXPECT_GE(times[i], 0) << stages[i];
+            sum += times[i];
+        }
+        EXPECT_TRUE(sum > 0 && sum <= all + 0.1) << sum << " of " << all << " ms";
+    }
+    EXPECT_EQ(again, stages);
+}
+
+} // namespace
+} // namespace opencv_test

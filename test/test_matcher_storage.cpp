@@ -1,0 +1,275 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "synthetic_pair.hpp"
+
+namespace opencv_test {
+namespace {
+
+//! A matcher without a single default value
+Ptr<HDPTreeMatcher> createUnusualMatcher()
+{
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-3, 21);
+    matcher->setBlockSize(3);
+    matcher->setSpeckleWindowSize(9);
+    matcher->setSpeckleRange(2);
+    matcher->setDisp12MaxDiff(4);
+    matcher->setTreeStrategy(createSegmentTree(333.5));
+    matcher->setUsePrediction(false);
+    matcher->setUseMedianPrefilter(true);
+    matcher->setNumLayers(2);
+    const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
+    model->addLayer(std::vector<double>(1, 0.375), std::vector<double>(1, 1.25), std::vector<double>(1, 1.));
+    matcher->setPredictionModel(model);
+    matcher->setDelta0(0.03125);
+    matcher->setBeta(0.75);
+    matcher->setGamma(19.5);
+    matcher->setColorTruncation(7.5);
+    matcher->setGradientTruncation(3.25);
+    matcher->setColorWeight(0.25);
+    matcher->setDisparityMedianSize(3);
+    return matcher;
+}
+
+Mat matchTestPair(HDPTreeMatcher& matcher)
+{
+    static const SyntheticPair pair = makeSyntheticPair(Size(80, 60), 16, 6);
+    return match(matcher, pair.left, pair.right);
+}
+
+TEST(HDPStereo_MatcherStorage, write_and_read)
+{
+    for (const char* extension : { "yml", "xml", "json" })
+        for (bool usePrediction : { false, true })
+        {
+            SCOPED_TRACE(testing::Message() << extension << ", prediction " << usePrediction);
+            const Ptr<HDPTreeMatcher> written = createUnusualMatcher(), read = HDPTreeMatcher::create();
+            written->setUsePrediction(usePrediction);
+            deserialize(serialized(*written, extension), *read);
+            EXPECT_EQ(serialized(*written), serialized(*read));
+
+            EXPECT_EQ(-3, read->getMinDisparity());
+            EXPECT_EQ(21, read->getNumDisparities());
+            EXPECT_EQ(3, read->getBlockSize());
+            EXPECT_EQ(9, read->getSpeckleWindowSize());
+            EXPECT_EQ(2, read->getSpeckleRange());
+            EXPECT_EQ(4, read->getDisp12MaxDiff());
+            EXPECT_EQ(createSegmentTree()->getDefaultName(), read->getTreeStrategy()->getDefaultName());
+            EXPECT_EQ(usePrediction, read->getUsePrediction());
+            EXPECT_TRUE(read->getUseMedianPrefilter());
+            EXPECT_EQ(2, read->getNumLayers());
+            ASSERT_FALSE(read->getPredictionModel().empty());
+            EXPECT_EQ(1, read->getPredictionModel()->getNumLayers());
+            EXPECT_EQ(0.03125, read->getDelta0());
+            EXPECT_EQ(0.75, read->getBeta());
+            EXPECT_EQ(19.5, read->getGamma());
+            EXPECT_EQ(7.5, read->getColorTruncation());
+            EXPECT_EQ(3.25, read->getGradientTruncation());
+            EXPECT_EQ(0.25, read->getColorWeight());
+            EXPECT_EQ(3, read->getDisparityMedianSize());
+            expectIdentical(matchTestPair(*written), matchTestPair(*read));
+        }
+}
+
+TEST(HDPStereo_MatcherStorage, defaults_and_no_model)
+{
+    const Ptr<HDPTreeMatcher> written = HDPTreeMatcher::create(), read = createUnusualMatcher();
+    deserialize(serialized(*written), *read);
+    EXPECT_EQ(serialized(*written), serialized(*read));
+    EXPECT_TRUE(read->getPredictionModel().empty());
+}
+
+TEST(HDPStereo_MatcherStorage, save_and_load)
+{
+    const Ptr<HDPTreeMatcher> written = createUnusualMatcher(), read = HDPTreeMatcher::create();
+    const String filename = cv::tempfile(".xml");
+    written->save(filename);
+    FileStorage fs(filename, FileStorage::READ);
+    read->read(fs[written->getDefaultName()]);
+    fs.release();
+    std::remove(filename.c_str());
+    EXPECT_EQ(serialized(*written), serialized(*read));
+}
+
+TEST(HDPStereo_MatcherStorage, strategies_with_their_parameters)
+{
+    const std::vector<Ptr<TreeStrategy> > strategies{ createMinimumSpanningTree(), createSegmentTree(5.5),
+                                                      createRandomTree(99) };
+    for (const Ptr<TreeStrategy>& strategy : strategies)
+    {
+        const Ptr<HDPTreeMatcher> written = HDPTreeMatcher::create(0, 16), read = HDPTreeMatcher::create();
+        written->setTreeStrategy(strategy);
+        read->setTreeStrategy(createRandomTree(5));
+        deserialize(serialized(*written), *read);
+        EXPECT_EQ(strategy->getDefaultName(), read->getTreeStrategy()->getDefaultName());
+        EXPECT_EQ(serialized(*strategy), serialized(*read->getTreeStrategy()));
+        expectIdentical(matchTestPair(*written), matchTestPair(*read));
+    }
+}
+
+//! A file cannot hold a user's class, so that the reader must have one of its name.
+class OwnTree : public TreeStrategy
+{
+public:
+    void orderEdges(const Mat&, std::vector<int>&) const CV_OVERRIDE {}
+    bool mayJoin(int, const TreeState&, const TreeState&) const CV_OVERRIDE { return true; }
+    String getDefaultName() const CV_OVERRIDE { return "test_OwnTree"; }
+};
+
+TEST(HDPStereo_MatcherStorage, strategy_of_a_user)
+{
+    const Ptr<HDPTreeMatcher> written = createUnusualMatcher(), read = HDPTreeMatcher::create();
+    written->setTreeStrategy(makePtr<OwnTree>());
+    const std::string before = serialized(*read);
+    EXPECT_THROW(deserialize(serialized(*written), *read), cv::Exception);
+    EXPECT_EQ(before, serialized(*read));
+
+    const Ptr<TreeStrategy> own = makePtr<OwnTree>();
+    read->setTreeStrategy(own);
+    deserialize(serialized(*written), *read);
+    EXPECT_EQ(own.get(), read->getTreeStrategy().get());
+    EXPECT_EQ(serialized(*written), serialized(*read));
+}
+
+//! Reading must throw and leave the matcher as it was.
+void expectUnreadable(const std::string& text)
+{
+    SCOPED_TRACE(text);
+    const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
+    const Ptr<TreeStrategy> strategy = matcher->getTreeStrategy();
+    const Ptr<DisparityPredictionModel> model = matcher->getPredictionModel();
+    const std::string before = serialized(*matcher);
+    EXPECT_THROW(deserialize(text, *matcher), cv::Exception);
+    EXPECT_EQ(before, serialized(*matcher));
+    EXPECT_EQ(strategy.get(), matcher->getTreeStrategy().get());
+    EXPECT_EQ(model.get(), matcher->getPredictionModel().get());
+}
+
+//! A YAML text with the value of a key replaced; an empty value leaves the whole line out.
+std::string withValue(const std::string& text, const std::string& key, const std::string& value)
+{
+    std::istringstream in(text);
+    std::ostringstream out;
+    bool found = false;
+    for (std::string line; std::getline(in, line);)
+    {
+        const size_t start = line.find_first_not_of(' ');
+        if (!found && start != std::string::npos && line.compare(start, key.size() + 1, key + ":") == 0)
+        {
+            found = true;
+            if (!value.empty())
+                out << line.substr(0, start) << key << ": " << value << "\n";
+        }
+        else
+            out << line << "\n";
+    }
+    CV_Assert(found);
+    return out.str();
+}
+
+TEST(HDPStereo_MatcherStorage, garbage_and_foreign_nodes)
+{
+    expectUnreadable("");
+    expectUnreadable("%YAML:1.0\n---\n");
+    expectUnreadable("%YAML:1.0\n---\nname: 5\n");
+    expectUnreadable("%YAML:1.0\n---\n- 1\n- 2\n");
+    expectUnreadable(serialized(*StereoSGBM::create()));
+    expectUnreadable(serialized(*DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL)));
+    expectUnreadable(withValue(serialized(*createUnusualMatcher()), "name", "\"StereoMatcher.HDP\""));
+
+    const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
+    const std::string before = serialized(*matcher);
+    EXPECT_THROW(matcher->read(FileNode()), cv::Exception);
+    EXPECT_EQ(before, serialized(*matcher));
+}
+
+TEST(HDPStereo_MatcherStorage, hostile_values)
+{
+    const std::string text = serialized(*createUnusualMatcher());
+    const struct
+    {
+        const char *key, *values[8];
+    } hostile[] = {
+        { "numDisparities", { "0", "-1", "-2147483648", "1.5", 0 } },
+        { "blockSize", { "0", "2", "-1", "1000001", "3.5", 0 } },
+        { "speckleWindowSize", { "-1", "1.5", 0 } },
+        { "speckleRange", { "-1", "0.5", 0 } },
+        { "minDisparity", { "0.5", 0 } },
+        { "disp12MaxDiff", { "0.5", 0 } },
+        { "usePrediction", { "0.5", 0 } },
+        { "useMedianPrefilter", { "0.5", 0 } },
+        { "numLayers", { "0", "-1", "17", "2147483647", "1.5", 0 } },
+        { "disparityMedianSize", { "1", "2", "-2", "33", "2147483647", 0 } },
+        { "delta0", { "-0.5", "1.", "1e300", 0 } },
+        { "beta", { "-0.5", "1.5", "-1e300", 0 } },
+        { "gamma", { "0", "0.", "-19.5", 0 } },
+        { "colorTruncation", { "-1", "-1e300", 0 } },
+        { "gradientTruncation", { "-1", "-1e300", 0 } },
+        { "colorWeight", { "-0.1", "1.1", "1e300", 0 } },
+        { "k", { "-1.", "-1", 0 } },
+        { "sigmas", { "[ -1.25 ]", "[ 0. ]", "[ .Nan ]", "[ .Inf ]", "[ ]", "[ 1., 1. ]", 0 } },
+        { "means", { "[ .Nan ]", "[ -.Inf ]", "[ ]", "[ 0., 1. ]", 0 } },
+        { "weights", { "[ 2. ]", "[ 0. ]", "[ -1. ]", "[ .Nan ]", "[ 1e300 ]", "[ ]", 0 } },
+    };
+    for (const auto& h : hostile)
+    {
+        for (const char* const* value = h.values; *value; ++value)
+            expectUnreadable(withValue(text, h.key, *value));
+        for (const char* value : { ".Nan", ".Inf", "-.Inf", "\"7\"", "{ a: 1 }", "[ [ 1. ] ]" })
+            expectUnreadable(withValue(text, h.key, value));
+    }
+    const std::string random = [] {
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create();
+        matcher->setTreeStrategy(createRandomTree(3));
+        return serialized(*matcher);
+    }();
+    for (const char* value : { "-1", "1.5", ".Nan", "\"3\"", "[ 3 ]" })
+        expectUnreadable(withValue(random, "seed", value));
+}
+
+TEST(HDPStereo_MatcherStorage, missing_keys)
+{
+    const std::string text = serialized(*createUnusualMatcher());
+    for (const char* key : { "name", "strategy", "k", "means", "sigmas", "weights" })
+        expectUnreadable(withValue(text, key, ""));
+
+    // A number that a file does not have gets its default.
+    const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher(), defaults = HDPTreeMatcher::create();
+    deserialize(withValue(text, "gamma", ""), *matcher);
+    EXPECT_EQ(defaults->getGamma(), matcher->getGamma());
+    deserialize(withValue(text, "numDisparities", ""), *matcher);
+    EXPECT_EQ(defaults->getNumDisparities(), matcher->getNumDisparities());
+    EXPECT_EQ(19.5, matcher->getGamma());
+}
+
+TEST(HDPStereo_MatcherStorage, unknown_strategy)
+{
+    const std::string text = serialized(*createUnusualMatcher());
+    expectUnreadable(withValue(text, "strategy", "\"no_such_tree\""));
+    expectUnreadable(withValue(text, "strategy", "\"\""));
+    expectUnreadable(withValue(text, "strategy", "5"));
+}
+
+TEST(HDPStereo_MatcherStorage, truncated_text)
+{
+    const std::string text = serialized(*createUnusualMatcher());
+    for (size_t length = 0; length < text.size(); length += 7)
+    {
+        const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
+        const std::string before = serialized(*matcher);
+        try
+        {
+            deserialize(text.substr(0, length), *matcher); // may be complete but for values that have defaults
+        }
+        catch (const cv::Exception&)
+        {
+            EXPECT_EQ(before, serialized(*matcher)) << "cut at " << length;
+        }
+        EXPECT_NO_THROW(matchTestPair(*matcher)) << "cut at " << length;
+    }
+}
+
+} // namespace
+} // namespace opencv_test

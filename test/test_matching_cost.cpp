@@ -1,0 +1,103 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "oracles.hpp"
+
+namespace opencv_test {
+namespace {
+
+using hdp::MatchingCost;
+using hdp::MatchingCostParams;
+
+const MatchingCostParams paperParams = { 10, 2, 0.11f, 1 };
+
+//! What the cost may be off: the library holds gradients in 1/128 levels, which is exact for images of one channel.
+double toleranceOf(int channels, const MatchingCostParams& params)
+{
+    return channels == 1 ? 1e-5 : (1 - params.colorWeight) / 128 + 1e-5;
+}
+
+template <int lanes>
+void expectFormula(const MatchingCost& cost, const oracle::Cost& formula, Size size, int candidates, double tolerance)
+{
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+            for (int first = 0; first < candidates; first += 3) // any first candidate, not multiples of lanes only
+            {
+                float costs[lanes];
+                cost.evaluate<lanes>(y, x, first, costs);
+                for (int k = 0; k < lanes && first + k < candidates; ++k)
+                    ASSERT_NEAR(formula(y, x, first + k), costs[k], tolerance)
+                        << lanes << " lanes, y " << y << " x " << x << " candidate " << first + k;
+            }
+}
+
+void testCost(const Mat& left, const Mat& right, int candidates, const MatchingCostParams& params)
+{
+    SCOPED_TRACE(testing::Message() << left.size() << ", channels " << left.channels() << ", candidates " << candidates
+                                    << ", block " << params.blockSize);
+    MatchingCost cost;
+    cost.prepare(left, right, candidates, params);
+    const oracle::Cost formula(left, right, params);
+    const double tolerance = toleranceOf(left.channels(), params);
+    expectFormula<4>(cost, formula, left.size(), candidates, tolerance);
+    expectFormula<8>(cost, formula, left.size(), candidates, tolerance);
+}
+
+// channels, blockSize
+typedef testing::TestWithParam<tuple<int, int> > HDPStereo_MatchingCost;
+
+TEST_P(HDPStereo_MatchingCost, formula_per_pixel)
+{
+    MatchingCostParams params = paperParams;
+    params.blockSize = get<1>(GetParam());
+    const int type = CV_8UC(get<0>(GetParam()));
+    RNG rng(4);
+    for (const Size& size : { Size(1, 1), Size(1, 5), Size(5, 1), Size(2, 2), Size(23, 9) })
+    {
+        testCost(randomImage(rng, size, type), randomImage(rng, size, type), 13, params);
+        // Small differences, below the truncations
+        testCost(randomImage(rng, size, type, 5), randomImage(rng, size, type, 5), size.width + 10, params);
+    }
+}
+
+TEST_P(HDPStereo_MatchingCost, truncations_and_weight)
+{
+    const int type = CV_8UC(get<0>(GetParam()));
+    RNG rng(5);
+    const Mat left = randomImage(rng, Size(15, 6), type, 60), right = randomImage(rng, Size(15, 6), type, 60);
+    const float settings[][3] = { { 0, 2, 0.5f }, { 30, 0, 0.5f }, { 30, 25, 0 }, { 30, 25, 1 }, { 1e6f, 1e6f, 0.3f } };
+    for (const float* s : settings)
+    {
+        const MatchingCostParams params = { s[0], s[1], s[2], get<1>(GetParam()) };
+        testCost(left, right, 9, params);
+    }
+}
+
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_MatchingCost, testing::Combine(testing::Values(1, 3), testing::Values(1, 3, 5)));
+
+TEST(HDPStereo_MatchingCostInput, prepared_again_for_another_pair)
+{
+    RNG rng(6);
+    MatchingCost cost;
+    for (int type : { CV_8UC3, CV_8UC1, CV_8UC3 })
+        for (const Size& size : { Size(20, 8), Size(7, 12) })
+        {
+            const Mat left = randomImage(rng, size, type), right = randomImage(rng, size, type);
+            cost.prepare(left, right, size.width, paperParams);
+            expectFormula<8>(cost, oracle::Cost(left, right, paperParams), size, size.width,
+                             toleranceOf(left.channels(), paperParams));
+        }
+}
+
+TEST(HDPStereo_MatchingCostInput, regions_of_interest)
+{
+    RNG rng(7);
+    const Mat left = randomImage(rng, Size(30, 20), CV_8UC3), right = randomImage(rng, Size(30, 20), CV_8UC3);
+    testCost(left(Rect(3, 2, 17, 8)), right(Rect(6, 5, 17, 8)), 9, paperParams);
+}
+
+} // namespace
+} // namespace opencv_test

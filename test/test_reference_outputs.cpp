@@ -1,0 +1,69 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// The disparity maps of the paper's nine systems, compared with those in testdata/cv/hdpstereo, which are found through
+// OPENCV_TEST_DATA_PATH=<checkout>/testdata: PAIR_SYSTEM.png, 8 bit, whole disparities. The pairs are not stored:
+// "synthetic" is generated, and "aloe" is the Aloe pair of OpenCV's samples, reduced to a quarter of its width.
+//
+// To make the maps again, after a change that is meant to change them and with all other tests passing:
+//
+//   export OPENCV_SAMPLES_DATA_PATH=<OpenCV's source>/samples/data
+//   export HDPSTEREO_WRITE_REFERENCE=<checkout>/testdata/cv/hdpstereo
+//   opencv_test_hdpstereo --gtest_filter='HDPStereo_ReferenceOutput*'
+//
+// The results of one build are always the same, for any number of threads. Compilers and instruction sets may add floats
+// in another order or with fused operations, so that a winner may change where two candidates are equal but for rounding,
+// and the layers below follow it: 0.5 % of the pixels may differ. Versions of libjpeg may decode a pixel differently by a
+// level, most of which the mean over 16 pixels removes: 1.5 % of the reduced Aloe.
+
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "oracles.hpp"
+#include "paper_systems.hpp"
+#include "synthetic_pair.hpp"
+
+namespace opencv_test {
+namespace {
+
+//! Compares a map with its reference, or writes it.
+void checkReference(const std::string& name, const Mat& disparity, double tolerance)
+{
+    Mat whole;
+    disparity.convertTo(whole, CV_8U, 1. / StereoMatcher::DISP_SCALE);
+    if (const char* folder = std::getenv("HDPSTEREO_WRITE_REFERENCE"))
+    {
+        const std::string path = std::string(folder) + "/" + name;
+        ASSERT_TRUE(cv::imwrite(path, whole)) << "cannot write " << path;
+        throw SkipTestException("written: " + path);
+    }
+    const Mat reference = cv::imread(cvtest::findDataFile("hdpstereo/" + name), IMREAD_UNCHANGED);
+    ASSERT_FALSE(reference.empty());
+    ASSERT_EQ(whole.type(), reference.type());
+    ASSERT_EQ(whole.size(), reference.size());
+    const int different = countDifferent(reference, whole);
+    EXPECT_LE(different, tolerance * whole.total()) << name << ": " << 100. * different / whole.total() << " % differ";
+}
+
+typedef testing::TestWithParam<PaperSystem> HDPStereo_ReferenceOutput;
+
+TEST_P(HDPStereo_ReferenceOutput, synthetic)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 100);
+    const Mat disparity = match(*createSystem(GetParam(), 32), pair.left, pair.right);
+    checkReference(std::string("synthetic_") + GetParam().fileName + ".png", disparity, 0.005);
+}
+
+TEST_P(HDPStereo_ReferenceOutput, aloe)
+{
+    // Means of 4 x 4 pixels, in steps that are the same in every version of OpenCV
+    const Mat left = oracle::halve(oracle::halve(readSample("aloeL.jpg", IMREAD_COLOR)));
+    const Mat right = oracle::halve(oracle::halve(readSample("aloeR.jpg", IMREAD_COLOR)));
+    const Mat disparity = match(*createSystem(GetParam(), 64), left, right);
+    checkReference(std::string("aloe_") + GetParam().fileName + ".png", disparity, 0.015);
+}
+
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutput, testing::ValuesIn(paperSystems));
+
+} // namespace
+} // namespace opencv_test
