@@ -1,7 +1,8 @@
 #!/bin/bash
 # Installs what is missing, builds the module with its tests against the installed OpenCV, and runs them.
 #   scripts/test.sh                       tests, and one short round of the performance tests
-#   scripts/test.sh --sanitize            tests, under AddressSanitizer and UndefinedBehaviorSanitizer
+#   scripts/test.sh --sanitize            tests but the slow ones, under AddressSanitizer and UndefinedBehaviorSanitizer,
+#                                         and the sample on a full-size pair
 #   scripts/test.sh [--sanitize] OPTION...  the tests alone, with these options of theirs, e.g. --gtest_filter=...
 # OPENCV_SOURCE_DIR=<OpenCV's source> in the environment: uses that one instead of Debian's source package.
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -44,7 +45,7 @@ if [ -n "$sanitize" ]; then
     directory=$build/sanitize
     options=("-DHDPSTEREO_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=RelWithDebInfo
         "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1")
-    targets=(opencv_test_hdpstereo)
+    targets=(opencv_test_hdpstereo example_hdpstereo_hdp_stereo_match)
 fi
 
 if ! find_opencv_source; then
@@ -68,7 +69,16 @@ if [ -n "$sanitize" ]; then
     export UBSAN_OPTIONS=print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}
 fi
 
-say "Running the tests${sanitize:+ under AddressSanitizer and UndefinedBehaviorSanitizer}"
+if [ -n "$sanitize" ] && [ $# -eq 0 ]; then
+    say "Matching the Aloe pair at full size under the sanitizers"
+    "$directory/bin/example_hdpstereo_hdp_stereo_match" "$OPENCV_SAMPLES_DATA_PATH"/aloe{L,R}.jpg --num-disparities=256 \
+        "--truth=$OPENCV_SAMPLES_DATA_PATH/aloeGT.png" "--output=$directory/aloe.png" "--picture=$directory/aloe_picture.png"
+    # These would take ten minutes: all nine systems at full size, most of them over the full range.
+    set -- '--gtest_filter=-HDPStereo_Slow*'
+    say "Running the tests but HDPStereo_Slow* under the sanitizers"
+else
+    say "Running the tests${sanitize:+ under the sanitizers}"
+fi
 run_tests "$directory/bin/opencv_test_hdpstereo" "$@"
 if [ -z "$sanitize" ] && [ $# -eq 0 ] && [ -x "$directory/bin/opencv_perf_hdpstereo" ]; then
     say "Running the performance tests, one round of the smallest images"

@@ -188,6 +188,8 @@ private:
     static std::vector<double> readNumbers(const FileNode& layer, const char* key)
     {
         const FileNode node = layer.isMap() ? layer[key] : FileNode();
+        if (node.isInt() || node.isReal()) // a sequence of one number in XML
+            return std::vector<double>(1, (double)node);
         if (!node.isSeq() || node.size() > maxComponents)
             CV_Error(Error::StsParseError, format("%s must be a sequence of at most %d numbers", key, (int)maxComponents));
         std::vector<double> numbers;

@@ -50,12 +50,13 @@ void medianDisparity(const Mat& disparity, int size, Mat& filtered)
 void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
 {
     const int scale = 16;
+    const int64 largestDifference = (int64)maxDiff * scale;
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         std::vector<int> nearest(disparity.cols);
         for (int y = rows.start; y < rows.end; ++y)
         {
             short* row = disparity.ptr<short>(y);
-            std::fill(nearest.begin(), nearest.end(), INT_MIN);
+            std::fill(nearest.begin(), nearest.end(), SHRT_MIN);
             for (int x = 0; x < disparity.cols; ++x)
             {
                 const int right = x - cvRound(row[x] / (double)scale);
@@ -65,7 +66,7 @@ void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
             for (int x = 0; x < disparity.cols; ++x)
             {
                 const int right = x - cvRound(row[x] / (double)scale);
-                if (right >= 0 && right < disparity.cols && nearest[right] - row[x] > maxDiff * scale)
+                if (right >= 0 && right < disparity.cols && nearest[right] - row[x] > largestDifference)
                     row[x] = invalid;
             }
         }

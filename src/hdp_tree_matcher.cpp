@@ -176,9 +176,14 @@ public:
         clock_.restart();
         searchRatios_.assign(settings.layers, 0);
 
-        clock_.run("image pyramid", [&] { buildPyramids(left, right, settings.layers); });
+        std::vector<Mat> lefts, rights; // by layer
+        clock_.run("image pyramid", [&] {
+            shiftColumns(right, p_.minDisparity, shiftedRight_);
+            lefts = buildPyramid(left, settings.layers, leftPyramid_);
+            rights = buildPyramid(shiftedRight_, settings.layers, rightPyramid_);
+        });
         for (int layer = settings.layers - 1; layer >= 0; --layer)
-            matchLayer(layer, settings);
+            matchLayer(layer, lefts[layer], rights[layer], settings);
 
         disparityArray.create(left.size(), CV_16S);
         Mat disparity = disparityArray.getMat();
@@ -345,25 +350,22 @@ private:
         return settings;
     }
 
-    //! Section 2.1.
-    void buildPyramids(const Mat& left, const Mat& right, int layers)
+    //! Section 2.1. The layers above the image are kept in a buffer; the image itself belongs to the caller.
+    static std::vector<Mat> buildPyramid(const Mat& image, int layers, std::vector<Mat>& buffer)
     {
-        left_.resize(layers);
-        right_.resize(layers);
-        left_[0] = left;
-        shiftColumns(right, p_.minDisparity, shiftedRight_);
-        right_[0] = shiftedRight_;
+        buffer.resize(layers - 1);
+        std::vector<Mat> pyramid(1, image);
         for (int layer = 1; layer < layers; ++layer)
         {
-            halveImage(left_[layer - 1], left_[layer]);
-            halveImage(right_[layer - 1], right_[layer]);
+            halveImage(pyramid[layer - 1], buffer[layer - 1]);
+            pyramid.push_back(buffer[layer - 1]);
         }
+        return pyramid;
     }
 
     //! Section 3: disparity_, that of the layer above, becomes that of this layer.
-    void matchLayer(int layer, const LayerSettings& settings)
+    void matchLayer(int layer, const Mat& left, const Mat& right, const LayerSettings& settings)
     {
-        const Mat &left = left_[layer], &right = right_[layer];
         const int disparities = layerDisparities(p_.numDisparities, layer);
         if (layer == settings.layers - 1)
             clock_.run("disparity prediction", [&] {
@@ -435,7 +437,7 @@ private:
     StageClock clock_;
 
     // Buffers that are kept between calls
-    std::vector<Mat> left_, right_;
+    std::vector<Mat> leftPyramid_, rightPyramid_; // from layer 1
     Mat shiftedRight_, guide_;
     SupportPointBuffers supportPoints_;
     Mat points_;

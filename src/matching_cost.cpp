@@ -16,8 +16,9 @@ const int padding = 8;
 // Units of a gradient in one intensity level a pixel: the largest, 255, still fits into 16 bit
 const int gradientScale = 128;
 
-// Of the right image's first column and of what lies beyond it: further than any truncation from a real gradient
-const int noGradient = SHRT_MAX;
+// How much more than inside the image the one-sided difference counts at the border. With this factor the disparities
+// near the left border are those of the authors' program; it keeps smooth surfaces from matching the clamped column.
+const int borderGain = 4;
 
 //! Grey levels, 0.299 R + 0.587 G + 0.114 B, in 1 / 65536. Rounded to whole levels they cost accuracy: the gradients of
 //! smooth surfaces are below one level.
@@ -31,8 +32,8 @@ void greyLevels(const uchar* pixels, int count, int channels, int* grey)
             grey[x] = 7471 * pixels[0] + 38470 * pixels[1] + 19595 * pixels[2];
 }
 
-//! The central difference of the grey levels along each row, in 1 / gradientScale levels; at the ends the one-sided
-//! difference counts in full.
+//! Half the central difference of the grey levels along each row, in 1 / gradientScale levels; at the ends borderGain
+//! times the one-sided difference.
 void horizontalGradient(const Mat& image, Mat& gradient)
 {
     const int width = image.cols, last = width - 1;
@@ -46,8 +47,9 @@ void horizontalGradient(const Mat& image, Mat& gradient)
             greyLevels(image.ptr(y), width, image.channels(), grey.data());
             for (int x = 1; x < last; ++x)
                 d[x] = (short)((g[x + 1] - g[x - 1] + 512) >> 10);
-            d[0] = last > 0 ? (short)((g[1] - g[0] + 256) >> 9) : 0;
-            d[last] = last > 0 ? (short)((g[last] - g[last - 1] + 256) >> 9) : 0;
+            const int after = std::min(1, last), before = std::max(last - 1, 0); // of an only column: itself
+            d[0] = saturate_cast<short>(((g[after] - g[0] + 256) >> 9) * borderGain);
+            d[last] = saturate_cast<short>(((g[last] - g[before] + 256) >> 9) * borderGain);
         }
     });
 }
@@ -90,8 +92,6 @@ void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities
         const Mat& image = images[side];
         const bool mirrored = side == 1;
         horizontalGradient(image, gradient_);
-        if (mirrored)
-            gradient_.col(0).setTo(Scalar::all(noGradient));
         const int after = mirrored ? radius_ + numDisparities + padding : radius_;
         Mat& color = mirrored ? right_ : left_;
         Mat& gradient = mirrored ? rightGradient_ : leftGradient_;

@@ -20,9 +20,9 @@ struct MatchingCostParams
 
 /** The matching cost M(p, x) of a layer (section 3.3):
 colorWeight * min(mean_c |I_c(p) - I'_c(p - x)|, colorTruncation)
-+ (1 - colorWeight) * min(|grad(p) - grad'(p - x)|, gradientTruncation), columns clamped to the image; grad is half the
-difference of the grey levels at both sides. In and beyond the first column of the right image the gradient's term is
-its truncation.
++ (1 - colorWeight) * min(|grad(p) - grad'(p - x)|, gradientTruncation), columns clamped to the image. grad is half the
+difference of the grey levels left and right of a pixel; in the first and last column it is 4 times the difference
+to the only neighbour.
 
 The right image is stored mirrored and padded, so that the candidates of a pixel follow one another in memory. */
 class CV_EXPORTS MatchingCost

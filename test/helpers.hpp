@@ -58,8 +58,7 @@ inline Mat match(StereoMatcher& matcher, InputArray left, InputArray right)
 }
 
 //! Expects the action to throw a cv::Exception whose message names the argument.
-template <typename Action>
-void expectRejected(const Action& action, const std::string& argument)
+template <typename Action> void expectRejected(const Action& action, const std::string& argument)
 {
     try
     {
@@ -82,9 +81,19 @@ inline Mat readSample(const std::string& name, int flags)
     const std::string path = cv::samples::findFile(name, false);
     const Mat image = path.empty() ? Mat() : cv::imread(path, flags);
     if (image.empty())
-        throw SkipTestException("no " + name + ": set OPENCV_SAMPLES_DATA_PATH to the folder samples/data of OpenCV's source");
+        throw SkipTestException("no " + name +
+                                ": set OPENCV_SAMPLES_DATA_PATH to the folder samples/data of OpenCV's source");
     return image;
 }
+
+//! A name for a file that is removed in the end
+class TemporaryFile
+{
+public:
+    explicit TemporaryFile(const char* suffix) : name(cv::tempfile(suffix)) {}
+    ~TemporaryFile() { std::remove(name.c_str()); }
+    const String name;
+};
 
 //! What write() of an algorithm puts into a file; extension: yml, xml or json.
 inline std::string serialized(const Algorithm& algorithm, const std::string& extension = "yml")

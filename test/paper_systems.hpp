@@ -19,23 +19,11 @@ struct PaperSystem
     bool isRandom() const { return std::string(name).find("RT") != std::string::npos; }
 };
 
-inline void PrintTo(const PaperSystem& system, std::ostream* out)
-{
-    *out << system.name;
-}
+inline void PrintTo(const PaperSystem& system, std::ostream* out) { *out << system.name; }
 
-inline Ptr<TreeStrategy> createPaperMST()
-{
-    return createMinimumSpanningTree();
-}
-inline Ptr<TreeStrategy> createPaperST()
-{
-    return createSegmentTree();
-}
-inline Ptr<TreeStrategy> createPaperRT()
-{
-    return createRandomTree();
-}
+inline Ptr<TreeStrategy> createPaperMST() { return createMinimumSpanningTree(); }
+inline Ptr<TreeStrategy> createPaperST() { return createSegmentTree(); }
+inline Ptr<TreeStrategy> createPaperRT() { return createRandomTree(); }
 
 const PaperSystem paperSystems[] = {
     { "HDP+MST", "hdp_mst", createPaperMST, true, false }, { "HDP+ST", "hdp_st", createPaperST, true, false },

@@ -29,7 +29,8 @@ public:
         addSurface(0.10 * n, 0.12 * n / w, 0.08 * n / h, WHOLE, 0, 0, 0, 0, 60);
         addSurface(0.30 * n, 0.15 * n / w, 0, BOX, jitter(0.20) * w, jitter(0.72) * h, 0.17 * w, 0.20 * h, 40);
         addSurface(0.45 * n, 0, 0, ELLIPSE, jitter(0.38) * w, jitter(0.34) * h, 0.12 * w, 0.20 * h, 50);
-        addSurface(0.45 * n, 0.10 * n / w, 0.25 * n / h, BOX, jitter(0.70) * w, jitter(0.60) * h, 0.14 * w, 0.24 * h, 45);
+        addSurface(0.45 * n, 0.10 * n / w, 0.25 * n / h, BOX, jitter(0.70) * w, jitter(0.60) * h, 0.14 * w, 0.24 * h,
+                   45);
         addSurface(0.75 * n, 0, 0, BOX, jitter(0.52) * w, 0.5 * h, 0.02 * w, 0.5 * h, 40);
     }
 
@@ -73,7 +74,8 @@ private:
 
         bool covers(double x, double y) const
         {
-            const double u = shape == WHOLE ? 0 : (x - centerX) / radiusX, v = shape == WHOLE ? 0 : (y - centerY) / radiusY;
+            const double u = shape == WHOLE ? 0 : (x - centerX) / radiusX,
+                         v = shape == WHOLE ? 0 : (y - centerY) / radiusY;
             return shape == ELLIPSE ? u * u + v * v <= 1 : std::abs(u) <= 1 && std::abs(v) <= 1;
         }
 
@@ -81,7 +83,8 @@ private:
         bool isTextured(double x, double y, Size size) const
         {
             const bool isCorner = x > 0.85 * size.width && y < 0.15 * size.height;
-            return shape == ELLIPSE || (shape == BOX ? radiusX < radiusY / 2 || x > centerX - 0.6 * radiusX : !isCorner);
+            return shape == ELLIPSE ||
+                   (shape == BOX ? radiusX < radiusY / 2 || x > centerX - 0.6 * radiusX : !isCorner);
         }
     };
 
@@ -96,7 +99,9 @@ private:
     void addSurface(double offset, double slopeX, double slopeY, Shape shape, double centerX, double centerY,
                     double radiusX, double radiusY, int contrast)
     {
-        Surface s = { offset, slopeX, slopeY, shape, centerX, centerY, radiusX, radiusY, contrast, Vec3i(), Mat(), Mat() };
+        Surface s = {
+            offset, slopeX, slopeY, shape, centerX, centerY, radiusX, radiusY, contrast, Vec3i(), Mat(), Mat()
+        };
         if (shape != WHOLE) // slopes turn about the centre
             s.offset -= slopeX * centerX + slopeY * centerY;
         for (int c = 0; c < 3; ++c)
@@ -129,7 +134,8 @@ private:
 
     static double interpolate(const Mat& noise, double x, double y, int c)
     {
-        const int x0 = std::min(std::max((int)x, 0), noise.cols - 2), y0 = std::min(std::max((int)y, 0), noise.rows - 2);
+        const int x0 = std::min(std::max((int)x, 0), noise.cols - 2),
+                  y0 = std::min(std::max((int)y, 0), noise.rows - 2);
         const double fx = x - x0, fy = y - y0;
         return (1 - fy) * ((1 - fx) * noise.at<Vec3b>(y0, x0)[c] + fx * noise.at<Vec3b>(y0, x0 + 1)[c]) +
                fy * ((1 - fx) * noise.at<Vec3b>(y0 + 1, x0)[c] + fx * noise.at<Vec3b>(y0 + 1, x0 + 1)[c]);
@@ -144,8 +150,10 @@ private:
         {
             double value = s.base[c];
             if (textured)
-                value += s.contrast * (0.4 * (interpolate(s.fine, hit.x, y, c) - 127.5) +
-                                       1.2 * (interpolate(s.coarse, hit.x / 8, y / 8., c) - 127.5)) / 255;
+                value += s.contrast *
+                         (0.4 * (interpolate(s.fine, hit.x, y, c) - 127.5) +
+                          1.2 * (interpolate(s.coarse, hit.x / 8, y / 8., c) - 127.5)) /
+                         255;
             result[c] = saturate_cast<uchar>((int)value + rng_.uniform(-2, 3));
         }
         return result;
@@ -168,8 +176,7 @@ inline double badPixels(const Mat& disparity, const Mat& truth, const Mat& mask,
     int bad = 0;
     for (int y = 0; y < truth.rows; ++y)
         for (int x = 0; x < truth.cols; ++x)
-            if (mask.at<uchar>(y, x) &&
-                std::abs(disparity.at<short>(y, x) / 16. - truth.at<float>(y, x)) >= limit)
+            if (mask.at<uchar>(y, x) && std::abs(disparity.at<short>(y, x) / 16. - truth.at<float>(y, x)) >= limit)
                 ++bad;
     return 100. * bad / cv::countNonZero(mask);
 }

@@ -125,7 +125,7 @@ TEST(HDPStereo_BadInput, disparities_that_do_not_fit_into_16_bit)
         const Mat disparity = match(*HDPTreeMatcher::create(range[0], range[1]), image, image);
         EXPECT_EQ(16 * range[0], disparity.at<short>(6, 8)); // a tie of all: the lowest
     }
-    const int bad[][2] = { { 0, 2049 },  { 1, 2048 }, { -2048, 1 },       { 2048, 1 },
+    const int bad[][2] = { { 0, 2049 },    { 1, 2048 },     { -2048, 1 },    { 2048, 1 },
                            { 0, INT_MAX }, { INT_MAX, 16 }, { INT_MIN, 16 }, { INT_MAX, INT_MAX } };
     for (const int* range : bad)
     {

@@ -11,10 +11,7 @@ namespace {
 using hdp::DisparityForest;
 using hdp::DisparityTree;
 
-Mat constantIntervals(Size size, int first, int last)
-{
-    return Mat(size, CV_16UC2, Scalar(first, last));
-}
+Mat constantIntervals(Size size, int first, int last) { return Mat(size, CV_16UC2, Scalar(first, last)); }
 
 //! Intervals of a few kinds, as a layer above leaves them: constant in squares of 2 x 2, some of them empty.
 Mat randomIntervals(RNG& rng, Size size)
@@ -90,10 +87,22 @@ void testForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& stra
     }
 }
 
-std::vector<Ptr<TreeStrategy> > allStrategies()
+//! Heavy edges may come before light ones, and Rule 2 asks for all of a tree's state.
+class UnorderedSegments : public TreeStrategy
 {
-    return std::vector<Ptr<TreeStrategy> >{ createMinimumSpanningTree(), createSegmentTree(), createSegmentTree(40),
-                                            createSegmentTree(0), createRandomTree(), createRandomTree(7) };
+public:
+    void orderEdges(const Mat&, std::vector<int>& edges) const CV_OVERRIDE { std::reverse(edges.begin(), edges.end()); }
+    bool mayJoin(int weight, const TreeState& a, const TreeState& b) const CV_OVERRIDE
+    {
+        return std::abs(a.maxWeight - b.maxWeight) < 40 && weight * a.size < 3000 && weight * b.size < 3000;
+    }
+};
+
+std::vector<Ptr<TreeStrategy>> allStrategies()
+{
+    return std::vector<Ptr<TreeStrategy>>{ createMinimumSpanningTree(), createSegmentTree(), createSegmentTree(40),
+                                           createSegmentTree(0),        createRandomTree(),  createRandomTree(7),
+                                           makePtr<UnorderedSegments>() };
 }
 
 const Size testSizes[] = { Size(1, 1), Size(1, 9), Size(9, 1), Size(2, 2), Size(17, 13), Size(48, 40) };
@@ -195,8 +204,8 @@ TEST(HDPStereo_DisparityForest, minimum_spanning_tree_is_minimal)
                 const Mat image = randomImage(rng, size, type, levels);
                 hdp::ForestBuffers buffers;
                 DisparityForest forest;
-                hdp::buildForest(image, constantIntervals(size, 0, 9), *createMinimumSpanningTree(), 0.95, true, buffers,
-                                 forest);
+                hdp::buildForest(image, constantIntervals(size, 0, 9), *createMinimumSpanningTree(), 0.95, true,
+                                 buffers, forest);
                 const std::vector<int> joined = joinedEdges(forest);
                 ASSERT_EQ(image.total() - 1, joined.size());
                 int64 total = 0;
@@ -255,7 +264,8 @@ TEST(HDPStereo_DisparityForest, walk_visits_each_pixel_once_parents_first)
                 const Mat pixelIntv = predicted ? randomIntervals(rng, size) : constantIntervals(size, 0, 15);
                 hdp::ForestBuffers buffers;
                 DisparityForest forest;
-                hdp::buildForest(patchyImage(rng, size, CV_8UC3), pixelIntv, *strategy, 0.6, !predicted, buffers, forest);
+                hdp::buildForest(patchyImage(rng, size, CV_8UC3), pixelIntv, *strategy, 0.6, !predicted, buffers,
+                                 forest);
                 testWalk(forest);
             }
 }
@@ -266,8 +276,8 @@ TEST(HDPStereo_DisparityForest, walk_of_a_long_path)
     {
         hdp::ForestBuffers buffers;
         DisparityForest forest;
-        hdp::buildForest(Mat(size, CV_8UC1, Scalar(5)), constantIntervals(size, 0, 3), *createMinimumSpanningTree(), 0.6,
-                         true, buffers, forest);
+        hdp::buildForest(Mat(size, CV_8UC1, Scalar(5)), constantIntervals(size, 0, 3), *createMinimumSpanningTree(),
+                         0.6, true, buffers, forest);
         ASSERT_EQ(1u, forest.trees.size());
         testWalk(forest);
     }

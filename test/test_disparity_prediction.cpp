@@ -5,6 +5,8 @@
 #include "helpers.hpp"
 #include "oracles.hpp"
 
+#include <fstream>
+
 namespace opencv_test {
 namespace {
 
@@ -91,7 +93,8 @@ TEST(HDPStereo_PredictionModel, density_is_the_mixture)
         {
             const double offset = i / 16., density = model->density(layer, offset);
             sum += density / 16;
-            ASSERT_NEAR(oracle::density(*model, layer, offset), density, 1e-12) << "layer " << layer << " at " << offset;
+            ASSERT_NEAR(oracle::density(*model, layer, offset), density, 1e-12)
+                << "layer " << layer << " at " << offset;
         }
         EXPECT_NEAR(1, sum, 1e-4) << "layer " << layer;
     }
@@ -172,11 +175,9 @@ TEST(HDPStereo_PredictionModel, save_and_load)
     const Ptr<DisparityPredictionModel> model = createTwoLayerModel();
     for (const char* extension : { ".yml", ".xml", ".json", ".yml.gz" })
     {
-        const String filename = cv::tempfile(extension);
-        model->save(filename);
-        const Ptr<DisparityPredictionModel> loaded = DisparityPredictionModel::load(filename);
-        std::remove(filename.c_str());
-        expectEqualModels(*model, *loaded);
+        const TemporaryFile file(extension);
+        model->save(file.name);
+        expectEqualModels(*model, *DisparityPredictionModel::load(file.name));
     }
 }
 
@@ -188,10 +189,9 @@ void expectNoModel(const std::string& text)
     EXPECT_THROW(deserialize(text, *model), cv::Exception);
     expectEqualModels(*createTwoLayerModel(), *model);
 
-    const String filename = cv::tempfile(".yml");
-    std::ofstream(filename.c_str()) << text;
-    EXPECT_THROW(DisparityPredictionModel::load(filename), cv::Exception);
-    std::remove(filename.c_str());
+    const TemporaryFile file(".yml");
+    std::ofstream(file.name.c_str()) << text;
+    EXPECT_THROW(DisparityPredictionModel::load(file.name), cv::Exception);
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& with)

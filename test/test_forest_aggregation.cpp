@@ -51,7 +51,8 @@ Mat stripedIntervals(Size size)
 
 void expectExplicitSums(const Layer& layer, double gamma)
 {
-    SCOPED_TRACE(testing::Message() << layer.left.size() << ", trees " << layer.forest.trees.size() << ", gamma " << gamma);
+    SCOPED_TRACE(testing::Message() << layer.left.size() << ", trees " << layer.forest.trees.size() << ", gamma "
+                                    << gamma);
     const hdp::EdgeSimilarity similarity(gamma);
     hdp::TreeWalk walk;
     std::vector<float> sums;
@@ -61,7 +62,8 @@ void expectExplicitSums(const Layer& layer, double gamma)
         for (int count = 1; count <= 8; ++count)
         {
             const int first = (count * 5 + tree.root) % (numDisparities - count + 1);
-            const int lanes = hdp::aggregateTree(walk, tree.size, layer.left.cols, layer.cost, similarity, first, count, sums);
+            const int lanes =
+                hdp::aggregateTree(walk, tree.size, layer.left.cols, layer.cost, similarity, first, count, sums);
             ASSERT_EQ(count <= 4 ? 4 : 8, lanes);
             for (int i = 0; i < tree.size; i += 1 + tree.size / 50)
             {
@@ -127,10 +129,11 @@ void expectWinners(const Layer& layer, double gamma, hdp::AggregationBuffers& bu
             continue;
         }
         ASSERT_TRUE(tree.first <= actual && actual <= tree.last) << "pixel " << p;
-        const std::vector<double> sums = oracle::aggregated(layer.expectedForest.neighbours, p, gamma, layer.costTable,
-                                                            tree.first, tree.last);
+        const std::vector<double> sums =
+            oracle::aggregated(layer.expectedForest.neighbours, p, gamma, layer.costTable, tree.first, tree.last);
         const int best = oracle::winner(sums);
-        ASSERT_LE(sums[actual - tree.first], sums[best] * (1 + 2e-6)) << "pixel " << p << ", best " << best + tree.first;
+        ASSERT_LE(sums[actual - tree.first], sums[best] * (1 + 2e-6))
+            << "pixel " << p << ", best " << best + tree.first;
         ties += actual - tree.first != best;
     }
     EXPECT_LE(ties, (int)disparity.total() / 5) << "too many winners depend on rounding to say anything";
@@ -141,7 +144,8 @@ TEST(HDPStereo_ForestAggregation, winner_of_explicit_sums)
     RNG rng(20);
     hdp::AggregationBuffers buffers; // reused
     for (const Size& size : { Size(1, 1), Size(1, 40), Size(40, 1), Size(30, 24) })
-        for (const Ptr<TreeStrategy>& strategy : { createMinimumSpanningTree(), createSegmentTree(20), createRandomTree() })
+        for (const Ptr<TreeStrategy>& strategy :
+             { createMinimumSpanningTree(), createSegmentTree(20), createRandomTree() })
         {
             SCOPED_TRACE(testing::Message() << size << ", " << strategy->getDefaultName());
             expectWinners(Layer(rng, size, *strategy, stripedIntervals(size), 0.6, false), 25.5, buffers);

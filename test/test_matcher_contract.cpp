@@ -125,27 +125,27 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
 {
     typedef void (*Change)(HDPTreeMatcher&);
     const Change changes[] = {
-        [](HDPTreeMatcher& m) { m.setMinDisparity(2); },
-        [](HDPTreeMatcher& m) { m.setNumDisparities(12); },
-        [](HDPTreeMatcher& m) { m.setBlockSize(3); },
-        [](HDPTreeMatcher& m) { m.setDisp12MaxDiff(1); },
-        [](HDPTreeMatcher& m) { m.setSpeckleWindowSize(100), m.setSpeckleRange(1); },
-        [](HDPTreeMatcher& m) { m.setTreeStrategy(createSegmentTree()); },
-        [](HDPTreeMatcher& m) { m.setTreeStrategy(createRandomTree()); },
-        [](HDPTreeMatcher& m) { m.setUsePrediction(false); },
-        [](HDPTreeMatcher& m) { m.setUseMedianPrefilter(true); },
-        [](HDPTreeMatcher& m) { m.setNumLayers(2); },
-        [](HDPTreeMatcher& m) { m.setDelta0(0.3); },
-        [](HDPTreeMatcher& m) { m.setBeta(0.1); },
-        [](HDPTreeMatcher& m) { m.setGamma(5); },
-        [](HDPTreeMatcher& m) { m.setColorTruncation(3); },
-        [](HDPTreeMatcher& m) { m.setGradientTruncation(8); },
-        [](HDPTreeMatcher& m) { m.setColorWeight(0.9); },
-        [](HDPTreeMatcher& m) { m.setDisparityMedianSize(0); },
         [](HDPTreeMatcher& m) {
-            m.setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE));
+        m.setMinDisparity(2);
         },
-    };
+        [](HDPTreeMatcher& m) {
+        m.setNumDisparities(12);
+    },
+                 [](HDPTreeMatcher& m) { m.setBlockSize(3); }, [](HDPTreeMatcher& m) { m.setDisp12MaxDiff(1); },
+                 [](HDPTreeMatcher& m) { m.setSpeckleWindowSize(100), m.setSpeckleRange(1); },
+                 [](HDPTreeMatcher& m) { m.setTreeStrategy(createSegmentTree()); },
+                 [](HDPTreeMatcher& m) {
+        m.setTreeStrategy(createRandomTree());
+    },
+        [](HDPTreeMatcher& m) { m.setUsePrediction(false); }, [](HDPTreeMatcher& m) { m.setUseMedianPrefilter(true); },
+        [](HDPTreeMatcher& m) { m.setNumLayers(2); }, [](HDPTreeMatcher& m) { m.setDelta0(0.3); },
+        [](HDPTreeMatcher& m) { m.setBeta(0.1); }, [](HDPTreeMatcher& m) { m.setGamma(5); },
+        [](HDPTreeMatcher& m) { m.setColorTruncation(3); }, [](HDPTreeMatcher& m) { m.setGradientTruncation(8); },
+        [](HDPTreeMatcher& m) { m.setColorWeight(0.9); }, [](HDPTreeMatcher& m) { m.setDisparityMedianSize(0); },
+        [](HDPTreeMatcher& m) {
+        m.setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE));
+        },
+        };
     const SyntheticPair& pair = testPair();
     const Mat unchanged = match(*createMatcher(), pair.left, pair.right);
     for (size_t i = 0; i < sizeof(changes) / sizeof(changes[0]); ++i)
@@ -184,7 +184,8 @@ TEST(HDPStereo_MatcherContract, kinds_of_arrays)
 
         // Not continuous
         Mat canvas(Size(left.cols + 40, 2 * left.rows + 30), CV_8UC3, Scalar(1, 200, 90));
-        Mat leftRegion = canvas(Rect(Point(7, 3), left.size())), rightRegion = canvas(Rect(Point(20, 110), left.size()));
+        Mat leftRegion = canvas(Rect(Point(7, 3), left.size())),
+            rightRegion = canvas(Rect(Point(20, 110), left.size()));
         left.copyTo(leftRegion);
         right.copyTo(rightRegion);
         expectIdentical(expected, match(*matcher, leftRegion, rightRegion));
@@ -274,8 +275,9 @@ TEST(HDPStereo_MatcherContract, one_channel_equals_three_equal_ones)
 
 TEST(HDPStereo_MatcherContract, sizes_and_numbers_of_disparities)
 {
-    const Size sizes[] = { Size(1, 1), Size(1, 2), Size(2, 1), Size(1, 50),  Size(50, 1), Size(2, 2),   Size(3, 3), Size(2, 50),
-                           Size(50, 2), Size(4, 4), Size(5, 7), Size(11, 11), Size(12, 13), Size(33, 21), Size(64, 31) };
+    const Size sizes[] = { Size(1, 1), Size(1, 2),   Size(2, 1),   Size(1, 50),  Size(50, 1),
+                           Size(2, 2), Size(3, 3),   Size(2, 50),  Size(50, 2),  Size(4, 4),
+                           Size(5, 7), Size(11, 11), Size(12, 13), Size(33, 21), Size(64, 31) };
     RNG rng(28);
     for (const PaperSystem& system : paperSystems)
         for (const Size& size : sizes)
@@ -284,8 +286,7 @@ TEST(HDPStereo_MatcherContract, sizes_and_numbers_of_disparities)
                 {
                     SCOPED_TRACE(testing::Message() << system.name << ", " << size << ", " << count << " disparities");
                     const Ptr<HDPTreeMatcher> matcher = createSystem(system, count);
-                    const Mat disparity =
-                        match(*matcher, patchyImage(rng, size, type), patchyImage(rng, size, type));
+                    const Mat disparity = match(*matcher, patchyImage(rng, size, type), patchyImage(rng, size, type));
                     ASSERT_EQ(size, disparity.size());
                     expectWholeDisparities(disparity, *matcher);
                 }

@@ -84,19 +84,18 @@ TEST(HDPStereo_MatcherStorage, defaults_and_no_model)
 TEST(HDPStereo_MatcherStorage, save_and_load)
 {
     const Ptr<HDPTreeMatcher> written = createUnusualMatcher(), read = HDPTreeMatcher::create();
-    const String filename = cv::tempfile(".xml");
-    written->save(filename);
-    FileStorage fs(filename, FileStorage::READ);
+    const TemporaryFile file(".xml");
+    written->save(file.name);
+    FileStorage fs(file.name, FileStorage::READ);
     read->read(fs[written->getDefaultName()]);
     fs.release();
-    std::remove(filename.c_str());
     EXPECT_EQ(serialized(*written), serialized(*read));
 }
 
 TEST(HDPStereo_MatcherStorage, strategies_with_their_parameters)
 {
-    const std::vector<Ptr<TreeStrategy> > strategies{ createMinimumSpanningTree(), createSegmentTree(5.5),
-                                                      createRandomTree(99) };
+    const std::vector<Ptr<TreeStrategy>> strategies{ createMinimumSpanningTree(), createSegmentTree(5.5),
+                                                     createRandomTree(99) };
     for (const Ptr<TreeStrategy>& strategy : strategies)
     {
         const Ptr<HDPTreeMatcher> written = HDPTreeMatcher::create(0, 16), read = HDPTreeMatcher::create();

@@ -14,8 +14,8 @@ namespace opencv_test {
 namespace {
 
 const int sceneCount = 11;
-const char* const scenes[sceneCount] = { "Aloe", "Baby1", "Bowling1", "Cloth1", "Cloth3",
-                                            "Flowerpots", "Lampshade1", "Midd1", "Plastic", "Rocks1", "Wood1" };
+const char* const scenes[sceneCount] = { "Aloe",       "Baby1", "Bowling1", "Cloth1", "Cloth3", "Flowerpots",
+                                         "Lampshade1", "Midd1", "Plastic",  "Rocks1", "Wood1" };
 
 //! The errors of the authors' program in percent
 struct Published
@@ -43,10 +43,7 @@ const Published published[] = {
     { "half", "M+ST", 24.00, 13.42, { 3.37, 6.10, 22.64, 0.24, 1.20, 17.46, 14.77, 31.67, 43.01, 2.52, 4.63 } },
 };
 
-void PrintTo(const Published& p, std::ostream* out)
-{
-    *out << p.system << ", " << p.size << " size";
-}
+void PrintTo(const Published& p, std::ostream* out) { *out << p.system << ", " << p.size << " size"; }
 
 //! Pixels with known truth that the right image shows as well
 Mat nonOccluded(const Mat& left, const Mat& right, int scale)

@@ -12,10 +12,12 @@
 //   export HDPSTEREO_WRITE_REFERENCE=<checkout>/testdata/cv/hdpstereo
 //   opencv_test_hdpstereo --gtest_filter='HDPStereo_ReferenceOutput*'
 //
-// The results of one build are always the same, for any number of threads. Compilers and instruction sets may add floats
-// in another order or with fused operations, so that a winner may change where two candidates are equal but for rounding,
-// and the layers below follow it: 0.5 % of the pixels may differ. Versions of libjpeg may decode a pixel differently by a
-// level, most of which the mean over 16 pixels removes: 1.5 % of the reduced Aloe.
+// The results of one build are always the same, for any number of threads. Compilers and instruction sets may add
+// floats in another order or with fused operations, so that a winner may change where two candidates are equal but for
+// rounding, and the layers below follow it: up to 0.2 % of the pixels was measured between GCC and Clang with and
+// without fused operations, 0.5 % may differ. Input that differs is another matter: if one pixel in a hundred is off by
+// a level, several percent of a map are others. So the aloe maps are skipped where the JPEG decoder gives other pixels
+// than libjpeg-turbo.
 
 #include "test_precomp.hpp"
 #include "helpers.hpp"
@@ -27,8 +29,9 @@ namespace opencv_test {
 namespace {
 
 //! Compares a map with its reference, or writes it.
-void checkReference(const std::string& name, const Mat& disparity, double tolerance)
+void checkReference(const std::string& name, const Mat& disparity)
 {
+    const double tolerance = 0.005;
     Mat whole;
     disparity.convertTo(whole, CV_8U, 1. / StereoMatcher::DISP_SCALE);
     if (const char* folder = std::getenv("HDPSTEREO_WRITE_REFERENCE"))
@@ -45,22 +48,40 @@ void checkReference(const std::string& name, const Mat& disparity, double tolera
     EXPECT_LE(different, tolerance * whole.total()) << name << ": " << 100. * different / whole.total() << " % differ";
 }
 
+//! FNV-1a of the pixels of a continuous image
+uint64 checksum(const Mat& image)
+{
+    uint64 hash = 14695981039346656037ULL;
+    for (const uchar* p = image.datastart; p != image.dataend; ++p)
+        hash = (hash ^ *p) * 1099511628211ULL;
+    return hash;
+}
+
+//! Means of 4 x 4 pixels of a picture of OpenCV's samples, in steps that are the same in every version of OpenCV
+Mat readReduced(const std::string& name, uint64 expected)
+{
+    const Mat reduced = oracle::halve(oracle::halve(readSample(name, IMREAD_COLOR)));
+    if (checksum(reduced) != expected)
+        throw SkipTestException(cv::format("the JPEG decoder gives other pixels of %s, of checksum %llu", name.c_str(),
+                                           (unsigned long long)checksum(reduced)));
+    return reduced;
+}
+
 typedef testing::TestWithParam<PaperSystem> HDPStereo_ReferenceOutput;
 
 TEST_P(HDPStereo_ReferenceOutput, synthetic)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 100);
     const Mat disparity = match(*createSystem(GetParam(), 32), pair.left, pair.right);
-    checkReference(std::string("synthetic_") + GetParam().fileName + ".png", disparity, 0.005);
+    checkReference(std::string("synthetic_") + GetParam().fileName + ".png", disparity);
 }
 
 TEST_P(HDPStereo_ReferenceOutput, aloe)
 {
-    // Means of 4 x 4 pixels, in steps that are the same in every version of OpenCV
-    const Mat left = oracle::halve(oracle::halve(readSample("aloeL.jpg", IMREAD_COLOR)));
-    const Mat right = oracle::halve(oracle::halve(readSample("aloeR.jpg", IMREAD_COLOR)));
+    const Mat left = readReduced("aloeL.jpg", 17099323032531505918ULL),
+              right = readReduced("aloeR.jpg", 9001120562101999804ULL);
     const Mat disparity = match(*createSystem(GetParam(), 64), left, right);
-    checkReference(std::string("aloe_") + GetParam().fileName + ".png", disparity, 0.015);
+    checkReference(std::string("aloe_") + GetParam().fileName + ".png", disparity);
 }
 
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutput, testing::ValuesIn(paperSystems));
