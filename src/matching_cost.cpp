@@ -13,8 +13,8 @@ namespace {
 // Columns behind the last candidate that evaluate() may read
 const int padding = 8;
 
-// Units of a gradient in one intensity level a pixel: the largest, 255, still fits into 16 bit
-const int gradientScale = 128;
+// Units of a gradient in one intensity level a pixel: the largest, borderGain * 255, still fits into 16 bit
+const int gradientScale = 32;
 
 // How much more than inside the image the one-sided difference counts at the border. With this factor the disparities
 // near the left border are those of the authors' program; it keeps smooth surfaces from matching the clamped column.
@@ -46,10 +46,10 @@ void horizontalGradient(const Mat& image, Mat& gradient)
             short* d = gradient.ptr<short>(y);
             greyLevels(image.ptr(y), width, image.channels(), grey.data());
             for (int x = 1; x < last; ++x)
-                d[x] = (short)((g[x + 1] - g[x - 1] + 512) >> 10);
+                d[x] = (short)((g[x + 1] - g[x - 1] + 2048) >> 12);
             const int after = std::min(1, last), before = std::max(last - 1, 0); // of an only column: itself
-            d[0] = saturate_cast<short>(((g[after] - g[0] + 256) >> 9) * borderGain);
-            d[last] = saturate_cast<short>(((g[last] - g[before] + 256) >> 9) * borderGain);
+            d[0] = (short)(((g[after] - g[0]) * borderGain + 1024) >> 11);
+            d[last] = (short)(((g[last] - g[before]) * borderGain + 1024) >> 11);
         }
     });
 }
