@@ -12,8 +12,9 @@ const double notANumber = std::numeric_limits<double>::quiet_NaN();
 
 void expectBadPair(const Mat& left, const Mat& right, const std::string& argument)
 {
-    SCOPED_TRACE(testing::Message() << "left " << left.size() << " type " << left.type() << ", right " << right.size()
-                                    << " type " << right.type());
+    // Not size(): a Mat of three dimensions has none.
+    SCOPED_TRACE(testing::Message() << "left " << left.cols << " x " << left.rows << " type " << left.type() << ", right "
+                                    << right.cols << " x " << right.rows << " type " << right.type());
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 8);
     Mat disparity;
     expectRejected([&] { matcher->compute(left, right, disparity); }, argument);
