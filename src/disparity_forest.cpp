@@ -50,48 +50,63 @@ bool intersect(const DisparityInterval& a, const DisparityInterval& b)
     return std::max(a.first, b.first) <= std::min(a.last, b.last);
 }
 
-//! DT-Rule 1: the edges, by number, that are light or join pixels whose intervals intersect.
-void selectEdges(const Mat& weights, const Mat& pixelIntv, std::vector<int>& edges)
+//! Calls visit(edge) for the edges of a row, in their order, that DT-Rule 1 leaves: those that are light or join pixels
+//! whose intervals intersect.
+template <class Visitor> void visitEdges(const Mat& weights, const Mat& pixelIntv, int y, const Visitor& visit)
 {
-    const int width = weights.cols, height = weights.rows;
-    edges.resize((size_t)2 * width * height);
-    std::vector<int> selected(height);
-    parallel_for_(Range(0, height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
+    const int width = weights.cols;
+    const bool isLast = y + 1 == weights.rows;
+    const uchar* weight = weights.ptr(y);
+    const DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
+    const DisparityInterval* below = isLast ? 0 : pixelIntv.ptr<DisparityInterval>(y + 1);
+    for (int x = 0; x < width; ++x)
+    {
+        const int edge = 2 * (y * width + x);
+        if (x + 1 < width && (weight[2 * x] <= lightEdge || intersect(interval[x], interval[x + 1])))
+            visit(edge);
+        if (!isLast && (weight[2 * x + 1] <= lightEdge || intersect(interval[x], below[x])))
+            visit(edge + 1);
+    }
+}
+
+//! The edges, by number, that DT-Rule 1 leaves, in the order of their numbers or, stably, of their weights.
+void selectEdges(const Mat& weights, const Mat& pixelIntv, bool byWeight, std::vector<int>& edges)
+{
+    // A counting sort; without weights all edges have one key.
+    const int stripes = 16, keys = byWeight ? 256 : 1;
+    const uchar* key = weights.ptr();
+    const unsigned mask = byWeight ? 255 : 0;
+    std::vector<size_t> places(stripes * keys); // numbers of edges, then where the next one goes
+    parallel_for_(Range(0, stripes), [&](const Range& range) {
+        for (int s = range.start; s < range.end; ++s)
         {
-            const uchar* weight = weights.ptr(y);
-            const DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
-            const DisparityInterval* below = y + 1 < height ? pixelIntv.ptr<DisparityInterval>(y + 1) : 0;
-            int* const begin = &edges[(size_t)2 * width * y];
-            int* end = begin;
-            for (int x = 0; x < width; ++x)
-            {
-                const int edge = 2 * (y * width + x);
-                if (x + 1 < width && (weight[2 * x] <= lightEdge || intersect(interval[x], interval[x + 1])))
-                    *end++ = edge;
-                if (below && (weight[2 * x + 1] <= lightEdge || intersect(interval[x], below[x])))
-                    *end++ = edge + 1;
-            }
-            selected[y] = (int)(end - begin);
+            size_t* place = &places[s * keys];
+            for (int y = weights.rows * s / stripes; y < weights.rows * (s + 1) / stripes; ++y)
+                visitEdges(weights, pixelIntv, y, [&](int edge) { ++place[key[edge] & mask]; });
         }
     });
-    std::vector<int>::iterator end = edges.begin();
-    for (int y = 0; y < height; ++y)
-    {
-        const std::vector<int>::iterator row = edges.begin() + (size_t)2 * width * y;
-        end = end == row ? row + selected[y] : std::copy(row, row + selected[y], end);
-    }
-    edges.erase(end, edges.end());
+    size_t selected = 0;
+    for (int k = 0; k < keys; ++k)
+        for (int s = 0; s < stripes; ++s)
+        {
+            const size_t count = places[s * keys + k];
+            places[s * keys + k] = selected;
+            selected += count;
+        }
+    edges.resize(selected);
+    parallel_for_(Range(0, stripes), [&](const Range& range) {
+        for (int s = range.start; s < range.end; ++s)
+        {
+            size_t* place = &places[s * keys];
+            for (int y = weights.rows * s / stripes; y < weights.rows * (s + 1) / stripes; ++y)
+                visitEdges(weights, pixelIntv, y, [&](int edge) { edges[place[key[edge] & mask]++] = edge; });
+        }
+    });
 }
 
 //! Asks Rule 1 for the order and refuses what is not a permutation.
 void orderEdges(const TreeStrategy& strategy, const Mat& weights, std::vector<int>& edges)
 {
-    const bool trusted = dynamic_cast<const MinimumSpanningTree*>(&strategy) || dynamic_cast<const SegmentTree*>(&strategy)
-                         || dynamic_cast<const RandomTree*>(&strategy);
-    if (trusted)
-        return strategy.orderEdges(weights, edges);
-
     std::vector<bool> given(weights.total() * 2);
     for (size_t i = 0; i < edges.size(); ++i)
         given[edges[i]] = true;
@@ -147,6 +162,8 @@ void joinTrees(const Strategy& strategy, const std::vector<int>& edges, double b
         const int edge = edges[i], p = edge >> 1;
         const bool below = (edge & 1) != 0;
         const int q = below ? p + width : p + 1;
+        if (nodes[p].parent == nodes[q].parent && nodes[p].parent >= 0)
+            continue; // the usual case of late edges, decided without a look at the root
         int a = findRoot(nodes, p), b = findRoot(nodes, q);
         if (a == b || !overlap(nodes[a].interval, nodes[b].interval, beta))
             continue;
@@ -176,8 +193,16 @@ void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& str
                  ForestBuffers& buffers, DisparityForest& forest)
 {
     weighEdges(image, forest.weights);
-    selectEdges(forest.weights, pixelIntv, buffers.edges);
-    orderEdges(strategy, forest.weights, buffers.edges);
+    // Of the library's own strategies the type tells both rules, so that the edges come in order at once and Rule 2 is
+    // inlined: the types are final.
+    const SegmentTree* segmentTree = dynamic_cast<const SegmentTree*>(&strategy);
+    const RandomTree* randomTree = dynamic_cast<const RandomTree*>(&strategy);
+    const bool byWeight = segmentTree || dynamic_cast<const MinimumSpanningTree*>(&strategy);
+    selectEdges(forest.weights, pixelIntv, byWeight, buffers.edges);
+    if (randomTree)
+        randomTree->orderEdges(forest.weights, buffers.edges);
+    else if (!byWeight)
+        orderEdges(strategy, forest.weights, buffers.edges);
 
     forest.links.create(image.size(), CV_8U);
     forest.links.setTo(Scalar::all(0));
@@ -195,16 +220,14 @@ void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& str
         }
     });
 
-    const bool linksTrees = link && strategy.linksTrees();
     const MinimumSpanningTree everyEdge;
-    // The types are final, so their Rule 2 is inlined.
-    if (const SegmentTree* segmentTree = dynamic_cast<const SegmentTree*>(&strategy))
+    if (segmentTree)
         joinTrees(*segmentTree, buffers.edges, beta, buffers, forest);
-    else if (dynamic_cast<const MinimumSpanningTree*>(&strategy) || dynamic_cast<const RandomTree*>(&strategy))
+    else if (byWeight || randomTree)
         joinTrees(everyEdge, buffers.edges, beta, buffers, forest);
     else
         joinTrees(strategy, buffers.edges, beta, buffers, forest);
-    if (linksTrees)
+    if (link && strategy.linksTrees())
         joinTrees(everyEdge, buffers.edges, beta, buffers, forest);
 
     forest.trees.clear();

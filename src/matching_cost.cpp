@@ -4,6 +4,13 @@
 #include "precomp.hpp"
 #include "matching_cost.hpp"
 
+// A loop over lanes: GCC unrolls it before it could see that it is one for vectors.
+#if defined(__GNUC__) && !defined(__clang__)
+#define HDP_VECTORIZED _Pragma("GCC unroll 1")
+#else
+#define HDP_VECTORIZED
+#endif
+
 namespace cv {
 namespace stereo {
 namespace hdp {
@@ -81,10 +88,17 @@ void copyBordered(const Mat& image, int channel, int radius, int before, int aft
 
 void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities, const MatchingCostParams& params)
 {
-    params_ = params;
-    radius_ = params.blockSize / 2;
+    const int channels = left.channels(), rows = left.rows + 2 * (params.blockSize / 2);
+    blockSize_ = params.blockSize;
+    radius_ = blockSize_ / 2;
     width_ = left.cols;
-    const int channels = left.channels(), rows = left.rows + 2 * radius_;
+    channels_ = channels;
+    // The means over the channels and the window and the gradient's units are left to the weights.
+    const float area = (float)(blockSize_ * blockSize_);
+    colorTruncation_ = params.colorTruncation * channels;
+    gradientTruncation_ = params.gradientTruncation * gradientScale;
+    colorWeight_ = params.colorWeight / (channels * area);
+    gradientWeight_ = (1 - params.colorWeight) / (gradientScale * area);
 
     const Mat images[] = { left, right };
     for (int side = 0; side < 2; ++side)
@@ -101,37 +115,36 @@ void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities
             copyBordered<uchar>(image, c, radius_, radius_, after, mirrored, color.rowRange(c * rows, (c + 1) * rows));
         copyBordered<short>(gradient_, 0, radius_, radius_, after, mirrored, gradient);
     }
+    leftPlane_ = left_.step * rows;
+    rightPlane_ = right_.step * rows;
 }
 
 template <int lanes> void MatchingCost::evaluate(int y, int x, int first, float* cost) const
 {
-    const int rows = leftGradient_.rows, channels = left_.rows / rows, blockSize = params_.blockSize;
-    // The means over the channels and the window and the gradient's units are left to the weights.
-    const float colorTruncation = params_.colorTruncation * channels;
-    const float gradientTruncation = params_.gradientTruncation * gradientScale;
-    const float area = (float)(blockSize * blockSize);
-    const float colorWeight = params_.colorWeight / (channels * area);
-    const float gradientWeight = (1 - params_.colorWeight) / (gradientScale * area);
-
+    const int mirroredX = width_ - 1 - x + 2 * radius_ + first;
     float sum[lanes] = { 0 };
-    for (int dy = 0; dy < blockSize; ++dy)
+    for (int dy = 0; dy < blockSize_; ++dy)
     {
-        for (int dx = 0; dx < blockSize; ++dx)
+        const uchar* pixels = left_.ptr(y + dy) + x;
+        const uchar* candidates = right_.ptr(y + dy) + mirroredX;
+        const short* slope = leftGradient_.ptr<short>(y + dy) + x;
+        const short* slopes = rightGradient_.ptr<short>(y + dy) + mirroredX;
+        for (int dx = 0; dx < blockSize_; ++dx, ++pixels, --candidates, ++slope, --slopes)
         {
-            const int mirroredX = width_ - 1 - x + 2 * radius_ - dx + first;
-            int color[lanes] = { 0 };
-            for (int c = 0; c < channels; ++c)
+            short color[lanes] = { 0 };
+            for (int c = 0; c < channels_; ++c)
             {
-                const int pixel = left_.ptr(c * rows + y + dy)[x + dx];
-                const uchar* candidates = right_.ptr(c * rows + y + dy) + mirroredX;
-                for (int k = 0; k < lanes; ++k)
-                    color[k] += std::abs(pixel - candidates[k]);
+                const short pixel = pixels[c * leftPlane_];
+                const uchar* candidate = candidates + c * rightPlane_;
+                HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
+                {
+                    const short difference = (short)(pixel - candidate[k]);
+                    color[k] = (short)(color[k] + std::max<short>(difference, (short)-difference));
+                }
             }
-            const int slope = leftGradient_.ptr<short>(y + dy)[x + dx];
-            const short* slopes = rightGradient_.ptr<short>(y + dy) + mirroredX;
-            for (int k = 0; k < lanes; ++k)
-                sum[k] += colorWeight * std::min((float)color[k], colorTruncation)
-                        + gradientWeight * std::min((float)std::abs(slope - slopes[k]), gradientTruncation);
+            HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
+                sum[k] += colorWeight_ * std::min((float)color[k], colorTruncation_)
+                        + gradientWeight_ * std::min((float)std::abs(*slope - slopes[k]), gradientTruncation_);
         }
     }
     std::copy(sum, sum + lanes, cost);

@@ -35,9 +35,10 @@ public:
     template <int lanes> void evaluate(int y, int x, int first, float* cost) const;
 
 private:
-    MatchingCostParams params_;
-    int radius_;           // of the window
-    int width_;            // of the image
+    int blockSize_, radius_;
+    int width_, channels_; // of the image
+    float colorTruncation_, gradientTruncation_, colorWeight_, gradientWeight_; // in the units of sums and of the planes
+    size_t leftPlane_, rightPlane_; // from a channel to the next
     Mat left_;             // CV_8UC1 planes of the channels below one another, bordered by radius_
     Mat leftGradient_;     // CV_16SC1, fixed point, bordered by radius_
     Mat right_;            // as left_, mirrored, with a border for all candidates

@@ -95,22 +95,49 @@ void compare(const uchar* descriptor, const uchar* others, int step, int count, 
 #endif
 }
 
-//! The lowest of `count` dissimilarities, each the sum of those of four corners; -1 if it is not unique.
-int uniqueMinimum(const ushort* const corners[4], int count)
+//! The largest dissimilarity that is too close to the lowest one for a unique match.
+int largestClose(int lowest)
 {
-    int lowest = INT_MAX, second = INT_MAX, winner = -1;
+    int closest = (int)(lowest / uniqueness) + 1;
+    while ((float)lowest < uniqueness * (float)closest)
+        --closest;
+    return closest;
+}
+
+//! The lowest of `count` dissimilarities, each the sum of those of four corners; -1 if it is not unique: if another one,
+//! that was not the lowest so far itself, is close to it, or there is no such other one.
+int uniqueMinimum(const ushort* const corners[4], int count, std::vector<short>& dissimilarities)
+{
+    dissimilarities.resize(count);
+    const ushort *c0 = corners[0], *c1 = corners[1], *c2 = corners[2], *c3 = corners[3];
+    short* sums = dissimilarities.data();
+    short lowest = SHRT_MAX; // 4 * 16 * 255 fits
     for (int d = 0; d < count; ++d)
     {
-        const int dissimilarity = corners[0][d] + corners[1][d] + corners[2][d] + corners[3][d];
-        if (dissimilarity < lowest)
-        {
-            lowest = dissimilarity;
-            winner = d;
-        }
-        else if (dissimilarity < second)
-            second = dissimilarity;
+        sums[d] = (short)(c0[d] + c1[d] + c2[d] + c3[d]);
+        lowest = std::min(lowest, sums[d]);
     }
-    return second < INT_MAX && (float)lowest < uniqueness * (float)second ? winner : -1;
+
+    const int closest = largestClose(lowest);
+    short close = 0;
+    for (int d = 0; d < count; ++d)
+        close = (short)(close + (sums[d] <= (short)closest));
+
+    const int winner = (int)(std::find(sums, sums + count, lowest) - sums);
+    if (close == 1 && winner + 1 < count)
+        return winner;
+    short lowestSoFar = SHRT_MAX;
+    bool hasSecond = false;
+    for (int d = 0; d < count; ++d)
+    {
+        if (sums[d] < lowestSoFar)
+            lowestSoFar = sums[d];
+        else if (sums[d] <= closest)
+            return -1;
+        else
+            hasSecond = true;
+    }
+    return hasSecond ? winner : -1;
 }
 
 /** Matches the points of some rows of the grid.
@@ -137,10 +164,7 @@ public:
         for (int x = firstPoint(); x <= width_ - 1 - margin; x += gridStep)
         {
             const int disparity = matchLeft(y, x);
-            if (disparity < 0)
-                continue;
-            const int back = matchRight(y, x - disparity);
-            if (back >= 0 && std::abs(disparity - back) <= maxLeftRightDifference)
+            if (disparity >= 0 && matchesBack(y, x - disparity, disparity))
                 disparities[x / gridStep] = (short)disparity;
         }
     }
@@ -176,7 +200,7 @@ private:
         }
     }
 
-    int matchLeft(int y, int x) const
+    int matchLeft(int y, int x)
     {
         const int count = candidates(x);
         if (count == 0 || !hasTexture(left_, y, x))
@@ -184,25 +208,67 @@ private:
         const size_t before = (size_t)(x / gridStep - 1) * numDisparities_, behind = before + numDisparities_;
         const ushort* const corners[4] = { &above_.distances[before], &above_.distances[behind],
                                            &below_.distances[before], &below_.distances[behind] };
-        return uniqueMinimum(corners, count);
+        return uniqueMinimum(corners, count, dissimilarities_);
     }
 
-    int matchRight(int y, int x)
+    //! Whether the unique match of a right point is at most maxLeftRightDifference from the disparity.
+    bool matchesBack(int y, int x, int disparity)
     {
         const int count = candidates(width_ - 1 - x);
-        if (count == 0 || !hasTexture(right_, y, x))
-            return -1;
-        distances_.resize((size_t)4 * numDisparities_);
-        const ushort* corners[4];
+        const int first = std::max(disparity - maxLeftRightDifference, 0);
+        const int last = std::min(disparity + maxLeftRightDifference, count - 1);
+        if (first > last || !hasTexture(right_, y, x))
+            return false;
+        int lowest = INT_MAX;
+        for (int d = first; d <= last; ++d)
+            lowest = std::min(lowest, dissimilarity(x, d));
+
+        // Only candidates that are close to the lowest one can stand against it, and those are few: one corner rules
+        // out most of the others.
+        const int closest = largestClose(lowest);
+        distances_.resize(count);
+        const size_t at = (size_t)(x - corner) * descriptorSize;
+        compare(&above_.right[at], &above_.left[at], 1, count, distances_.data());
+        int winner = -1, lowestSoFar = INT_MAX;
+        for (int d = 0; d < count; ++d)
+        {
+            if (distances_[d] > closest)
+                continue;
+            const int here = dissimilarity(x, d);
+            if (here < lowestSoFar && here <= closest)
+            {
+                lowestSoFar = here;
+                winner = d;
+            }
+            else if (here <= closest)
+                return false;
+        }
+        // A later candidate than the winner is the second one; if there is none, an earlier one must not have been the
+        // lowest so far.
+        return winner >= first && winner <= last && (winner + 1 < count || !areDescending(x, count));
+    }
+
+    //! Of a right point and a candidate.
+    int dissimilarity(int x, int d) const
+    {
+        int sum = 0;
         for (int i = 0; i < 4; ++i)
         {
             const CornerRow& row = i < 2 ? above_ : below_;
             const size_t at = (size_t)(x + (i % 2 ? corner : -corner)) * descriptorSize;
-            ushort* distances = &distances_[(size_t)i * numDisparities_];
-            compare(&row.right[at], &row.left[at], 1, count, distances);
-            corners[i] = distances;
+            ushort distance;
+            compare(&row.right[at], &row.left[at + (size_t)d * descriptorSize], 1, 1, &distance);
+            sum += distance;
         }
-        return uniqueMinimum(corners, count);
+        return sum;
+    }
+
+    bool areDescending(int x, int count) const
+    {
+        for (int d = 1; d < count; ++d)
+            if (dissimilarity(x, d) >= dissimilarity(x, d - 1))
+                return false;
+        return true;
     }
 
     const Mat &left_, &right_;
@@ -210,6 +276,7 @@ private:
     CornerRow above_, below_;
     int belowY_ = -1;
     std::vector<ushort> distances_;
+    std::vector<short> dissimilarities_;
 };
 
 //! Leaves out the points that too few of their neighbours support.
