@@ -6,25 +6,23 @@
 // The matcher and OpenCV's own ones on the same pairs. A short run:
 //   opencv_perf_hdpstereo --gtest_param_filter='*640x480*' --perf_min_samples=1 --perf_force_samples=1
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 using namespace perf;
 using namespace testing;
 
-const Size sizes[] = {szVGA, sz720p, Size(1390, 1110)};
+const Size sizes[] = { szVGA, sz720p, Size(1390, 1110) };
 
 //! The range to be searched grows with the image: 64, 128 and 256 for the three sizes.
-int numDisparitiesFor(Size size)
-{
-    return size.width <= 640 ? 64 : size.width <= 1280 ? 128 : 256;
-}
+int numDisparitiesFor(Size size) { return size.width <= 640 ? 64 : size.width <= 1280 ? 128 : 256; }
 
 //! Noise at three scales. With a contrast of 1 a rough surface, with 0 a smooth one of nearly one color.
 Mat makeTexture(RNG& rng, Size size, double contrast)
 {
     Mat texture(size, CV_32FC3, Scalar(rng.uniform(60, 190), rng.uniform(60, 190), rng.uniform(60, 190)));
-    const int scales[] = {1, 4, 32};
-    const double amplitudes[] = {10 * contrast, 25 * contrast, 6 + 20 * contrast};
+    const int scales[] = { 1, 4, 32 };
+    const double amplitudes[] = { 10 * contrast, 25 * contrast, 6 + 20 * contrast };
     for (int i = 0; i < 3; i++)
     {
         Mat noise(size.height / scales[i] + 1, size.width / scales[i] + 1, CV_32FC3);
@@ -93,6 +91,26 @@ Ptr<TreeStrategy> createTree(int tree)
     return tree == MST ? createMinimumSpanningTree() : tree == ST ? createSegmentTree() : createRandomTree();
 }
 
+CV_ENUM(Preset, HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE)
+
+typedef tuple<Size, Preset> PresetParams;
+typedef TestBaseWithParam<PresetParams> Perf_HDPTreeMatcher_Preset;
+
+PERF_TEST_P(Perf_HDPTreeMatcher_Preset, compute, Combine(ValuesIn(sizes), Preset::all()))
+{
+    const Size size = get<0>(GetParam());
+    const int numDisparities = numDisparitiesFor(size);
+
+    Mat left, right, disparity(size, CV_16SC1);
+    makePair(size, numDisparities, left, right);
+    Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities, get<1>(GetParam()));
+
+    declare.in(left, right).out(disparity);
+    TEST_CYCLE() matcher->compute(left, right, disparity);
+
+    SANITY_CHECK_NOTHING();
+}
+
 typedef tuple<Size, Tree, bool> HDPTreeMatcherParams; // size, tree, prediction
 typedef TestBaseWithParam<HDPTreeMatcherParams> Perf_HDPTreeMatcher;
 
@@ -157,4 +175,5 @@ PERF_TEST_P(Perf_StereoBM, compute, ValuesIn(sizes))
     SANITY_CHECK_NOTHING();
 }
 
-}} // namespace
+} // namespace
+} // namespace opencv_test

@@ -33,15 +33,9 @@ using cv::String;
 
 const float NO_DISPARITY = std::numeric_limits<float>::infinity();
 
-inline void fail(const String& message)
-{
-    throw std::runtime_error(message);
-}
+inline void fail(const String& message) { throw std::runtime_error(message); }
 
-inline Mat knownPixels(const Mat& disparity)
-{
-    return disparity < NO_DISPARITY;
-}
+inline Mat knownPixels(const Mat& disparity) { return disparity < NO_DISPARITY; }
 
 // ---- Command line
 

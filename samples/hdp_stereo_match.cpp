@@ -21,7 +21,7 @@ static const char* const KEYS =
     "{help h ?         |       | print this and exit }"
     "{@left            |       | left image of a rectified pair }"
     "{@right           |       | right image }"
-    "{preset           | paper | set of parameters: paper }"
+    "{preset           | paper | set of parameters: paper, or tree (more accurate and faster) }"
     "{tree             | mst   | spanning tree: mst (minimum), st (segment) or rt (random) }"
     "{no-prediction    |       | the plain tree algorithm over the full range }"
     "{median-prefilter |       | edge weights from a 3 x 3 median of the image }"
@@ -39,7 +39,7 @@ static const char* const KEYS =
     "{focal            |       | focal length in pixels; the principal point is the center of the image }"
     "{baseline         |       | distance of the cameras, in the unit of the points }";
 
-static const std::vector<String> FLAGS = {"help", "h", "?", "no-prediction", "median-prefilter"};
+static const std::vector<String> FLAGS = { "help", "h", "?", "no-prediction", "median-prefilter" };
 
 struct Truth
 {
@@ -91,9 +91,8 @@ static Truth readTruth(const CommandLineParser& parser, Size size)
     Truth truth;
     truth.disparity = readTruthFile(parser, "truth", size);
     truth.nonOccluded = parser.has("truth-right");
-    truth.judged = truth.nonOccluded
-                       ? nonOccludedPixels(truth.disparity, readTruthFile(parser, "truth-right", size))
-                       : knownPixels(truth.disparity);
+    truth.judged = truth.nonOccluded ? nonOccludedPixels(truth.disparity, readTruthFile(parser, "truth-right", size))
+                                     : knownPixels(truth.disparity);
     if (countNonZero(truth.judged) == 0)
         fail("--truth knows no pixel" + String(truth.nonOccluded ? " that --truth-right agrees with" : ""));
     return truth;
@@ -126,14 +125,15 @@ static Matx44d readCamera(const CommandLineParser& parser, Size size)
 static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, Size size)
 {
     const String preset = parser.get<String>("preset"), tree = parser.get<String>("tree");
-    if (preset != "paper")
-        fail("--preset=" + preset + ": unknown, there is: paper");
+    if (preset != "paper" && preset != "tree")
+        fail("--preset=" + preset + ": unknown, there are: paper, tree");
 
     const int limit = 1 << 15; // the matcher itself is stricter
     const int minDisparity = getInteger(parser, "min-disparity", -limit, limit);
     const int numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, limit)
                                                              : std::max(int(alignSize(size.width / 5, 16)), 16);
-    Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, numDisparities, HDPTreeMatcher::PRESET_PAPER);
+    Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(
+        minDisparity, numDisparities, preset == "paper" ? HDPTreeMatcher::PRESET_PAPER : HDPTreeMatcher::PRESET_TREE);
 
     if (tree == "mst")
         matcher->setTreeStrategy(stereo::createMinimumSpanningTree());
@@ -221,8 +221,8 @@ static void run(const CommandLineParser& parser)
     const int minDisparity = matcher->getMinDisparity();
     std::cout << format("images     %d x %d, disparities %d to %d\n", left.cols, left.rows, minDisparity,
                         minDisparity + matcher->getNumDisparities() - 1)
-              << "system     " << systemName(parser) << " (preset " << parser.get<String>("preset")
-              << ", threads " << getNumThreads() << ")" << std::endl;
+              << "system     " << systemName(parser) << " (preset " << parser.get<String>("preset") << ", threads "
+              << getNumThreads() << ")" << std::endl;
 
     Mat disparity16;
     TickMeter timer;

@@ -14,18 +14,24 @@ namespace hdp {
 //! One tree of the forest; the joined edges are in DisparityForest::links.
 struct DisparityTree
 {
-    int root; // one of its pixels, y * width + x
-    int size; // number of pixels
+    int root;                   // one of its pixels, y * width + x
+    int size;                   // number of pixels
     DisparityInterval interval; // TreeIntv
 };
 
 //! The disparity prediction forest (HDPF) of a layer, section 3.2.
 struct DisparityForest
 {
-    enum Link { RIGHT = 1, BELOW = 2, LEFT = 4, ABOVE = 8 };
+    enum Link
+    {
+        RIGHT = 1,
+        BELOW = 2,
+        LEFT = 4,
+        ABOVE = 8
+    };
 
-    Mat weights; // CV_8UC2: weights of the edges to the right and below, 0 at the image's border
-    Mat links;   // CV_8UC1: the neighbours a pixel is joined to, bits of Link
+    Mat weights;                      // CV_8UC2: weights of the edges to the right and below, 0 at the image's border
+    Mat links;                        // CV_8UC1: the neighbours a pixel is joined to, bits of Link
     std::vector<DisparityTree> trees; // by root
 };
 
@@ -33,7 +39,7 @@ struct ForestBuffers
 {
     struct Node // of the union-find forest
     {
-        int parent; // of a root: minus the tree's size
+        int parent;                 // of a root: minus the tree's size
         DisparityInterval interval; // TreeIntv of a root
     };
     std::vector<Node> nodes;
@@ -49,8 +55,8 @@ struct ForestBuffers
 @param link Whether to join what Rule 2 left apart, by a second pass without it.
 @param buffers Memory to work in.
 @param forest The result. */
-CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link,
-                            ForestBuffers& buffers, DisparityForest& forest);
+CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta,
+                            bool link, ForestBuffers& buffers, DisparityForest& forest);
 
 //! The pixels of a tree in the order of a walk from its root, depth first: parents come before their children.
 struct TreeWalk

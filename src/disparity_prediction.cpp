@@ -14,7 +14,7 @@ namespace hdp {
 namespace {
 
 //! PixelIntv of a row of P(D_l | D_{l+1}), up to a factor.
-DisparityInterval growInterval(const std::vector<double>& row, double delta)
+DisparityInterval growInterval(const std::vector<double>& row, double delta, int margin)
 {
     const int mode = (int)(std::max_element(row.begin(), row.end()) - row.begin());
     if (!(row[mode] > 0))
@@ -38,14 +38,15 @@ DisparityInterval growInterval(const std::vector<double>& row, double delta)
             grown = true;
         }
     }
-    const DisparityInterval interval = { (ushort)first, (ushort)last };
+    const DisparityInterval interval = { (ushort)std::max(first - margin, 0),
+                                         (ushort)std::min(last + margin, (int)row.size() - 1) };
     return interval;
 }
 
 } // namespace
 
 void predictIntervals(const DisparityPredictionModel& model, int layer, const std::vector<double>& prior,
-                      int upperDisparities, double delta, std::vector<DisparityInterval>& intervals)
+                      int upperDisparities, double delta, int margin, std::vector<DisparityInterval>& intervals)
 {
     const int disparities = (int)prior.size();
     // P(D_{l+1} = i | D_l = j) depends on i - floor(j / 2) alone.
@@ -61,12 +62,24 @@ void predictIntervals(const DisparityPredictionModel& model, int layer, const st
         {
             for (int j = 0; j < disparities; ++j)
                 row[j] = gmm[i - j / 2 - lowestOffset] * prior[j];
-            intervals[i] = growInterval(row, delta);
+            intervals[i] = growInterval(row, delta, margin);
         }
     });
 }
 
-void assignIntervals(const Mat& upper, Size size, const std::vector<DisparityInterval>& intervals, Mat& pixelIntv)
+void upperHistogram(const Mat& upper, int scale, int numDisparities, std::vector<double>& histogram)
+{
+    std::vector<double> pixels((numDisparities + 1) / 2);
+    for (int y = 0; y < upper.rows; ++y)
+        for (int x = 0; x < upper.cols; ++x)
+            ++pixels[(upper.at<ushort>(y, x) + scale / 2) / scale];
+    histogram.resize(numDisparities);
+    for (int d = 0; d < numDisparities; ++d)
+        histogram[d] = pixels[d / 2] + (double)upper.total() / pixels.size();
+}
+
+void assignIntervals(const Mat& upper, int scale, Size size, const std::vector<DisparityInterval>& intervals,
+                     Mat& pixelIntv)
 {
     pixelIntv.create(size, CV_16UC2);
     parallel_for_(Range(0, size.height), [&](const Range& rows) {
@@ -75,7 +88,7 @@ void assignIntervals(const Mat& upper, Size size, const std::vector<DisparityInt
             const ushort* above = upper.ptr<ushort>(std::min(y / 2, upper.rows - 1));
             DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
             for (int x = 0; x < size.width; ++x)
-                interval[x] = intervals[above[std::min(x / 2, upper.cols - 1)]];
+                interval[x] = intervals[(above[std::min(x / 2, upper.cols - 1)] + scale / 2) / scale];
         }
     });
 }
@@ -89,10 +102,7 @@ struct GaussianMixture
     std::vector<double> means, sigmas, weights;
 };
 
-bool isFinite(double value)
-{
-    return std::abs(value) <= std::numeric_limits<double>::max();
-}
+bool isFinite(double value) { return std::abs(value) <= std::numeric_limits<double>::max(); }
 
 GaussianMixture checkedMixture(const std::vector<double>& means, const std::vector<double>& sigmas,
                                const std::vector<double>& weights)
@@ -156,9 +166,11 @@ public:
 
     void write(FileStorage& fs) const CV_OVERRIDE
     {
-        fs << "name" << getDefaultName() << "version" << fileVersion << "layers" << "[";
+        fs << "name" << getDefaultName() << "version" << fileVersion << "layers"
+           << "[";
         for (size_t l = 0; l < layers_.size(); ++l)
-            fs << "{" << "means" << layers_[l].means << "sigmas" << layers_[l].sigmas << "weights" << layers_[l].weights
+            fs << "{"
+               << "means" << layers_[l].means << "sigmas" << layers_[l].sigmas << "weights" << layers_[l].weights
                << "}";
         fs << "]";
     }
@@ -183,7 +195,12 @@ public:
     }
 
 private:
-    enum { fileVersion = 1, maxLayers = 64, maxComponents = 1024 };
+    enum
+    {
+        fileVersion = 1,
+        maxLayers = 64,
+        maxComponents = 1024
+    };
 
     static std::vector<double> readNumbers(const FileNode& layer, const char* key)
     {
@@ -191,7 +208,8 @@ private:
         if (node.isInt() || node.isReal()) // a sequence of one number in XML
             return std::vector<double>(1, (double)node);
         if (!node.isSeq() || node.size() > maxComponents)
-            CV_Error(Error::StsParseError, format("%s must be a sequence of at most %d numbers", key, (int)maxComponents));
+            CV_Error(Error::StsParseError,
+                     format("%s must be a sequence of at most %d numbers", key, (int)maxComponents));
         std::vector<double> numbers;
         for (FileNodeIterator it = node.begin(); it != node.end(); ++it)
         {
@@ -222,10 +240,7 @@ void addPublishedLayer(DisparityPredictionModel& model, const double (&means)[K]
 
 } // namespace
 
-Ptr<DisparityPredictionModel> DisparityPredictionModel::create()
-{
-    return makePtr<DisparityPredictionModelImpl>();
-}
+Ptr<DisparityPredictionModel> DisparityPredictionModel::create() { return makePtr<DisparityPredictionModelImpl>(); }
 
 Ptr<DisparityPredictionModel> DisparityPredictionModel::createPublished(int which)
 {

@@ -31,6 +31,8 @@ void medianBlurStripes(const Mat& image, int size, Mat& filtered)
 
 void medianDisparity(const Mat& disparity, int size, Mat& filtered)
 {
+    if (size <= 5)
+        return medianBlurStripes(disparity, size, filtered);
     // cv::medianBlur takes large windows in 8 bit only. A median commutes with monotone functions, and a value is the
     // sum of its slices min(max(value - 255 k, 0), 255), so it is the sum of the slices' medians.
     double largest;

@@ -13,8 +13,8 @@ namespace hdp {
 //! Median of size x size pixels, borders replicated. disparity: CV_16UC1.
 CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& filtered);
 
-//! Marks the pixels as invalid whose disparity differs by more than maxDiff pixels from the largest one that maps to the
-//! same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
+//! Marks the pixels as invalid whose disparity differs by more than maxDiff pixels from the largest one that maps to
+//! the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
 CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);
 
 } // namespace hdp

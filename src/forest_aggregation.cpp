@@ -48,49 +48,107 @@ void aggregate(const TreeWalk& walk, int size, int width, const MatchingCost& co
     }
 }
 
-//! The first of the lowest costs.
-int lowestCost(const float* cost, int count, float& lowest)
+//! The parabola through the costs of three neighbouring candidates has its minimum this far from the middle one, in
+//! 1 / subpixelScale pixels.
+int parabolaOffset(float before, float middle, float after)
 {
-    int winner = 0;
-    lowest = cost[0];
-    for (int k = 1; k < count; ++k)
-    {
-        winner = cost[k] < lowest ? k : winner;
-        lowest = std::min(cost[k], lowest);
-    }
-    return winner;
+    const float curvature = (before - middle) + (after - middle);
+    return curvature > 0 ? cvRound((before - after) / curvature * (subpixelScale / 2)) : 0;
 }
+
+struct Winner
+{
+    float cost;
+    ushort disparity;
+
+    bool beats(const Winner& other) const
+    {
+        return cost < other.cost || (cost == other.cost && disparity < other.disparity);
+    }
+};
+
+//! A run of candidates that are aggregated together, and those of them that may win. The others are there for the
+//! parabola, and may win in the runs before and after.
+struct Candidates
+{
+    int first, count;
+    int begin, end;
+};
 
 struct Aggregation
 {
     const DisparityForest& forest;
     const MatchingCost& cost;
     const EdgeSimilarity similarity;
+    const bool subpixel;
     ushort* disparity;
 
     int width() const { return forest.links.cols; }
 
-    //! Aggregates a chunk of candidates and takes over the winners that beat those of other chunks.
-    void takeWinners(const TreeWalk& walk, int size, int first, int count, std::vector<float>& aggregated,
+    static int countRuns(int candidates, bool subpixel)
+    {
+        const int step = subpixel ? chunk - 2 : chunk;
+        return candidates <= chunk ? 1 : (candidates + step - 1) / step;
+    }
+
+    Candidates run(const DisparityInterval& interval, int i) const
+    {
+        const int first = interval.first, end = interval.last + 1;
+        if (end - first <= chunk)
+        {
+            const Candidates all = { first, end - first, first, end };
+            return all;
+        }
+        const int margin = subpixel ? 1 : 0, step = chunk - 2 * margin;
+        const int begin = first + i * step;
+        Candidates some = { std::max(begin - margin, first), 0, begin, std::min(begin + step, end) };
+        some.count = std::min(begin + step + margin, end) - some.first;
+        return some;
+    }
+
+    //! The first of the lowest costs.
+    Winner takeWinner(const float* costs, const Candidates& candidates) const
+    {
+        int winner = candidates.begin - candidates.first;
+        float lowest = costs[winner];
+        for (int k = winner + 1; k < candidates.end - candidates.first; ++k)
+        {
+            winner = costs[k] < lowest ? k : winner;
+            lowest = std::min(costs[k], lowest);
+        }
+        int value = candidates.first + winner;
+        if (subpixel)
+        {
+            value *= subpixelScale;
+            if (winner > 0 && winner + 1 < candidates.count)
+                value += parabolaOffset(costs[winner - 1], lowest, costs[winner + 1]);
+        }
+        const Winner result = { lowest, (ushort)value };
+        return result;
+    }
+
+    //! Aggregates some candidates and keeps the winners that beat those of other candidates.
+    void takeWinners(const TreeWalk& walk, int size, const Candidates& candidates, std::vector<float>& aggregated,
                      std::vector<float>& lowest, std::vector<ushort>& winner) const
     {
-        const int lanes = aggregateTree(walk, size, width(), cost, similarity, first, count, aggregated);
+        const int lanes =
+            aggregateTree(walk, size, width(), cost, similarity, candidates.first, candidates.count, aggregated);
         for (int i = 0; i < size; ++i)
         {
-            float low;
-            const int candidate = first + lowestCost(&aggregated[(size_t)i * lanes], count, low);
-            if (low < lowest[i] || (low == lowest[i] && candidate < winner[i]))
+            const Winner here = takeWinner(&aggregated[(size_t)i * lanes], candidates);
+            const Winner other = { lowest[i], winner[i] };
+            if (here.beats(other))
             {
-                lowest[i] = low;
-                winner[i] = (ushort)candidate;
+                lowest[i] = here.cost;
+                winner[i] = here.disparity;
             }
         }
     }
 
     void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
     {
-        const int first = tree.interval.first, count = tree.interval.size();
-        if (count <= 0)
+        const DisparityInterval& interval = tree.interval;
+        if (interval.empty())
         {
             // An empty interval never joins another one.
             disparity[tree.root] = 0;
@@ -98,24 +156,22 @@ struct Aggregation
         }
         walkTree(forest, tree, scratch.walk);
         const int* pixels = scratch.walk.pixels.data();
-        if (count == 1)
-            for (int i = 0; i < tree.size; ++i)
-                disparity[pixels[i]] = (ushort)first;
-        else if (count <= chunk)
+        const int runs = countRuns(interval.size(), subpixel);
+        if (runs == 1)
         {
-            const int lanes = aggregateTree(scratch.walk, tree.size, width(), cost, similarity, first, count,
-                                            scratch.aggregated);
-            float low;
+            const Candidates candidates = run(interval, 0);
+            const int lanes = aggregateTree(scratch.walk, tree.size, width(), cost, similarity, candidates.first,
+                                            candidates.count, scratch.aggregated);
             for (int i = 0; i < tree.size; ++i)
-                disparity[pixels[i]] = (ushort)(first + lowestCost(&scratch.aggregated[(size_t)i * lanes], count, low));
+                disparity[pixels[i]] = takeWinner(&scratch.aggregated[(size_t)i * lanes], candidates).disparity;
         }
         else
         {
             scratch.lowest.assign(tree.size, FLT_MAX);
             scratch.winner.assign(tree.size, 0);
-            for (int x = first; x < first + count; x += chunk)
-                takeWinners(scratch.walk, tree.size, x, std::min(chunk, first + count - x), scratch.aggregated,
-                            scratch.lowest, scratch.winner);
+            for (int i = 0; i < runs; ++i)
+                takeWinners(scratch.walk, tree.size, run(interval, i), scratch.aggregated, scratch.lowest,
+                            scratch.winner);
             for (int i = 0; i < tree.size; ++i)
                 disparity[pixels[i]] = scratch.winner[i];
         }
@@ -150,8 +206,8 @@ private:
     std::unique_ptr<AggregationScratch> scratch_;
 };
 
-//! A large tree with many candidates: its chunks side by side. A winner is the lowest pair (cost, candidate), which does
-//! not depend on the order in which chunks end.
+//! A large tree with many candidates: its runs side by side. A winner is the lowest pair (cost, candidate), which does
+//! not depend on the order in which runs end.
 void processLarge(const Aggregation& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
 {
     std::mutex mutex;
@@ -164,24 +220,28 @@ void processLarge(const Aggregation& aggregation, const DisparityTree& tree, Agg
     winner.assign(tree.size, 0);
 
     std::mutex resultMutex;
-    const int first = tree.interval.first, count = tree.interval.size(), chunks = (count + chunk - 1) / chunk;
-    // At most 8 at once bounds the memory.
-    parallel_for_(Range(0, chunks), [&](const Range& range) {
+    const int runs = Aggregation::countRuns(tree.interval.size(), aggregation.subpixel);
+    const auto aggregateRuns = [&](const Range& range) {
         ScratchLoan loan(buffers, mutex);
         AggregationScratch& scratch = *loan;
         scratch.lowest.assign(tree.size, FLT_MAX);
         scratch.winner.assign(tree.size, 0);
         for (int i = range.start; i < range.end; ++i)
-            aggregation.takeWinners(walk, tree.size, first + i * chunk, std::min(chunk, count - i * chunk),
-                                    scratch.aggregated, scratch.lowest, scratch.winner);
+            aggregation.takeWinners(walk, tree.size, aggregation.run(tree.interval, i), scratch.aggregated,
+                                    scratch.lowest, scratch.winner);
         std::lock_guard<std::mutex> lock(resultMutex);
         for (int i = 0; i < tree.size; ++i)
-            if (scratch.lowest[i] < lowest[i] || (scratch.lowest[i] == lowest[i] && scratch.winner[i] < winner[i]))
+        {
+            const Winner here = { scratch.lowest[i], scratch.winner[i] }, other = { lowest[i], winner[i] };
+            if (here.beats(other))
             {
-                lowest[i] = scratch.lowest[i];
-                winner[i] = scratch.winner[i];
+                lowest[i] = here.cost;
+                winner[i] = here.disparity;
             }
-    }, std::min(chunks, 8));
+        }
+    };
+    // At most 8 at once bounds the memory.
+    parallel_for_(Range(0, runs), aggregateRuns, std::min(runs, 8));
     for (int i = 0; i < tree.size; ++i)
         aggregation.disparity[walk.pixels[i]] = winner[i];
 }
@@ -194,8 +254,8 @@ EdgeSimilarity::EdgeSimilarity(double gamma)
         table[w] = (float)std::exp(-w / gamma);
 }
 
-int aggregateTree(const TreeWalk& walk, int size, int width, const MatchingCost& cost,
-                  const EdgeSimilarity& similarity, int first, int count, std::vector<float>& aggregated)
+int aggregateTree(const TreeWalk& walk, int size, int width, const MatchingCost& cost, const EdgeSimilarity& similarity,
+                  int first, int count, std::vector<float>& aggregated)
 {
     const int lanes = count <= 4 ? 4 : 8;
     if (aggregated.size() < (size_t)size * lanes)
@@ -207,11 +267,11 @@ int aggregateTree(const TreeWalk& walk, int size, int width, const MatchingCost&
     return lanes;
 }
 
-void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, AggregationBuffers& buffers,
-                     Mat& disparity)
+void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
+                     AggregationBuffers& buffers, Mat& disparity)
 {
     disparity.create(forest.links.size(), CV_16U);
-    const Aggregation aggregation = { forest, cost, EdgeSimilarity(gamma), disparity.ptr<ushort>() };
+    const Aggregation aggregation = { forest, cost, EdgeSimilarity(gamma), subpixel, disparity.ptr<ushort>() };
 
     // Tasks of about the same work, in the order of the trees; large trees with many candidates are done one by one.
     std::vector<Range> tasks;

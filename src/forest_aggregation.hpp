@@ -37,18 +37,26 @@ struct AggregationScratch
 {
     TreeWalk walk;
     std::vector<float> aggregated;
-    std::vector<float> lowest;   // cost of the winner so far
-    std::vector<ushort> winner;  // by position in the walk
+    std::vector<float> lowest;  // cost of the winner so far
+    std::vector<ushort> winner; // by position in the walk
 };
 
 struct AggregationBuffers
 {
-    std::vector<std::unique_ptr<AggregationScratch> > idle;
+    std::vector<std::unique_ptr<AggregationScratch>> idle;
 };
 
-//! Winner-takes-all over C(p, x), x in TreeIntv of the pixel's tree; 0 for pixels whose interval is empty. The lowest
-//! disparity wins a tie. disparity: CV_16UC1 of the layer's size.
-CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma,
+//! Units of a sub-pixel disparity in one pixel
+const int subpixelScale = 16;
+
+/** Winner-takes-all over C(p, x), x in TreeIntv of the pixel's tree; the lowest disparity wins a tie.
+@param forest The forest.
+@param cost The layer's matching cost.
+@param gamma Of the similarity.
+@param subpixel Whether to add the minimum of the parabola through the winner's cost and its neighbours' in TreeIntv.
+@param buffers Memory to work in.
+@param disparity Receives CV_16UC1 of the layer's size, times subpixelScale if subpixel; 0 where TreeIntv is empty. */
+CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
                                 AggregationBuffers& buffers, Mat& disparity);
 
 } // namespace hdp

@@ -38,10 +38,7 @@ template <typename T> T checked(T value, bool isValid, const char* name, const c
     return value;
 }
 
-bool isFinite(double value)
-{
-    return std::abs(value) <= std::numeric_limits<double>::max();
-}
+bool isFinite(double value) { return std::abs(value) <= std::numeric_limits<double>::max(); }
 
 //! What a preset sets and a file holds. Setters only take values that are valid by themselves; what depends on several
 //! of them or on the images is checked in compute().
@@ -66,6 +63,11 @@ struct Parameters
     double gradientTruncation = 2;
     double colorWeight = 0.11;
     int disparityMedianSize = HDPTreeMatcher::AUTO;
+    int disparityMedianPasses = 1;
+    int matchingCost = HDPTreeMatcher::COST_COLOR_GRADIENT;
+    int disparityPrior = HDPTreeMatcher::PRIOR_SUPPORT_POINTS;
+    int intervalMargin = 0;
+    bool useSubpixel = false;
 
     void setMinDisparity(int value) { minDisparity = value; }
     void setNumDisparities(int value) { numDisparities = checked(value, value > 0, "numDisparities", "> 0"); }
@@ -79,8 +81,8 @@ struct Parameters
     }
     void setSpeckleRange(int value)
     {
-        speckleRange = checked(value, value >= 0 && value <= SHRT_MAX / StereoMatcher::DISP_SCALE, "speckleRange",
-                               "in 0..2047");
+        speckleRange =
+            checked(value, value >= 0 && value <= SHRT_MAX / cv::StereoMatcher::DISP_SCALE, "speckleRange", "in 0..2047");
     }
     void setDisp12MaxDiff(int value) { disp12MaxDiff = value; }
     void setTreeStrategy(const Ptr<TreeStrategy>& value)
@@ -95,7 +97,8 @@ struct Parameters
     }
     void setDelta0(double value)
     {
-        delta0 = checked(value, value == HDPTreeMatcher::AUTO || (value >= 0 && value < 1), "delta0", "in [0, 1) or AUTO");
+        delta0 =
+            checked(value, value == HDPTreeMatcher::AUTO || (value >= 0 && value < 1), "delta0", "in [0, 1) or AUTO");
     }
     void setBeta(double value)
     {
@@ -116,9 +119,28 @@ struct Parameters
     }
     void setDisparityMedianSize(int value)
     {
-        const bool isValid = value == HDPTreeMatcher::AUTO || value == 0
-                             || (value >= 3 && value <= maxMedianSize && value % 2 == 1);
+        const bool isValid =
+            value == HDPTreeMatcher::AUTO || value == 0 || (value >= 3 && value <= maxMedianSize && value % 2 == 1);
         disparityMedianSize = checked(value, isValid, "disparityMedianSize", "0, odd in 3..31, or AUTO");
+    }
+    void setDisparityMedianPasses(int value)
+    {
+        disparityMedianPasses = checked(value, value >= 1 && value <= 8, "disparityMedianPasses", "in 1..8");
+    }
+    void setMatchingCost(int value)
+    {
+        const bool isValid = value == HDPTreeMatcher::COST_COLOR_GRADIENT || value == HDPTreeMatcher::COST_CENSUS;
+        matchingCost = checked(value, isValid, "matchingCost", "COST_COLOR_GRADIENT or COST_CENSUS");
+    }
+    void setDisparityPrior(int value)
+    {
+        const bool isValid =
+            value == HDPTreeMatcher::PRIOR_SUPPORT_POINTS || value == HDPTreeMatcher::PRIOR_UPPER_LAYER;
+        disparityPrior = checked(value, isValid, "disparityPrior", "PRIOR_SUPPORT_POINTS or PRIOR_UPPER_LAYER");
+    }
+    void setIntervalMargin(int value)
+    {
+        intervalMargin = checked(value, value >= 0 && value <= 64, "intervalMargin", "in 0..64");
     }
 };
 
@@ -229,6 +251,16 @@ public:
     void setColorWeight(double value) CV_OVERRIDE { p_.setColorWeight(value); }
     int getDisparityMedianSize() const CV_OVERRIDE { return p_.disparityMedianSize; }
     void setDisparityMedianSize(int value) CV_OVERRIDE { p_.setDisparityMedianSize(value); }
+    int getDisparityMedianPasses() const CV_OVERRIDE { return p_.disparityMedianPasses; }
+    void setDisparityMedianPasses(int value) CV_OVERRIDE { p_.setDisparityMedianPasses(value); }
+    int getMatchingCost() const CV_OVERRIDE { return p_.matchingCost; }
+    void setMatchingCost(int value) CV_OVERRIDE { p_.setMatchingCost(value); }
+    int getDisparityPrior() const CV_OVERRIDE { return p_.disparityPrior; }
+    void setDisparityPrior(int value) CV_OVERRIDE { p_.setDisparityPrior(value); }
+    int getIntervalMargin() const CV_OVERRIDE { return p_.intervalMargin; }
+    void setIntervalMargin(int value) CV_OVERRIDE { p_.setIntervalMargin(value); }
+    bool getUseSubpixel() const CV_OVERRIDE { return p_.useSubpixel; }
+    void setUseSubpixel(bool value) CV_OVERRIDE { p_.useSubpixel = value; }
 
     void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE { ratios = searchRatios_; }
 
@@ -243,29 +275,24 @@ public:
 
     void write(FileStorage& fs) const CV_OVERRIDE
     {
-        fs << "name" << getDefaultName()
-           << "minDisparity" << p_.minDisparity
-           << "numDisparities" << p_.numDisparities
-           << "blockSize" << p_.blockSize
-           << "speckleWindowSize" << p_.speckleWindowSize
-           << "speckleRange" << p_.speckleRange
-           << "disp12MaxDiff" << p_.disp12MaxDiff
-           << "usePrediction" << (int)p_.usePrediction
-           << "useMedianPrefilter" << (int)p_.useMedianPrefilter
-           << "numLayers" << p_.numLayers
-           << "delta0" << p_.delta0
-           << "beta" << p_.beta
-           << "gamma" << p_.gamma
-           << "colorTruncation" << p_.colorTruncation
-           << "gradientTruncation" << p_.gradientTruncation
-           << "colorWeight" << p_.colorWeight
-           << "disparityMedianSize" << p_.disparityMedianSize;
-        fs << "treeStrategy" << "{" << "strategy" << p_.treeStrategy->getDefaultName();
+        fs << "name" << getDefaultName() << "minDisparity" << p_.minDisparity << "numDisparities" << p_.numDisparities
+           << "blockSize" << p_.blockSize << "speckleWindowSize" << p_.speckleWindowSize << "speckleRange"
+           << p_.speckleRange << "disp12MaxDiff" << p_.disp12MaxDiff << "usePrediction" << (int)p_.usePrediction
+           << "useMedianPrefilter" << (int)p_.useMedianPrefilter << "numLayers" << p_.numLayers << "delta0" << p_.delta0
+           << "beta" << p_.beta << "gamma" << p_.gamma << "colorTruncation" << p_.colorTruncation
+           << "gradientTruncation" << p_.gradientTruncation << "colorWeight" << p_.colorWeight << "disparityMedianSize"
+           << p_.disparityMedianSize << "disparityMedianPasses" << p_.disparityMedianPasses << "matchingCost"
+           << p_.matchingCost << "disparityPrior" << p_.disparityPrior << "intervalMargin" << p_.intervalMargin
+           << "useSubpixel" << (int)p_.useSubpixel;
+        fs << "treeStrategy"
+           << "{"
+           << "strategy" << p_.treeStrategy->getDefaultName();
         p_.treeStrategy->write(fs);
         fs << "}";
         if (p_.predictionModel)
         {
-            fs << "predictionModel" << "{";
+            fs << "predictionModel"
+               << "{";
             p_.predictionModel->write(fs);
             fs << "}";
         }
@@ -292,6 +319,11 @@ public:
         readNumber<double>(fn, "gradientTruncation", [&](double value) { p.setGradientTruncation(value); });
         readNumber<double>(fn, "colorWeight", [&](double value) { p.setColorWeight(value); });
         readNumber<int>(fn, "disparityMedianSize", [&](int value) { p.setDisparityMedianSize(value); });
+        readNumber<int>(fn, "disparityMedianPasses", [&](int value) { p.setDisparityMedianPasses(value); });
+        readNumber<int>(fn, "matchingCost", [&](int value) { p.setMatchingCost(value); });
+        readNumber<int>(fn, "disparityPrior", [&](int value) { p.setDisparityPrior(value); });
+        readNumber<int>(fn, "intervalMargin", [&](int value) { p.setIntervalMargin(value); });
+        readNumber<int>(fn, "useSubpixel", [&](int value) { p.useSubpixel = value != 0; });
         p.treeStrategy = readStrategy(fn["treeStrategy"]);
         if (!fn["predictionModel"].empty())
         {
@@ -330,17 +362,21 @@ private:
         const int64 lowest = ((int64)p_.minDisparity - 1) * DISP_SCALE;
         const int64 highest = ((int64)p_.minDisparity + p_.numDisparities - 1) * DISP_SCALE;
         if (lowest < SHRT_MIN || highest > SHRT_MAX)
-            CV_Error(Error::StsOutOfRange, format("minDisparity and numDisparities must keep (minDisparity - 1) * %d and "
-                                                  "(minDisparity + numDisparities - 1) * %d in CV_16S",
-                                                  (int)DISP_SCALE, (int)DISP_SCALE));
+            CV_Error(Error::StsOutOfRange,
+                     format("minDisparity and numDisparities must keep (minDisparity - 1) * %d and "
+                            "(minDisparity + numDisparities - 1) * %d in CV_16S",
+                            (int)DISP_SCALE, (int)DISP_SCALE));
+
+        if (p_.matchingCost == COST_CENSUS && p_.blockSize != 3 && p_.blockSize != 5 && p_.blockSize != 7)
+            CV_Error(Error::StsOutOfRange, format("blockSize must be 3, 5 or 7 for COST_CENSUS, not %d", p_.blockSize));
 
         const bool isLarge = size.width >= largeImageWidth;
         LayerSettings settings;
         settings.layers = p_.usePrediction ? countLayers(size, p_.numLayers) : 1;
         settings.model = p_.predictionModel;
         if (!settings.model)
-            settings.model = DisparityPredictionModel::createPublished(isLarge ? DisparityPredictionModel::PUBLISHED_LARGE
-                                                                               : DisparityPredictionModel::PUBLISHED_SMALL);
+            settings.model = DisparityPredictionModel::createPublished(
+                isLarge ? DisparityPredictionModel::PUBLISHED_LARGE : DisparityPredictionModel::PUBLISHED_SMALL);
         if (settings.model->getNumLayers() < settings.layers - 1)
             CV_Error(Error::StsOutOfRange, format("predictionModel must have numLayers - 1 = %d layers, not %d",
                                                   settings.layers - 1, settings.model->getNumLayers()));
@@ -367,6 +403,7 @@ private:
     void matchLayer(int layer, const Mat& left, const Mat& right, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
+        const int scale = p_.useSubpixel ? subpixelScale : 1;
         if (layer == settings.layers - 1)
             clock_.run("disparity prediction", [&] {
                 pixelIntv_.create(left.size(), CV_16UC2);
@@ -374,14 +411,17 @@ private:
             });
         else
         {
-            clock_.run("support points", [&] {
-                findSupportPoints(left, right, disparities, supportPoints_, points_);
-                disparityHistogram(points_, disparities, prior_);
-            });
+            if (p_.disparityPrior == PRIOR_SUPPORT_POINTS)
+                clock_.run("support points", [&] {
+                    findSupportPoints(left, right, disparities, supportPoints_, points_);
+                    disparityHistogram(points_, disparities, prior_);
+                });
+            else
+                upperHistogram(disparity_, scale, disparities, prior_);
             clock_.run("disparity prediction", [&] {
                 predictIntervals(*settings.model, layer, prior_, layerDisparities(p_.numDisparities, layer + 1),
-                                 settings.delta0 * (1 << layer), intervals_);
-                assignIntervals(disparity_, left.size(), intervals_, pixelIntv_);
+                                 settings.delta0 * (1 << layer), p_.intervalMargin, intervals_);
+                assignIntervals(disparity_, scale, left.size(), intervals_, pixelIntv_);
             });
         }
 
@@ -393,16 +433,19 @@ private:
             searchRatios_[layer] = searchRatio(forest_, disparities);
         });
         clock_.run("matching cost", [&] {
-            const MatchingCostParams params = { (float)p_.colorTruncation, (float)p_.gradientTruncation,
-                                                (float)p_.colorWeight, p_.blockSize };
+            const MatchingCostParams params = { p_.matchingCost == COST_CENSUS, (float)p_.colorTruncation,
+                                                (float)p_.gradientTruncation, (float)p_.colorWeight, p_.blockSize };
             cost_.prepare(left, right, disparities, params);
         });
-        clock_.run("cost aggregation", [&] { aggregateForest(forest_, cost_, p_.gamma, aggregation_, winner_); });
+        clock_.run("cost aggregation",
+                   [&] { aggregateForest(forest_, cost_, p_.gamma, p_.useSubpixel, aggregation_, winner_); });
         clock_.run("disparity median", [&] {
-            if (settings.medianSize > 0)
+            swap(winner_, disparity_);
+            for (int pass = 0; settings.medianSize > 0 && pass < p_.disparityMedianPasses; ++pass)
+            {
+                swap(disparity_, winner_);
                 medianDisparity(winner_, settings.medianSize, disparity_);
-            else
-                swap(winner_, disparity_);
+            }
         });
     }
 
@@ -410,7 +453,8 @@ private:
     void finish(Mat& disparity)
     {
         const short invalid = (short)((p_.minDisparity - 1) * DISP_SCALE);
-        disparity_.convertTo(disparity, CV_16S, DISP_SCALE, (double)p_.minDisparity * DISP_SCALE);
+        disparity_.convertTo(disparity, CV_16S, p_.useSubpixel ? DISP_SCALE / subpixelScale : DISP_SCALE,
+                             (double)p_.minDisparity * DISP_SCALE);
         if (p_.disp12MaxDiff > 0)
             rejectOccluded(disparity, p_.disp12MaxDiff, invalid);
         if (p_.speckleWindowSize > 0)
@@ -455,8 +499,21 @@ private:
 
 Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities, int preset)
 {
-    checked(preset, preset == PRESET_PAPER, "preset", "PRESET_PAPER");
+    checked(preset, preset == PRESET_PAPER || preset == PRESET_TREE, "preset", "PRESET_PAPER or PRESET_TREE");
     Parameters parameters; // its defaults are those of PRESET_PAPER
+    if (preset == PRESET_TREE)
+    {
+        parameters.setMatchingCost(COST_CENSUS);
+        parameters.setBlockSize(7);
+        parameters.setDisparityPrior(PRIOR_UPPER_LAYER);
+        parameters.setIntervalMargin(1);
+        parameters.setDelta0(0.02);
+        parameters.setBeta(0.9);
+        parameters.setGamma(20);
+        parameters.useSubpixel = true;
+        parameters.setDisparityMedianSize(5);
+        parameters.setDisparityMedianPasses(2);
+    }
     parameters.setMinDisparity(minDisparity);
     parameters.setNumDisparities(numDisparities);
     return makePtr<HDPTreeMatcherImpl>(parameters);

@@ -16,10 +16,7 @@ namespace hdp {
 CV_EXPORTS int countLayers(Size size, int numLayers);
 
 //! d_l + 1 = floor((numDisparities - 1) / 2^l) + 1: the number of candidates of layer l.
-inline int layerDisparities(int numDisparities, int layer)
-{
-    return ((numDisparities - 1) >> layer) + 1;
-}
+inline int layerDisparities(int numDisparities, int layer) { return ((numDisparities - 1) >> layer) + 1; }
 
 //! G_{l+1} of G_l: means of 2 x 2 pixels, truncated to 8 bit; an odd last row or column is left out.
 CV_EXPORTS void halveImage(const Mat& image, Mat& half);

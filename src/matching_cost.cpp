@@ -84,42 +84,113 @@ void copyBordered(const Mat& image, int channel, int radius, int before, int aft
     });
 }
 
+//! A bit for each pixel of the checkerboard around the centre, set if it is darker. grey is bordered by the radius.
+void censusTransform(const Mat& grey, int radius, Mat& census)
+{
+    census.create(grey.rows - 2 * radius, grey.cols - 2 * radius, CV_32S);
+    parallel_for_(Range(0, census.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const uchar* centre = grey.ptr(y + radius) + radius;
+            unsigned* bits = census.ptr<unsigned>(y);
+            const int cols = census.cols;
+            std::fill(bits, bits + cols, 0u);
+            unsigned bit = 1;
+            for (int dy = -radius; dy <= radius; ++dy)
+                for (int dx = -radius; dx <= radius; ++dx)
+                {
+                    if ((dx + dy) % 2 == 0)
+                        continue;
+                    const uchar* other = grey.ptr(y + radius + dy) + radius + dx;
+                    for (int x = 0; x < cols; ++x)
+                        bits[x] |= (unsigned)-(int)(other[x] < centre[x]) & bit;
+                    bit <<= 1;
+                }
+        }
+    });
+}
+
 } // namespace
 
 void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities, const MatchingCostParams& params)
 {
-    const int channels = left.channels(), rows = left.rows + 2 * (params.blockSize / 2);
+    census_ = params.census;
     blockSize_ = params.blockSize;
-    radius_ = blockSize_ / 2;
+    radius_ = census_ ? 0 : blockSize_ / 2;
     width_ = left.cols;
-    channels_ = channels;
+    channels_ = left.channels();
     // The means over the channels and the window and the gradient's units are left to the weights.
     const float area = (float)(blockSize_ * blockSize_);
-    colorTruncation_ = params.colorTruncation * channels;
+    colorTruncation_ = params.colorTruncation * channels_;
     gradientTruncation_ = params.gradientTruncation * gradientScale;
-    colorWeight_ = params.colorWeight / (channels * area);
+    colorWeight_ = params.colorWeight / (channels_ * area);
     gradientWeight_ = (1 - params.colorWeight) / (gradientScale * area);
 
-    const Mat images[] = { left, right };
-    for (int side = 0; side < 2; ++side)
+    const int behind = radius_ + numDisparities + padding;
+    if (census_)
     {
-        const Mat& image = images[side];
-        const bool mirrored = side == 1;
-        horizontalGradient(image, gradient_);
-        const int after = mirrored ? radius_ + numDisparities + padding : radius_;
-        Mat& color = mirrored ? right_ : left_;
-        Mat& gradient = mirrored ? rightGradient_ : leftGradient_;
-        color.create(channels * rows, width_ + radius_ + after, CV_8U);
-        gradient.create(rows, color.cols, CV_16S);
-        for (int c = 0; c < channels; ++c)
-            copyBordered<uchar>(image, c, radius_, radius_, after, mirrored, color.rowRange(c * rows, (c + 1) * rows));
-        copyBordered<short>(gradient_, 0, radius_, radius_, after, mirrored, gradient);
+        prepareCensus(left, false, 0);
+        prepareCensus(right, true, behind);
     }
-    leftPlane_ = left_.step * rows;
-    rightPlane_ = right_.step * rows;
+    else
+    {
+        prepareColorAndGradient(left, false, radius_);
+        prepareColorAndGradient(right, true, behind);
+    }
+}
+
+void MatchingCost::prepareColorAndGradient(const Mat& image, bool mirrored, int after)
+{
+    const int rows = image.rows + 2 * radius_;
+    Mat& color = mirrored ? right_ : left_;
+    Mat& gradient = mirrored ? rightGradient_ : leftGradient_;
+    horizontalGradient(image, gradient_);
+    color.create(channels_ * rows, width_ + radius_ + after, CV_8U);
+    gradient.create(rows, color.cols, CV_16S);
+    for (int c = 0; c < channels_; ++c)
+        copyBordered<uchar>(image, c, radius_, radius_, after, mirrored, color.rowRange(c * rows, (c + 1) * rows));
+    copyBordered<short>(gradient_, 0, radius_, radius_, after, mirrored, gradient);
+    (mirrored ? rightPlane_ : leftPlane_) = color.step * rows;
+}
+
+void MatchingCost::prepareCensus(const Mat& image, bool mirrored, int after)
+{
+    const int radius = blockSize_ / 2;
+    Mat grey = image;
+    if (channels_ == 3)
+        cvtColor(image, grey, COLOR_BGR2GRAY);
+    copyMakeBorder(grey, grey_, radius, radius, radius, radius, BORDER_REPLICATE | BORDER_ISOLATED);
+    censusTransform(grey_, radius, bits_);
+    Mat& census = mirrored ? rightCensus_ : leftCensus_;
+    census.create(image.rows, width_ + after, CV_32S);
+    copyBordered<int>(bits_, 0, 0, 0, after, mirrored, census);
 }
 
 template <int lanes> void MatchingCost::evaluate(int y, int x, int first, float* cost) const
+{
+    if (census_)
+        census<lanes>(y, x, first, cost);
+    else
+        colorAndGradient<lanes>(y, x, first, cost);
+}
+
+template <int lanes> void MatchingCost::census(int y, int x, int first, float* cost) const
+{
+    const unsigned pixel = leftCensus_.ptr<unsigned>(y)[x];
+    const unsigned* candidates = rightCensus_.ptr<unsigned>(y) + width_ - 1 - x + first;
+    HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
+    {
+        // The number of bits set, in steps that exist on vectors.
+        unsigned bits = pixel ^ candidates[k];
+        bits -= (bits >> 1) & 0x55555555;
+        bits = (bits & 0x33333333) + ((bits >> 2) & 0x33333333);
+        bits = (bits + (bits >> 4)) & 0x0f0f0f0f;
+        bits += bits >> 8;
+        cost[k] = (float)(int)((bits + (bits >> 16)) & 63);
+    }
+}
+
+template <int lanes> void MatchingCost::colorAndGradient(int y, int x, int first, float* cost) const
 {
     const int mirroredX = width_ - 1 - x + 2 * radius_ + first;
     float sum[lanes] = { 0 };
@@ -142,9 +213,9 @@ template <int lanes> void MatchingCost::evaluate(int y, int x, int first, float*
                     color[k] = (short)(color[k] + std::max<short>(difference, (short)-difference));
                 }
             }
-            HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
-                sum[k] += colorWeight_ * std::min((float)color[k], colorTruncation_)
-                        + gradientWeight_ * std::min((float)std::abs(*slope - slopes[k]), gradientTruncation_);
+            HDP_VECTORIZED for (int k = 0; k < lanes; ++k) sum[k] +=
+                colorWeight_ * std::min((float)color[k], colorTruncation_) +
+                gradientWeight_ * std::min((float)std::abs(*slope - slopes[k]), gradientTruncation_);
         }
     }
     std::copy(sum, sum + lanes, cost);

@@ -38,7 +38,8 @@ void sobelGradients(const Mat& grey, Mat& gradients)
             uchar* gradient = gradients.ptr(y);
             for (int x = 1; x < grey.cols - 1; ++x)
             {
-                const int dx = above[x + 1] - above[x - 1] + 2 * (row[x + 1] - row[x - 1]) + below[x + 1] - below[x - 1];
+                const int dx =
+                    above[x + 1] - above[x - 1] + 2 * (row[x + 1] - row[x - 1]) + below[x + 1] - below[x - 1];
                 const int dy = below[x - 1] - above[x - 1] + 2 * (below[x] - above[x]) + below[x + 1] - above[x + 1];
                 gradient[2 * x] = saturate_cast<uchar>((dx >> 2) + 128);
                 gradient[2 * x + 1] = saturate_cast<uchar>((dy >> 2) + 128);
@@ -104,8 +105,8 @@ int largestClose(int lowest)
     return closest;
 }
 
-//! The lowest of `count` dissimilarities, each the sum of those of four corners; -1 if it is not unique: if another one,
-//! that was not the lowest so far itself, is close to it, or there is no such other one.
+//! The lowest of `count` dissimilarities, each the sum of those of four corners; -1 if it is not unique: if another
+//! one, that was not the lowest so far itself, is close to it, or there is no such other one.
 int uniqueMinimum(const ushort* const corners[4], int count, std::vector<short>& dissimilarities)
 {
     dissimilarities.resize(count);
@@ -174,8 +175,8 @@ public:
 private:
     struct CornerRow
     {
-        std::vector<uchar> left, right;  // descriptors of each column
-        std::vector<ushort> distances;   // of each corner on the grid to each candidate
+        std::vector<uchar> left, right; // descriptors of each column
+        std::vector<ushort> distances;  // of each corner on the grid to each candidate
     };
 
     //! Number of candidates for a point with this many columns towards the side where its matches are.
@@ -294,7 +295,8 @@ void keepConsistent(const Mat& candidates, Mat& points)
                     for (int v = std::max(y - neighbourhood, 0); v <= std::min(y + neighbourhood, points.rows - 1); ++v)
                     {
                         const short* row = candidates.ptr<short>(v);
-                        for (int u = std::max(x - neighbourhood, 0); u <= std::min(x + neighbourhood, points.cols - 1); ++u)
+                        for (int u = std::max(x - neighbourhood, 0); u <= std::min(x + neighbourhood, points.cols - 1);
+                             ++u)
                             supporters += row[u] >= 0 && std::abs(row[u] - disparity) <= maxNeighbourDifference;
                     }
                 points.at<short>(y, x) = (short)(supporters >= minSupporters ? disparity : -1);
@@ -320,12 +322,13 @@ void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, Su
     candidates.setTo(Scalar::all(-1));
     const int first = PointMatcher::firstPoint() / gridStep;
     const int last = (left.rows - 1 - margin) / gridStep; // may be negative or before the first
+    const auto matchRows = [&](const Range& rows) {
+        PointMatcher matcher(buffers.gradients, numDisparities);
+        for (int y = rows.start; y < rows.end; ++y)
+            matcher.matchRow(y * gridStep, candidates.ptr<short>(y));
+    };
     if (first <= last && left.cols > 2 * margin)
-        parallel_for_(Range(first, last + 1), [&](const Range& rows) {
-            PointMatcher matcher(buffers.gradients, numDisparities);
-            for (int y = rows.start; y < rows.end; ++y)
-                matcher.matchRow(y * gridStep, candidates.ptr<short>(y));
-        }, 16);
+        parallel_for_(Range(first, last + 1), matchRows, 16); // long runs of rows share their corners
     keepConsistent(candidates, points);
 }
 

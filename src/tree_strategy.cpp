@@ -67,15 +67,9 @@ FileNode parameter(const FileNode& fn, const char* key, bool isInteger)
 
 SegmentTree::SegmentTree(double k) : k_(checkedK(k)) {}
 
-void SegmentTree::write(FileStorage& fs) const
-{
-    fs << "k" << k_;
-}
+void SegmentTree::write(FileStorage& fs) const { fs << "k" << k_; }
 
-void SegmentTree::read(const FileNode& fn)
-{
-    k_ = checkedK((double)parameter(fn, "k", false));
-}
+void SegmentTree::read(const FileNode& fn) { k_ = checkedK((double)parameter(fn, "k", false)); }
 
 RandomTree::RandomTree(int seed) : seed_(checkedSeed(seed)) {}
 
@@ -86,15 +80,9 @@ void RandomTree::orderEdges(const Mat&, std::vector<int>& edges) const
         std::swap(edges[i], edges[rng.uniform(0, i + 1)]);
 }
 
-void RandomTree::write(FileStorage& fs) const
-{
-    fs << "seed" << seed_;
-}
+void RandomTree::write(FileStorage& fs) const { fs << "seed" << seed_; }
 
-void RandomTree::read(const FileNode& fn)
-{
-    seed_ = checkedSeed((int)parameter(fn, "seed", true));
-}
+void RandomTree::read(const FileNode& fn) { seed_ = checkedSeed((int)parameter(fn, "seed", true)); }
 
 Ptr<TreeStrategy> createTreeStrategy(const String& name)
 {
@@ -107,20 +95,11 @@ Ptr<TreeStrategy> createTreeStrategy(const String& name)
 
 } // namespace hdp
 
-Ptr<TreeStrategy> createMinimumSpanningTree()
-{
-    return makePtr<hdp::MinimumSpanningTree>();
-}
+Ptr<TreeStrategy> createMinimumSpanningTree() { return makePtr<hdp::MinimumSpanningTree>(); }
 
-Ptr<TreeStrategy> createSegmentTree(double k)
-{
-    return makePtr<hdp::SegmentTree>(k);
-}
+Ptr<TreeStrategy> createSegmentTree(double k) { return makePtr<hdp::SegmentTree>(k); }
 
-Ptr<TreeStrategy> createRandomTree(int seed)
-{
-    return makePtr<hdp::RandomTree>(seed);
-}
+Ptr<TreeStrategy> createRandomTree(int seed) { return makePtr<hdp::RandomTree>(seed); }
 
 } // namespace stereo
 } // namespace cv

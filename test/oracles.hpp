@@ -110,6 +110,40 @@ private:
     hdp::MatchingCostParams params_;
 };
 
+//! The census cost: the pixels of the window's checkerboard that are darker than its centre in one of the images only;
+//! rows and columns clamped to the images.
+class CensusCost
+{
+public:
+    CensusCost(const Mat& left, const Mat& right, int blockSize)
+        : left_(grey(left)), right_(grey(right)), radius_(blockSize / 2)
+    {
+    }
+
+    double operator()(int y, int x, int disparity) const
+    {
+        const int matched = clamped(x - disparity, left_.cols);
+        int count = 0;
+        for (int dy = -radius_; dy <= radius_; ++dy)
+            for (int dx = -radius_; dx <= radius_; ++dx)
+            {
+                const bool isCompared = std::abs(dx) % 2 != std::abs(dy) % 2;
+                if (isCompared && isDarker(left_, y, x, dy, dx) != isDarker(right_, y, matched, dy, dx))
+                    ++count;
+            }
+        return count;
+    }
+
+private:
+    static bool isDarker(const Mat& image, int y, int x, int dy, int dx)
+    {
+        return image.at<uchar>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) < image.at<uchar>(y, x);
+    }
+
+    Mat left_, right_;
+    int radius_;
+};
+
 //! ELAS's support points by direct search.
 class SupportPoints
 {
@@ -241,6 +275,23 @@ inline std::vector<double> histogram(const Mat& points, int numDisparities)
     return result;
 }
 
+//! P(D_l) from the layer above: the pixels there that have half the disparity, and the mean of these numbers.
+inline std::vector<double> upperHistogram(const Mat& upper, int scale, int numDisparities)
+{
+    const int upperDisparities = (numDisparities - 1) / 2 + 1;
+    std::vector<double> result;
+    for (int d = 0; d < numDisparities; ++d)
+    {
+        int count = 0;
+        for (int y = 0; y < upper.rows; ++y)
+            for (int x = 0; x < upper.cols; ++x)
+                if (std::floor((double)upper.at<ushort>(y, x) / scale + 0.5) == d / 2)
+                    ++count;
+        result.push_back(count + (double)upper.rows * upper.cols / upperDisparities);
+    }
+    return result;
+}
+
 //! GMM_l(o), section 2.2
 inline double density(const DisparityPredictionModel& model, int layer, double offset)
 {
@@ -271,8 +322,9 @@ inline Mat_<double> posterior(const DisparityPredictionModel& model, int layer, 
     return result;
 }
 
-//! PixelIntv of a row of P(D_l | D_{l+1}), section 3.1; empty if nothing is possible.
-inline hdp::DisparityInterval pixelInterval(const Mat_<double>& row, double delta)
+//! PixelIntv of a row of P(D_l | D_{l+1}), section 3.1, with a margin of candidates on both sides; empty if nothing is
+//! possible.
+inline hdp::DisparityInterval pixelInterval(const Mat_<double>& row, double delta, int margin = 0)
 {
     const int mode = (int)(std::max_element(row.begin(), row.end()) - row.begin());
     hdp::DisparityInterval interval = { 1, 0 };
@@ -294,8 +346,8 @@ inline hdp::DisparityInterval pixelInterval(const Mat_<double>& row, double delt
             grown = true;
         }
     }
-    interval.first = (ushort)first;
-    interval.last = (ushort)last;
+    interval.first = (ushort)clamped(first - margin, row.cols);
+    interval.last = (ushort)clamped(last + margin, row.cols);
     return interval;
 }
 
@@ -446,7 +498,7 @@ inline std::vector<double> aggregated(const Adjacency& neighbours, int p, double
 }
 
 //! M of all pixels (rows) and disparities (columns)
-inline Mat_<double> costTable(const Cost& cost, Size size, int numDisparities)
+template <typename Formula> Mat_<double> costTable(const Formula& cost, Size size, int numDisparities)
 {
     Mat_<double> table(size.area(), numDisparities);
     for (int p = 0; p < table.rows; ++p)
@@ -463,6 +515,21 @@ inline int winner(const std::vector<double>& costs)
     while (costs[x] > limit)
         ++x;
     return x;
+}
+
+//! The minimum of the parabola through the costs of a candidate and of the two beside it, in 1/16 pixel from the
+//! candidate: the lowest and the highest value that it may have if the costs have a relative error.
+inline Range parabolaOffset(const std::vector<double>& costs, int candidate, double relativeError)
+{
+    if (candidate == 0 || candidate + 1 == (int)costs.size())
+        return Range(0, 0);
+    const double before = costs[candidate - 1], middle = costs[candidate], after = costs[candidate + 1];
+    const double error = relativeError * (before + 2 * middle + after), curvature = before - 2 * middle + after;
+    if (curvature <= 2 * error) // flat, or anything
+        return error > 0 ? Range(-8, 8) : Range(0, 0);
+    // (before - after) / 2 / curvature pixels; neither part is off by more than the error.
+    const double offset = 8 * (before - after) / curvature, offsetError = 8 * 2 * error / (curvature - error);
+    return Range(cvRound(std::max(offset - offsetError, -8.)), cvRound(std::min(offset + offsetError, 8.)));
 }
 
 //! Median of size x size pixels by sorting, borders replicated. image: CV_16UC1.

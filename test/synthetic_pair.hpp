@@ -21,12 +21,14 @@ struct SyntheticPair
 class SyntheticScene
 {
 public:
-    SyntheticScene(Size size, int numDisparities, int seed) : size_(size), rng_((uint64)seed + 1)
+    SyntheticScene(Size size, int numDisparities, int seed, bool planeOnly) : size_(size), rng_((uint64)seed + 1)
     {
         CV_Assert(size.width >= 2 * numDisparities);
         const double w = size.width, h = size.height, n = numDisparities;
         // Disparities across x and y (in pixels), from the back to the front
         addSurface(0.10 * n, 0.12 * n / w, 0.08 * n / h, WHOLE, 0, 0, 0, 0, 60);
+        if (planeOnly)
+            return;
         addSurface(0.30 * n, 0.15 * n / w, 0, BOX, jitter(0.20) * w, jitter(0.72) * h, 0.17 * w, 0.20 * h, 40);
         addSurface(0.45 * n, 0, 0, ELLIPSE, jitter(0.38) * w, jitter(0.34) * h, 0.12 * w, 0.20 * h, 50);
         addSurface(0.45 * n, 0.10 * n / w, 0.25 * n / h, BOX, jitter(0.70) * w, jitter(0.60) * h, 0.14 * w, 0.24 * h,
@@ -166,7 +168,24 @@ private:
 
 inline SyntheticPair makeSyntheticPair(Size size, int numDisparities, int seed)
 {
-    return SyntheticScene(size, numDisparities, seed).render();
+    return SyntheticScene(size, numDisparities, seed, false).render();
+}
+
+//! Only the slanted plane at the back
+inline SyntheticPair makeSlantedPlane(Size size, int numDisparities, int seed)
+{
+    return SyntheticScene(size, numDisparities, seed, true).render();
+}
+
+//! Mean distance to the truth, in pixels, of the disparities in the mask. Types as in badPixels().
+inline double meanError(const Mat& disparity, const Mat& truth, const Mat& mask)
+{
+    double sum = 0;
+    for (int y = 0; y < truth.rows; ++y)
+        for (int x = 0; x < truth.cols; ++x)
+            if (mask.at<uchar>(y, x))
+                sum += std::abs(disparity.at<short>(y, x) / 16. - truth.at<float>(y, x));
+    return sum / cv::countNonZero(mask);
 }
 
 //! Percentage of the pixels in the mask whose disparity is wrong by at least a limit. disparity: CV_16SC1, times

@@ -13,8 +13,8 @@ const double notANumber = std::numeric_limits<double>::quiet_NaN();
 void expectBadPair(const Mat& left, const Mat& right, const std::string& argument)
 {
     // Not size(): a Mat of three dimensions has none.
-    SCOPED_TRACE(testing::Message() << "left " << left.cols << " x " << left.rows << " type " << left.type() << ", right "
-                                    << right.cols << " x " << right.rows << " type " << right.type());
+    SCOPED_TRACE(testing::Message() << "left " << left.cols << " x " << left.rows << " type " << left.type()
+                                    << ", right " << right.cols << " x " << right.rows << " type " << right.type());
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 8);
     Mat disparity;
     expectRejected([&] { matcher->compute(left, right, disparity); }, argument);
@@ -92,6 +92,15 @@ TEST(HDPStereo_BadInput, setters)
         expectBadValue([bad](HDPTreeMatcher& m) { m.setNumLayers(bad); }, "numLayers");
     for (int bad : { 1, 2, 4, 30, 33, -2, -3, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityMedianSize(bad); }, "disparityMedianSize");
+    for (int bad : { 0, -1, 9, INT_MAX, INT_MIN })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityMedianPasses(bad); }, "disparityMedianPasses");
+    for (int bad : { -1, 2, INT_MAX, INT_MIN })
+    {
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setMatchingCost(bad); }, "matchingCost");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityPrior(bad); }, "disparityPrior");
+    }
+    for (int bad : { -1, 65, INT_MAX, INT_MIN })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setIntervalMargin(bad); }, "intervalMargin");
     for (double bad : { -0.5, 1., 2., infinity, -infinity, notANumber })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setDelta0(bad); }, "delta0");
     for (double bad : { -0.5, 1.0001, 2., infinity, -infinity, notANumber })
@@ -112,7 +121,7 @@ TEST(HDPStereo_BadInput, create)
 {
     for (int bad : { 0, -1, INT_MIN })
         expectRejected([bad] { HDPTreeMatcher::create(0, bad); }, "numDisparities");
-    for (int bad : { -1, 1000, INT_MAX })
+    for (int bad : { -1, 1, 2, 3, 5, 1000, INT_MAX })
         expectRejected([bad] { HDPTreeMatcher::create(0, 64, bad); }, "preset");
 }
 
@@ -121,11 +130,12 @@ TEST(HDPStereo_BadInput, disparities_that_do_not_fit_into_16_bit)
     const Mat image(12, 16, CV_8UC1, Scalar(7));
     const int good[][2] = { { 0, 2048 }, { -2047, 4095 }, { 2047, 1 }, { -2047, 1 } };
     for (const int* range : good)
-    {
-        SCOPED_TRACE(testing::Message() << range[1] << " from " << range[0]);
-        const Mat disparity = match(*HDPTreeMatcher::create(range[0], range[1]), image, image);
-        EXPECT_EQ(16 * range[0], disparity.at<short>(6, 8)); // a tie of all: the lowest
-    }
+        for (int preset : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE })
+        {
+            SCOPED_TRACE(testing::Message() << range[1] << " from " << range[0] << ", preset " << preset);
+            const Mat disparity = match(*HDPTreeMatcher::create(range[0], range[1], preset), image, image);
+            EXPECT_EQ(16 * range[0], disparity.at<short>(6, 8)); // a tie of all: the lowest
+        }
     const int bad[][2] = { { 0, 2049 },    { 1, 2048 },     { -2048, 1 },    { 2048, 1 },
                            { 0, INT_MAX }, { INT_MAX, 16 }, { INT_MIN, 16 }, { INT_MAX, INT_MAX } };
     for (const int* range : bad)
@@ -133,6 +143,26 @@ TEST(HDPStereo_BadInput, disparities_that_do_not_fit_into_16_bit)
         SCOPED_TRACE(testing::Message() << range[1] << " from " << range[0]);
         expectRejected([&] { match(*HDPTreeMatcher::create(range[0], range[1]), image, image); }, "isparit");
     }
+}
+
+TEST(HDPStereo_BadInput, census_of_other_windows)
+{
+    const Mat image(12, 16, CV_8UC1, Scalar(7));
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 8);
+    matcher->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
+    for (int bad : { 1, 9, 31 })
+    {
+        matcher->setBlockSize(bad);
+        expectRejected([&] { match(*matcher, image, image); }, "blockSize");
+    }
+    for (int good : { 3, 5, 7 })
+    {
+        matcher->setBlockSize(good);
+        EXPECT_NO_THROW(match(*matcher, image, image));
+    }
+    matcher->setBlockSize(9);
+    matcher->setMatchingCost(HDPTreeMatcher::COST_COLOR_GRADIENT);
+    EXPECT_NO_THROW(match(*matcher, image, image));
 }
 
 TEST(HDPStereo_BadInput, model_with_too_few_layers)

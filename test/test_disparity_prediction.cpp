@@ -225,8 +225,12 @@ TEST(HDPStereo_PredictionModel, malformed_file_is_rejected)
         const char *number, *shortNumber; // as OpenCV 4.6 and 4.10 write it
         const char* values[8];
     } hostile[] = {
-        { "6.2500000000000000e-01", "0.625", { ".Nan", ".Inf", "-.Inf", "text", "\"0.5\"", "[ 1., 2. ]", "1., 2.", 0 } },
-        { "1.3750000000000000e+00", "1.375", { ".Nan", ".Inf", "0.", "-1.375", "\"1.375\"", "{ a: 1. }", "1., 2.", 0 } },
+        { "6.2500000000000000e-01",
+          "0.625",
+          { ".Nan", ".Inf", "-.Inf", "text", "\"0.5\"", "[ 1., 2. ]", "1., 2.", 0 } },
+        { "1.3750000000000000e+00",
+          "1.375",
+          { ".Nan", ".Inf", "0.", "-1.375", "\"1.375\"", "{ a: 1. }", "1., 2.", 0 } },
         { "7.5000000000000000e-01", "0.75", { ".Nan", ".Inf", "-0.75", "0.", "1e300", "\"0.75\"", "0.5, 0.25", 0 } },
     };
     for (const auto& h : hostile)
@@ -240,17 +244,17 @@ TEST(HDPStereo_PredictionModel, malformed_file_is_rejected)
 //////////////////////////////////////////// the intervals ////////////////////////////////////////////
 
 void testIntervals(const DisparityPredictionModel& model, int layer, const Numbers& prior, int upperDisparities,
-                   double delta)
+                   double delta, int margin = 0)
 {
     SCOPED_TRACE(testing::Message() << "layer " << layer << ", disparities " << prior.size() << " of "
-                                    << upperDisparities << ", delta " << delta);
+                                    << upperDisparities << ", delta " << delta << ", margin " << margin);
     std::vector<hdp::DisparityInterval> intervals;
-    hdp::predictIntervals(model, layer, prior, upperDisparities, delta, intervals);
+    hdp::predictIntervals(model, layer, prior, upperDisparities, delta, margin, intervals);
     const Mat_<double> posterior = oracle::posterior(model, layer, prior, upperDisparities);
     ASSERT_EQ((size_t)upperDisparities, intervals.size());
     for (int i = 0; i < upperDisparities; ++i)
     {
-        const hdp::DisparityInterval expected = oracle::pixelInterval(posterior.row(i), delta);
+        const hdp::DisparityInterval expected = oracle::pixelInterval(posterior.row(i), delta, margin);
         ASSERT_EQ(expected.empty(), intervals[i].empty()) << "row " << i;
         if (!expected.empty())
         {
@@ -283,6 +287,28 @@ TEST(HDPStereo_PixelIntervals, literal_criterion_on_the_full_matrix)
     }
 }
 
+TEST(HDPStereo_PixelIntervals, margin_on_both_sides)
+{
+    RNG rng(34);
+    const Ptr<DisparityPredictionModel> model =
+        DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL);
+    for (int disparities : { 1, 2, 17, 64, 255 })
+        for (double delta : { 0.004, 0.02, 0.3 })
+            for (int margin : { 1, 2, 7, 64 })
+                for (int zeros : { 0, 9 })
+                    testIntervals(*model, rng.uniform(0, 2), randomPrior(rng, disparities, zeros),
+                                  (disparities - 1) / 2 + 1, delta, margin);
+
+    std::vector<hdp::DisparityInterval> without, with;
+    hdp::predictIntervals(*model, 0, Numbers(64, 1), 32, 0.02, 0, without);
+    hdp::predictIntervals(*model, 0, Numbers(64, 1), 32, 0.02, 3, with);
+    for (int i = 0; i < 32; ++i)
+    {
+        EXPECT_EQ(std::max(without[i].first - 3, 0), with[i].first);
+        EXPECT_EQ(std::min(without[i].last + 3, 63), with[i].last);
+    }
+}
+
 TEST(HDPStereo_PixelIntervals, rows_without_probability_are_empty)
 {
     const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
@@ -291,10 +317,15 @@ TEST(HDPStereo_PixelIntervals, rows_without_probability_are_empty)
     prior[10] = prior[11] = 0; // all that D_{l+1} = 5 can come from
     testIntervals(*model, 0, prior, 20, 0.01);
     std::vector<hdp::DisparityInterval> intervals;
-    hdp::predictIntervals(*model, 0, prior, 20, 0.01, intervals);
+    hdp::predictIntervals(*model, 0, prior, 20, 0.01, 0, intervals);
     for (int i = 0; i < 20; ++i)
         EXPECT_EQ(i == 5 ? 0 : 2, intervals[i].size()) << i;
     testIntervals(*model, 0, Numbers(40, 0), 20, 0.01);
+    for (int margin : { 1, 64 }) // what is empty stays it
+    {
+        testIntervals(*model, 0, prior, 20, 0.01, margin);
+        testIntervals(*model, 0, Numbers(40, 0), 20, 0.01, margin);
+    }
 }
 
 TEST(HDPStereo_PixelIntervals, the_larger_delta_the_shorter)
@@ -303,14 +334,30 @@ TEST(HDPStereo_PixelIntervals, the_larger_delta_the_shorter)
         DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL);
     const Numbers uniform(128, 1);
     std::vector<hdp::DisparityInterval> wide, narrow;
-    hdp::predictIntervals(*model, 0, uniform, 64, 0.004, wide);
-    hdp::predictIntervals(*model, 0, uniform, 64, 0.064, narrow);
+    hdp::predictIntervals(*model, 0, uniform, 64, 0.004, 0, wide);
+    hdp::predictIntervals(*model, 0, uniform, 64, 0.064, 0, narrow);
     for (int i = 0; i < 64; ++i)
     {
         EXPECT_GT(wide[i].size(), narrow[i].size());
         EXPECT_LE(narrow[i].first, 2 * i + 1); // both hold what half the disparity says
         EXPECT_GE(narrow[i].last, 2 * i);
     }
+}
+
+TEST(HDPStereo_PixelIntervals, prior_from_the_layer_above)
+{
+    RNG rng(35);
+    for (const Size& size : { Size(1, 1), Size(1, 9), Size(30, 20) })
+        for (int scale : { 1, 16 })
+            for (int numDisparities : { 1, 2, 3, 16, 31, 300 })
+            {
+                SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities, times " << scale);
+                const int largest = (numDisparities - 1) / 2;
+                const Mat upper = randomImage(rng, size, CV_16UC1, scale * largest + 1);
+                Numbers histogram(5, 7.); // a buffer of another size
+                hdp::upperHistogram(upper, scale, numDisparities, histogram);
+                EXPECT_EQ(oracle::upperHistogram(upper, scale, numDisparities), histogram);
+            }
 }
 
 TEST(HDPStereo_PixelIntervals, assigned_from_the_pixel_above)
@@ -323,21 +370,23 @@ TEST(HDPStereo_PixelIntervals, assigned_from_the_pixel_above)
         intervals.push_back(interval);
     }
     for (const Size& size : { Size(2, 2), Size(3, 2), Size(2, 5), Size(40, 30), Size(41, 31) })
-    {
-        SCOPED_TRACE(testing::Message() << size);
-        const Mat upper = randomImage(rng, Size(size.width / 2, size.height / 2), CV_16UC1, 50);
-        Mat assigned;
-        hdp::assignIntervals(upper, size, intervals, assigned);
-        Mat expected(size, CV_16UC2);
-        for (int y = 0; y < size.height; ++y)
-            for (int x = 0; x < size.width; ++x)
-            {
-                const ushort above =
-                    upper.at<ushort>(oracle::clamped(y / 2, upper.rows), oracle::clamped(x / 2, upper.cols));
-                expected.at<Vec2w>(y, x) = Vec2w(intervals[above].first, intervals[above].last);
-            }
-        expectIdentical(expected, assigned);
-    }
+        for (int scale : { 1, 16 })
+        {
+            SCOPED_TRACE(testing::Message() << size << ", times " << scale);
+            const Mat upper = randomImage(rng, Size(size.width / 2, size.height / 2), CV_16UC1, 49 * scale + 1);
+            Mat assigned;
+            hdp::assignIntervals(upper, scale, size, intervals, assigned);
+            Mat expected(size, CV_16UC2);
+            for (int y = 0; y < size.height; ++y)
+                for (int x = 0; x < size.width; ++x)
+                {
+                    const ushort above =
+                        upper.at<ushort>(oracle::clamped(y / 2, upper.rows), oracle::clamped(x / 2, upper.cols));
+                    const int nearest = (int)std::floor((double)above / scale + 0.5);
+                    expected.at<Vec2w>(y, x) = Vec2w(intervals[nearest].first, intervals[nearest].last);
+                }
+            expectIdentical(expected, assigned);
+        }
 }
 
 } // namespace

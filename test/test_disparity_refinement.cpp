@@ -27,10 +27,14 @@ TEST(HDPStereo_DisparityRefinement, median_by_sorting)
 TEST(HDPStereo_DisparityRefinement, median_of_many_rows)
 {
     RNG rng(23);
-    const Mat disparity = randomImage(rng, Size(20, 700), CV_16UC1, 300);
-    Mat filtered(20, 20, CV_16UC1); // a buffer of another size
-    hdp::medianDisparity(disparity, 7, filtered);
-    expectIdentical(oracle::median(disparity, 7), filtered);
+    for (int window : { 5, 7 })
+        for (int levels : { 300, 65536 })
+        {
+            const Mat disparity = randomImage(rng, Size(20, 700), CV_16UC1, levels);
+            Mat filtered(20, 20, CV_16UC1); // a buffer of another size
+            hdp::medianDisparity(disparity, window, filtered);
+            expectIdentical(oracle::median(disparity, window), filtered);
+        }
 }
 
 //! A left pixel is kept if no other one that maps to its column of the right image is nearer by more than maxDiff.

@@ -9,7 +9,7 @@
 namespace opencv_test {
 namespace {
 
-const hdp::MatchingCostParams costParams = { 10, 2, 0.11f, 1 };
+const hdp::MatchingCostParams costParams = { false, 10, 2, 0.11f, 1 };
 const int numDisparities = 24;
 
 //! A forest with what belongs to it, and the cost of each pixel and disparity by the formula. Of one channel, where the
@@ -111,15 +111,34 @@ TEST(HDPStereo_ForestAggregation, explicit_sum_over_paths_in_many_trees)
     }
 }
 
-//! Every pixel's winner has the smallest explicit sum among the candidates of its tree, but for rounding.
-void expectWinners(const Layer& layer, double gamma, hdp::AggregationBuffers& buffers)
+// Of the library's sums, in float
+const double sumError = 2e-6;
+
+//! A winner has the smallest explicit sum among the candidates, but for rounding, and its parabola's offset.
+bool isWinner(const std::vector<double>& sums, int best, int disparity, bool subpixel)
 {
+    for (int k = 0; k < (int)sums.size(); ++k)
+    {
+        const Range offset = subpixel ? oracle::parabolaOffset(sums, k, sumError) : Range(0, 0);
+        const int whole = subpixel ? 16 * k : k;
+        if (sums[k] <= sums[best] * (1 + sumError) && disparity >= whole + offset.start &&
+            disparity <= whole + offset.end)
+            return true;
+    }
+    return false;
+}
+
+//! Every pixel's disparity, or that of every n-th pixel, is the winner of the explicit sums.
+void expectWinners(const Layer& layer, double gamma, bool subpixel, hdp::AggregationBuffers& buffers, int step = 1)
+{
+    SCOPED_TRACE(testing::Message() << "gamma " << gamma << (subpixel ? ", sub-pixel" : ""));
+    const int scale = subpixel ? 16 : 1;
     Mat disparity;
-    hdp::aggregateForest(layer.forest, layer.cost, gamma, buffers, disparity);
+    hdp::aggregateForest(layer.forest, layer.cost, gamma, subpixel, buffers, disparity);
     ASSERT_EQ(CV_16UC1, disparity.type());
     ASSERT_EQ(layer.left.size(), disparity.size());
-    int ties = 0;
-    for (int p = 0; p < (int)disparity.total(); ++p)
+    int compared = 0, rounded = 0;
+    for (int p = 0; p < (int)disparity.total(); p += step)
     {
         const oracle::Tree& tree = layer.expectedForest.trees[layer.expectedForest.treeOf[p]];
         const int actual = disparity.at<ushort>(p / disparity.cols, p % disparity.cols);
@@ -128,15 +147,17 @@ void expectWinners(const Layer& layer, double gamma, hdp::AggregationBuffers& bu
             ASSERT_EQ(0, actual) << "pixel " << p;
             continue;
         }
-        ASSERT_TRUE(tree.first <= actual && actual <= tree.last) << "pixel " << p;
+        ASSERT_TRUE(scale * tree.first <= actual && actual <= scale * tree.last) << "pixel " << p;
         const std::vector<double> sums =
             oracle::aggregated(layer.expectedForest.neighbours, p, gamma, layer.costTable, tree.first, tree.last);
         const int best = oracle::winner(sums);
-        ASSERT_LE(sums[actual - tree.first], sums[best] * (1 + 2e-6))
-            << "pixel " << p << ", best " << best + tree.first;
-        ties += actual - tree.first != best;
+        ASSERT_TRUE(isWinner(sums, best, actual - scale * tree.first, subpixel))
+            << "pixel " << p << ", disparity " << actual << ", best " << best + tree.first;
+        ++compared;
+        const int exact = subpixel ? 16 * best + oracle::parabolaOffset(sums, best, 0).start : best;
+        rounded += actual - scale * tree.first != exact;
     }
-    EXPECT_LE(ties, (int)disparity.total() / 5) << "too many winners depend on rounding to say anything";
+    EXPECT_LE(rounded, compared / 5) << "too many winners depend on rounding to say anything";
 }
 
 TEST(HDPStereo_ForestAggregation, winner_of_explicit_sums)
@@ -146,28 +167,47 @@ TEST(HDPStereo_ForestAggregation, winner_of_explicit_sums)
     for (const Size& size : { Size(1, 1), Size(1, 40), Size(40, 1), Size(30, 24) })
         for (const Ptr<TreeStrategy>& strategy :
              { createMinimumSpanningTree(), createSegmentTree(20), createRandomTree() })
-        {
-            SCOPED_TRACE(testing::Message() << size << ", " << strategy->getDefaultName());
-            expectWinners(Layer(rng, size, *strategy, stripedIntervals(size), 0.6, false), 25.5, buffers);
-            const Mat fullRange(size, CV_16UC2, Scalar(0, numDisparities - 1));
-            expectWinners(Layer(rng, size, *strategy, fullRange, 0.95, true), 25.5, buffers);
-            expectWinners(Layer(rng, size, *strategy, fullRange, 0.95, true), 2, buffers);
-        }
+            for (bool subpixel : { false, true })
+            {
+                SCOPED_TRACE(testing::Message() << size << ", " << strategy->getDefaultName());
+                expectWinners(Layer(rng, size, *strategy, stripedIntervals(size), 0.6, false), 25.5, subpixel, buffers);
+                const Mat fullRange(size, CV_16UC2, Scalar(0, numDisparities - 1));
+                expectWinners(Layer(rng, size, *strategy, fullRange, 0.95, true), 25.5, subpixel, buffers);
+                expectWinners(Layer(rng, size, *strategy, fullRange, 0.95, true), 2, subpixel, buffers);
+            }
 }
 
-//! Each number of candidates goes its own way through the groups of 4 and 8.
+//! Each number of candidates goes its own way through the groups of 4 and 8; sub-pixel ones overlap, so that a winner
+//! at the border of a group has both its neighbours.
 TEST(HDPStereo_ForestAggregation, winner_among_any_number_of_candidates)
 {
     RNG rng(21);
     hdp::AggregationBuffers buffers;
     const Size size(14, 11);
-    for (int first : { 0, 2 })
-        for (int count = 1; first + count <= numDisparities; ++count)
-        {
-            SCOPED_TRACE(testing::Message() << count << " candidates from " << first);
-            const Mat pixelIntv(size, CV_16UC2, Scalar(first, first + count - 1));
-            expectWinners(Layer(rng, size, *createMinimumSpanningTree(), pixelIntv, 0.95, true), 25.5, buffers);
-        }
+    for (bool subpixel : { false, true })
+        for (int first : { 0, 2 })
+            for (int count = 1; first + count <= numDisparities; ++count)
+            {
+                SCOPED_TRACE(testing::Message() << count << " candidates from " << first);
+                const Mat pixelIntv(size, CV_16UC2, Scalar(first, first + count - 1));
+                const Layer layer(rng, size, *createMinimumSpanningTree(), pixelIntv, 0.95, true);
+                for (double gamma : { 1., 25.5 }) // with the smaller one winners are everywhere in the range
+                    expectWinners(layer, gamma, subpixel, buffers);
+            }
+}
+
+//! A large tree's groups of candidates go side by side.
+TEST(HDPStereo_ForestAggregation, winner_in_a_large_tree)
+{
+    RNG rng(26);
+    hdp::AggregationBuffers buffers;
+    const Size size(210, 160);
+    const Mat fullRange(size, CV_16UC2, Scalar(0, numDisparities - 1));
+    const Layer layer(rng, size, *createMinimumSpanningTree(), fullRange, 0.95, true);
+    ASSERT_EQ(1u, layer.forest.trees.size());
+    for (bool subpixel : { false, true })
+        for (double gamma : { 1., 25.5 })
+            expectWinners(layer, gamma, subpixel, buffers, 997);
 }
 
 TEST(HDPStereo_ForestAggregation, lowest_disparity_wins_a_tie)
@@ -185,8 +225,13 @@ TEST(HDPStereo_ForestAggregation, lowest_disparity_wins_a_tie)
             cost.prepare(left, right, numDisparities, costParams);
             hdp::AggregationBuffers buffers;
             Mat disparity;
-            hdp::aggregateForest(forest, cost, 25.5, buffers, disparity);
-            EXPECT_EQ((int)size.area(), cv::countNonZero(disparity == first)) << "from " << first;
+            for (bool subpixel : { false, true })
+            {
+                // Equal costs have no parabola.
+                hdp::aggregateForest(forest, cost, 25.5, subpixel, buffers, disparity);
+                const int expected = subpixel ? hdp::subpixelScale * first : first;
+                EXPECT_EQ((int)size.area(), cv::countNonZero(disparity == expected)) << "from " << first;
+            }
         }
 }
 

@@ -3,7 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 #include "helpers.hpp"
-#include "paper_systems.hpp"
+#include "oracles.hpp"
+#include "systems.hpp"
 #include "synthetic_pair.hpp"
 
 #include <thread>
@@ -27,14 +28,17 @@ Ptr<HDPTreeMatcher> createMatcher(bool usePrediction = true, int minDisparity = 
     return matcher;
 }
 
-//! Every value is a whole disparity in range.
-void expectWholeDisparities(const Mat& disparity, const HDPTreeMatcher& matcher)
+//! With and without prediction, and with the layers above as prior, sub-pixel
+const System someSystems[] = { paperSystems[0], paperSystems[3], presetTree };
+
+//! Every value is in range, and a whole disparity unless the matcher was asked for others.
+void expectDisparities(const Mat& disparity, const HDPTreeMatcher& matcher)
 {
     ASSERT_EQ(CV_16SC1, disparity.type());
     const int first = matcher.getMinDisparity(), last = first + matcher.getNumDisparities() - 1;
     for (const short d : Mat_<short>(disparity))
     {
-        ASSERT_EQ(0, d % 16);
+        ASSERT_TRUE(matcher.getUseSubpixel() || d % 16 == 0) << d / 16.;
         ASSERT_TRUE(d >= 16 * first && d <= 16 * last) << d / 16.;
     }
 }
@@ -61,6 +65,11 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_EQ(2, matcher->getGradientTruncation());
     EXPECT_EQ(0.11, matcher->getColorWeight());
     EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getDisparityMedianSize());
+    EXPECT_EQ(1, matcher->getDisparityMedianPasses());
+    EXPECT_EQ((int)HDPTreeMatcher::COST_COLOR_GRADIENT, matcher->getMatchingCost());
+    EXPECT_EQ((int)HDPTreeMatcher::PRIOR_SUPPORT_POINTS, matcher->getDisparityPrior());
+    EXPECT_EQ(0, matcher->getIntervalMargin());
+    EXPECT_FALSE(matcher->getUseSubpixel());
 
     const Ptr<HDPTreeMatcher> byDefault = HDPTreeMatcher::create();
     EXPECT_EQ(0, byDefault->getMinDisparity());
@@ -69,6 +78,23 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_EQ(100, HDPTreeMatcher::create(-40, 100)->getNumDisparities());
     EXPECT_FALSE(matcher->getDefaultName().empty());
     EXPECT_EQ(16, (int)StereoMatcher::DISP_SCALE);
+}
+
+//! What a preset sets is all that it sets.
+TEST(HDPStereo_MatcherContract, presets_by_setters)
+{
+    for (const System& system : { presetTree, paperSystems[0] })
+    {
+        const Ptr<HDPTreeMatcher> preset = HDPTreeMatcher::create(-5, 33, system.preset);
+        for (int other : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE })
+        {
+            const Ptr<HDPTreeMatcher> configured = HDPTreeMatcher::create(-5, 33, other);
+            configure(*configured, system);
+            EXPECT_EQ(serialized(*preset), serialized(*configured)) << system.name << " after preset " << other;
+        }
+    }
+    EXPECT_EQ(serialized(*HDPTreeMatcher::create(1, 2, HDPTreeMatcher::PRESET_PAPER)),
+              serialized(*HDPTreeMatcher::create(1, 2)));
 }
 
 #define EXPECT_KEEPS(matcher, Name, ...)                                                                               \
@@ -97,6 +123,12 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS(matcher, GradientTruncation, 0., 7.5, 255.);
     EXPECT_KEEPS(matcher, ColorWeight, 0., 0.5, 1.);
     EXPECT_KEEPS(matcher, DisparityMedianSize, 0, 3, 31, (int)HDPTreeMatcher::AUTO);
+    EXPECT_KEEPS(matcher, DisparityMedianPasses, 8, 2, 1);
+    EXPECT_KEEPS(matcher, MatchingCost, (int)HDPTreeMatcher::COST_CENSUS, (int)HDPTreeMatcher::COST_COLOR_GRADIENT);
+    EXPECT_KEEPS(matcher, DisparityPrior, (int)HDPTreeMatcher::PRIOR_UPPER_LAYER,
+                 (int)HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
+    EXPECT_KEEPS(matcher, IntervalMargin, 64, 1, 0);
+    EXPECT_KEEPS(matcher, UseSubpixel, true, false);
     EXPECT_KEEPS(matcher, TreeStrategy, createSegmentTree(), createRandomTree());
     EXPECT_KEEPS(matcher, PredictionModel, DisparityPredictionModel::create(), Ptr<DisparityPredictionModel>());
 }
@@ -144,7 +176,10 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
         [](HDPTreeMatcher& m) { m.setColorWeight(0.9); }, [](HDPTreeMatcher& m) { m.setDisparityMedianSize(0); },
         [](HDPTreeMatcher& m) {
         m.setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE));
-        },
+        }, [](HDPTreeMatcher& m) { m.setDisparityMedianPasses(4); },
+        [](HDPTreeMatcher& m) { m.setMatchingCost(HDPTreeMatcher::COST_CENSUS), m.setBlockSize(5); },
+        [](HDPTreeMatcher& m) { m.setDisparityPrior(HDPTreeMatcher::PRIOR_UPPER_LAYER); },
+        [](HDPTreeMatcher& m) { m.setIntervalMargin(2); }, [](HDPTreeMatcher& m) { m.setUseSubpixel(true); },
         };
     const SyntheticPair& pair = testPair();
     const Mat unchanged = match(*createMatcher(), pair.left, pair.right);
@@ -156,27 +191,58 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
     }
 }
 
+//! Passes of the median filter over disparities that no other layer depends on
+TEST(HDPStereo_MatcherContract, median_passes_are_medians_of_medians)
+{
+    const SyntheticPair& pair = testPair();
+    for (bool useSubpixel : { false, true })
+        for (int size : { 3, 5, 7 })
+        {
+            SCOPED_TRACE(testing::Message() << "size " << size << (useSubpixel ? ", sub-pixel" : ""));
+            const Ptr<HDPTreeMatcher> matcher = createMatcher(false);
+            matcher->setUseSubpixel(useSubpixel);
+            matcher->setDisparityMedianSize(0);
+            matcher->setDisparityMedianPasses(3); // of nothing
+            const Mat unfiltered = match(*matcher, pair.left, pair.right);
+            matcher->setDisparityMedianPasses(1);
+            expectIdentical(unfiltered, match(*matcher, pair.left, pair.right));
+
+            Mat expected;
+            unfiltered.convertTo(expected, CV_16U);
+            matcher->setDisparityMedianSize(size);
+            for (int passes = 1; passes <= 8; ++passes)
+            {
+                expected = oracle::median(expected, size);
+                Mat expectedDisparity;
+                expected.convertTo(expectedDisparity, CV_16S);
+                matcher->setDisparityMedianPasses(passes);
+                expectIdentical(expectedDisparity, match(*matcher, pair.left, pair.right));
+            }
+        }
+}
+
 ////////////////////////////////////////////// images //////////////////////////////////////////////
 
 TEST(HDPStereo_MatcherContract, output_type_size_and_range)
 {
     const SyntheticPair& pair = testPair();
-    for (const PaperSystem& system : paperSystems)
+    for (const System& system : allSystems())
     {
         SCOPED_TRACE(system.name);
         const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
         const Mat disparity = match(*matcher, pair.left, pair.right);
         EXPECT_EQ(pair.left.size(), disparity.size());
-        expectWholeDisparities(disparity, *matcher);
+        expectDisparities(disparity, *matcher);
     }
 }
 
 TEST(HDPStereo_MatcherContract, kinds_of_arrays)
 {
     const SyntheticPair& pair = testPair();
-    for (bool usePrediction : { false, true })
+    for (const System& system : someSystems)
     {
-        const Ptr<HDPTreeMatcher> matcher = createMatcher(usePrediction);
+        SCOPED_TRACE(system.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
         const Mat left = pair.left.clone(), right = pair.right.clone();
         const Mat expected = match(*matcher, left, right);
         expectIdentical(pair.left, left); // the input is only read
@@ -214,6 +280,20 @@ TEST(HDPStereo_MatcherContract, kinds_of_arrays)
         Mat both = left.clone();
         matcher->compute(both, right, both);
         expectIdentical(expected, both);
+    }
+}
+
+//! What is around a region does not matter, in one channel no more than in three.
+TEST(HDPStereo_MatcherContract, regions_of_grey_images)
+{
+    const Mat left = oracle::grey(testPair().left), right = oracle::grey(testPair().right);
+    for (const System& system : allSystems())
+    {
+        SCOPED_TRACE(system.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
+        const Rect part(9, 5, 80, 60);
+        expectIdentical(match(*matcher, left(part).clone(), right(part).clone()),
+                        match(*matcher, left(part), right(part)));
     }
 }
 
@@ -263,7 +343,7 @@ TEST(HDPStereo_MatcherContract, one_channel_equals_three_equal_ones)
     Mat left3, right3;
     cv::merge(lefts, 3, left3);
     cv::merge(rights, 3, right3);
-    for (const PaperSystem& system : paperSystems)
+    for (const System& system : allSystems())
     {
         SCOPED_TRACE(system.name);
         const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
@@ -279,7 +359,7 @@ TEST(HDPStereo_MatcherContract, sizes_and_numbers_of_disparities)
                            Size(2, 2), Size(3, 3),   Size(2, 50),  Size(50, 2),  Size(4, 4),
                            Size(5, 7), Size(11, 11), Size(12, 13), Size(33, 21), Size(64, 31) };
     RNG rng(28);
-    for (const PaperSystem& system : paperSystems)
+    for (const System& system : allSystems())
         for (const Size& size : sizes)
             for (int type : { CV_8UC1, CV_8UC3 })
                 for (int count : { 1, 2, 7, 16, 300 })
@@ -288,25 +368,28 @@ TEST(HDPStereo_MatcherContract, sizes_and_numbers_of_disparities)
                     const Ptr<HDPTreeMatcher> matcher = createSystem(system, count);
                     const Mat disparity = match(*matcher, patchyImage(rng, size, type), patchyImage(rng, size, type));
                     ASSERT_EQ(size, disparity.size());
-                    expectWholeDisparities(disparity, *matcher);
+                    expectDisparities(disparity, *matcher);
                 }
 }
 
 TEST(HDPStereo_MatcherContract, any_number_of_layers)
 {
     const SyntheticPair& pair = testPair();
-    const Ptr<HDPTreeMatcher> matcher = createMatcher();
     const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
     for (int layer = 0; layer < 15; ++layer)
         model->addLayer(std::vector<double>(1, 0.2), std::vector<double>(1, 1.5), std::vector<double>(1, 1.));
-    matcher->setPredictionModel(model);
-    for (int layers = 1; layers <= 16; ++layers)
+    for (const System& system : { paperSystems[0], presetTree })
     {
-        matcher->setNumLayers(layers);
-        expectWholeDisparities(match(*matcher, pair.left, pair.right), *matcher);
-        std::vector<double> ratios;
-        matcher->getSearchRatios(ratios);
-        EXPECT_EQ((size_t)std::min(layers, 7), ratios.size()) << "121 x 90 pixels halved 6 times are 1 x 1";
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
+        matcher->setPredictionModel(model);
+        for (int layers = 1; layers <= 16; ++layers)
+        {
+            matcher->setNumLayers(layers);
+            expectDisparities(match(*matcher, pair.left, pair.right), *matcher);
+            std::vector<double> ratios;
+            matcher->getSearchRatios(ratios);
+            EXPECT_EQ((size_t)std::min(layers, 7), ratios.size()) << "121 x 90 pixels halved 6 times are 1 x 1";
+        }
     }
 }
 
@@ -315,10 +398,10 @@ TEST(HDPStereo_MatcherContract, any_number_of_layers)
 TEST(HDPStereo_MatcherContract, one_disparity)
 {
     const SyntheticPair& pair = testPair();
-    for (bool usePrediction : { false, true })
+    for (const System& system : someSystems)
         for (int minDisparity : { -7, 0, 9 })
         {
-            const Mat disparity = match(*createMatcher(usePrediction, minDisparity, 1), pair.left, pair.right);
+            const Mat disparity = match(*createSystem(system, 1, minDisparity), pair.left, pair.right);
             EXPECT_EQ(0, cv::countNonZero(disparity != 16 * minDisparity));
         }
 }
@@ -329,11 +412,13 @@ TEST(HDPStereo_MatcherContract, more_than_256_disparities)
     const int shift = 300;
     const Mat canvas = patchyImage(rng, Size(640 + shift, 48), CV_8UC3, 8);
     const Mat left = canvas.colRange(0, 640), right = canvas.colRange(shift, 640 + shift);
-    for (bool usePrediction : { false, true })
+    for (const System& system : someSystems)
     {
-        const Mat disparity = match(*createMatcher(usePrediction, 0, 400), left, right);
+        const Mat disparity = match(*createSystem(system, 400), left, right);
         const Mat inside = disparity.colRange(shift + 20, 640);
-        EXPECT_LE(cv::countNonZero(inside != 16 * shift), (int)inside.total() / 100) << "prediction " << usePrediction;
+        // Sub-pixel: the parabola may lean to the side whose costs are lower.
+        const Mat wrong = cv::abs(inside - 16 * shift) > (system.preset == presetTree.preset ? 8 : 0);
+        EXPECT_LE(cv::countNonZero(wrong), (int)inside.total() / 100) << system.name;
     }
 }
 
@@ -341,22 +426,23 @@ TEST(HDPStereo_MatcherContract, more_than_256_disparities)
 TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(240, 100), disparities, 9);
-    for (bool usePrediction : { false, true })
+    for (const System& system : someSystems)
     {
-        const Mat expected = match(*createMatcher(usePrediction), pair.left, pair.right);
+        const Mat expected = match(*createSystem(system, disparities), pair.left, pair.right);
         for (int k : { 1, 6, 16, -1, -6, -16 })
         {
-            SCOPED_TRACE(testing::Message() << "by " << k << ", prediction " << usePrediction);
+            SCOPED_TRACE(testing::Message() << system.name << " by " << k);
             Mat moved(pair.right.size(), pair.right.type());
             for (int x = 0; x < moved.cols; ++x)
                 pair.right.col(std::max(0, std::min(x + k, moved.cols - 1))).copyTo(moved.col(x));
-            const Ptr<HDPTreeMatcher> matcher = createMatcher(usePrediction, k);
+            const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities, k);
             const Mat disparity = match(*matcher, pair.left, moved);
-            expectWholeDisparities(disparity, *matcher);
+            expectDisparities(disparity, *matcher);
             const Range inside(disparities + 20, moved.cols - 36);
             const Mat difference = disparity.colRange(inside) - expected.colRange(inside);
             // The columns that only one of the pairs has count in P(D_l), and so reach every pixel.
-            EXPECT_LE(cv::countNonZero(difference != 16 * k), (int)difference.total() / (usePrediction ? 50 : 200));
+            const int share = !system.usePrediction ? 200 : matcher->getUseSubpixel() ? 25 : 50;
+            EXPECT_LE(cv::countNonZero(difference != 16 * k), (int)difference.total() / share);
         }
     }
 }
@@ -364,10 +450,10 @@ TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
 TEST(HDPStereo_MatcherContract, equal_images_have_disparity_0)
 {
     const Mat left = testPair().left;
-    for (const PaperSystem& system : paperSystems)
+    for (const System& system : allSystems())
     {
         const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
-        if (system.usePrediction) // 0 is left out of P(D_l), see the paper's program
+        if (matcher->getDisparityPrior() == HDPTreeMatcher::PRIOR_SUPPORT_POINTS) // which leave 0 out of P(D_l)
             matcher->setMinDisparity(-4);
         const Mat disparity = match(*matcher, left, left);
         EXPECT_LE(cv::countNonZero(disparity != 0), (int)disparity.total() / 50) << system.name;
@@ -443,7 +529,7 @@ TEST(HDPStereo_MatcherContract, any_number_of_threads)
 {
     const ThreadCount restore;
     const SyntheticPair pair = makeSyntheticPair(Size(203, 151), 40, 10);
-    for (const PaperSystem& system : paperSystems)
+    for (const System& system : allSystems())
     {
         Mat expected;
         for (int threads : { 1, 2, 3, 8 })
@@ -468,7 +554,7 @@ TEST(HDPStereo_MatcherContract, reused_equals_fresh)
     const Ptr<HDPTreeMatcher> reused = createMatcher();
     int i = 0;
     for (const Size& size : { Size(90, 60), Size(31, 80), Size(2, 2), Size(90, 60), Size(131, 77), Size(1, 1) })
-        for (const PaperSystem& system : paperSystems)
+        for (const System& system : allSystems())
             for (bool inColor : { true, false })
             {
                 SCOPED_TRACE(testing::Message() << system.name << ", " << size << (inColor ? ", colour" : ", grey"));
@@ -491,24 +577,26 @@ TEST(HDPStereo_MatcherContract, reused_equals_fresh)
 TEST(HDPStereo_MatcherContract, matchers_share_nothing)
 {
     const SyntheticPair& pair = testPair();
-    Mat expected[9], actual[9];
+    const std::vector<System> systems = allSystems();
+    std::vector<Mat> expected, actual(systems.size());
     std::vector<std::thread> threads;
-    for (int i = 0; i < 9; ++i)
-        expected[i] = match(*createSystem(paperSystems[i], disparities), pair.left, pair.right);
-    for (int i = 0; i < 9; ++i)
+    for (const System& system : systems)
+        expected.push_back(match(*createSystem(system, disparities), pair.left, pair.right));
+    for (size_t i = 0; i < systems.size(); ++i)
     {
+        const System& system = systems[i];
         Mat& result = actual[i];
-        threads.push_back(std::thread([i, &pair, &result] {
-            const Ptr<HDPTreeMatcher> matcher = createSystem(paperSystems[i], disparities);
+        threads.push_back(std::thread([&system, &pair, &result] {
+            const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
             for (int repetition = 0; repetition < 3; ++repetition)
                 matcher->compute(pair.left, pair.right, result);
         }));
     }
     for (std::thread& thread : threads)
         thread.join();
-    for (int i = 0; i < 9; ++i)
+    for (size_t i = 0; i < systems.size(); ++i)
     {
-        SCOPED_TRACE(paperSystems[i].name);
+        SCOPED_TRACE(systems[i].name);
         expectIdentical(expected[i], actual[i]);
     }
 }

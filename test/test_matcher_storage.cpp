@@ -30,6 +30,11 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setGradientTruncation(3.25);
     matcher->setColorWeight(0.25);
     matcher->setDisparityMedianSize(3);
+    matcher->setDisparityMedianPasses(4);
+    matcher->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
+    matcher->setDisparityPrior(HDPTreeMatcher::PRIOR_UPPER_LAYER);
+    matcher->setIntervalMargin(2);
+    matcher->setUseSubpixel(true);
     return matcher;
 }
 
@@ -69,6 +74,11 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(3.25, read->getGradientTruncation());
             EXPECT_EQ(0.25, read->getColorWeight());
             EXPECT_EQ(3, read->getDisparityMedianSize());
+            EXPECT_EQ(4, read->getDisparityMedianPasses());
+            EXPECT_EQ((int)HDPTreeMatcher::COST_CENSUS, read->getMatchingCost());
+            EXPECT_EQ((int)HDPTreeMatcher::PRIOR_UPPER_LAYER, read->getDisparityPrior());
+            EXPECT_EQ(2, read->getIntervalMargin());
+            EXPECT_TRUE(read->getUseSubpixel());
             expectIdentical(matchTestPair(*written), matchTestPair(*read));
         }
 }
@@ -201,6 +211,11 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "useMedianPrefilter", { "0.5", 0 } },
         { "numLayers", { "0", "-1", "17", "2147483647", "1.5", 0 } },
         { "disparityMedianSize", { "1", "2", "-2", "33", "2147483647", 0 } },
+        { "disparityMedianPasses", { "0", "-1", "9", "2147483647", "1.5", 0 } },
+        { "matchingCost", { "-1", "2", "2147483647", "0.5", 0 } },
+        { "disparityPrior", { "-1", "2", "2147483647", "0.5", 0 } },
+        { "intervalMargin", { "-1", "65", "2147483647", "0.5", 0 } },
+        { "useSubpixel", { "0.5", 0 } },
         { "delta0", { "-0.5", "1.", "1e300", 0 } },
         { "beta", { "-0.5", "1.5", "-1e300", 0 } },
         { "gamma", { "0", "0.", "-19.5", 0 } },
@@ -241,6 +256,20 @@ TEST(HDPStereo_MatcherStorage, missing_keys)
     deserialize(withValue(text, "numDisparities", ""), *matcher);
     EXPECT_EQ(defaults->getNumDisparities(), matcher->getNumDisparities());
     EXPECT_EQ(19.5, matcher->getGamma());
+}
+
+//! A file that knows nothing of the parameters that later versions have means the paper's system.
+TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
+{
+    const char* const added[] = { "disparityMedianPasses", "matchingCost", "disparityPrior", "intervalMargin",
+                                  "useSubpixel" };
+    const Ptr<HDPTreeMatcher> paper = HDPTreeMatcher::create(3, 19, HDPTreeMatcher::PRESET_PAPER);
+    std::string text = serialized(*paper);
+    for (const char* key : added)
+        text = withValue(text, key, "");
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, HDPTreeMatcher::PRESET_TREE);
+    deserialize(text, *matcher);
+    EXPECT_EQ(serialized(*paper), serialized(*matcher));
 }
 
 TEST(HDPStereo_MatcherStorage, unknown_strategy)

@@ -11,7 +11,7 @@ namespace {
 using hdp::MatchingCost;
 using hdp::MatchingCostParams;
 
-const MatchingCostParams paperParams = { 10, 2, 0.11f, 1 };
+const MatchingCostParams paperParams = { false, 10, 2, 0.11f, 1 };
 
 //! What the cost may be off: the library holds gradients in 1/32 levels. For images of one channel that is exact.
 double toleranceOf(int channels, const MatchingCostParams& params)
@@ -19,8 +19,8 @@ double toleranceOf(int channels, const MatchingCostParams& params)
     return channels == 1 ? 1e-5 : (1 - params.colorWeight) / 32 + 1e-5;
 }
 
-template <int lanes>
-void expectFormula(const MatchingCost& cost, const oracle::Cost& formula, Size size, int candidates, double tolerance)
+template <int lanes, typename Formula>
+void expectFormula(const MatchingCost& cost, const Formula& formula, Size size, int candidates, double tolerance)
 {
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
@@ -71,7 +71,7 @@ TEST_P(HDPStereo_MatchingCost, truncations_and_weight)
     const float settings[][3] = { { 0, 2, 0.5f }, { 30, 0, 0.5f }, { 30, 25, 0 }, { 30, 25, 1 }, { 1e6f, 150, 0.3f } };
     for (const float* s : settings)
     {
-        const MatchingCostParams params = { s[0], s[1], s[2], get<1>(GetParam()) };
+        const MatchingCostParams params = { false, s[0], s[1], s[2], get<1>(GetParam()) };
         testCost(left, right, 9, params);
     }
 }
@@ -105,6 +105,113 @@ TEST(HDPStereo_MatchingCostInput, strong_edges_at_the_border)
 {
     const Mat left = (Mat_<uchar>(1, 4) << 10, 210, 30, 130), right = (Mat_<uchar>(1, 4) << 10, 130, 30, 230);
     testCost(left, right, 4, paperParams);
+}
+
+//////////////////////////////////////////// census ////////////////////////////////////////////
+
+MatchingCostParams censusParams(int blockSize)
+{
+    MatchingCostParams params = paperParams;
+    params.census = true;
+    params.blockSize = blockSize;
+    return params;
+}
+
+void testCensus(const Mat& left, const Mat& right, int candidates, int blockSize)
+{
+    SCOPED_TRACE(testing::Message() << left.size() << ", channels " << left.channels() << ", candidates " << candidates
+                                    << ", block " << blockSize);
+    MatchingCost cost;
+    cost.prepare(left, right, candidates, censusParams(blockSize));
+    const oracle::CensusCost formula(left, right, blockSize);
+    expectFormula<4>(cost, formula, left.size(), candidates, 0);
+    expectFormula<8>(cost, formula, left.size(), candidates, 0);
+}
+
+// channels, blockSize
+typedef testing::TestWithParam<tuple<int, int>> HDPStereo_CensusCost;
+
+TEST_P(HDPStereo_CensusCost, definition_per_pixel)
+{
+    const int type = CV_8UC(get<0>(GetParam())), blockSize = get<1>(GetParam());
+    RNG rng(30);
+    for (const Size& size : { Size(1, 1), Size(1, 5), Size(5, 1), Size(2, 2), Size(3, 4), Size(23, 9) })
+        for (int levels : { 2, 5, 256 }) // with few levels many pixels are as dark as the centre
+            for (int candidates : { 1, 6, size.width + 10 })
+                testCensus(randomImage(rng, size, type, levels), randomImage(rng, size, type, levels), candidates,
+                           blockSize);
+}
+
+TEST_P(HDPStereo_CensusCost, regions_of_interest)
+{
+    const int type = CV_8UC(get<0>(GetParam())), blockSize = get<1>(GetParam());
+    RNG rng(31);
+    const Mat left = randomImage(rng, Size(30, 20), type), right = randomImage(rng, Size(30, 20), type);
+    testCensus(left(Rect(3, 2, 17, 8)), right(Rect(6, 5, 17, 8)), 9, blockSize);
+}
+
+//! Every compared pixel differs: the most that the cost can be.
+TEST_P(HDPStereo_CensusCost, largest_cost)
+{
+    const int type = CV_8UC(get<0>(GetParam())), blockSize = get<1>(GetParam());
+    Mat left(9, 9, type, Scalar::all(100)), right(9, 9, type, Scalar::all(100));
+    left(Rect(4, 4, 1, 1)).setTo(Scalar::all(200)); // brighter than all around, in the right image darker
+    right(Rect(4, 4, 1, 1)).setTo(Scalar::all(50));
+    MatchingCost cost;
+    cost.prepare(left, right, 4, censusParams(blockSize));
+    float costs[4];
+    cost.evaluate<4>(4, 4, 0, costs);
+    EXPECT_EQ(blockSize * blockSize / 2, costs[0]);
+    testCensus(left, right, 4, blockSize);
+}
+
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_CensusCost, testing::Combine(testing::Values(1, 3), testing::Values(3, 5, 7)));
+
+//! A monotone change of one image's grey levels changes nothing.
+TEST(HDPStereo_MatchingCostInput, census_is_the_same_for_any_exposure)
+{
+    const int candidates = 11, count = 100; // of grey levels
+    RNG rng(32);
+    const Size size(25, 14);
+    const Mat left = randomImage(rng, size, CV_8UC1, count), right = randomImage(rng, size, CV_8UC1, count);
+    Mat levels(1, 256, CV_8UC1, Scalar(255)), exposed;
+    for (int i = 0, level = 0; i < count; ++i, level += rng.uniform(1, 3))
+        levels.at<uchar>(i) = (uchar)level;
+    cv::LUT(right, levels, exposed);
+    ASSERT_GT(countDifferent(right, exposed), 0);
+    for (int blockSize : { 3, 5, 7 })
+    {
+        MatchingCost before, after;
+        before.prepare(left, right, candidates, censusParams(blockSize));
+        after.prepare(left, exposed, candidates, censusParams(blockSize));
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+            {
+                float expected[8], actual[8];
+                before.evaluate<8>(y, x, 3, expected);
+                after.evaluate<8>(y, x, 3, actual);
+                for (int k = 0; k < 8; ++k)
+                    ASSERT_EQ(expected[k], actual[k]) << "y " << y << " x " << x << " candidate " << 3 + k;
+            }
+    }
+}
+
+//! An object changes between the costs.
+TEST(HDPStereo_MatchingCostInput, prepared_again_for_another_cost)
+{
+    RNG rng(33);
+    MatchingCost cost;
+    for (int repetition = 0; repetition < 2; ++repetition)
+        for (int type : { CV_8UC3, CV_8UC1 })
+            for (const Size& size : { Size(20, 8), Size(7, 12) })
+            {
+                const Mat left = randomImage(rng, size, type), right = randomImage(rng, size, type);
+                cost.prepare(left, right, size.width, paperParams);
+                expectFormula<8>(cost, oracle::Cost(left, right, paperParams), size, size.width,
+                                 toleranceOf(left.channels(), paperParams));
+                cost.prepare(left, right, size.width, censusParams(5));
+                expectFormula<8>(cost, oracle::CensusCost(left, right, 5), size, size.width, 0);
+            }
 }
 
 } // namespace

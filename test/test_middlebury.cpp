@@ -7,7 +7,7 @@
 
 #include "test_precomp.hpp"
 #include "helpers.hpp"
-#include "paper_systems.hpp"
+#include "systems.hpp"
 #include "synthetic_pair.hpp"
 
 namespace opencv_test {
@@ -75,7 +75,7 @@ TEST_P(HDPStereo_SlowMiddlebury, error_like_the_authors_program)
     if (!data)
         throw SkipTestException("HDPSTEREO_DATA does not name a folder with middlebury2006");
     const Published& expected = GetParam();
-    const PaperSystem* system = paperSystems;
+    const System* system = paperSystems;
     while (std::string(system->name) != expected.system)
         ++system;
     const int scale = std::string(expected.size) == "full" ? 1 : 2;

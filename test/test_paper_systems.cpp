@@ -4,13 +4,13 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "paper_systems.hpp"
+#include "systems.hpp"
 #include "synthetic_pair.hpp"
 
 namespace opencv_test {
 namespace {
 
-typedef testing::TestWithParam<PaperSystem> HDPStereo_PaperSystem;
+typedef testing::TestWithParam<System> HDPStereo_PaperSystem;
 
 //////////////////////////////////// the whole system, slowly ////////////////////////////////////
 
@@ -30,10 +30,10 @@ Mat winners(const oracle::Forest& forest, const Mat_<double>& costs, Size size)
 }
 
 //! The paper from images to disparities, made of nothing but the oracles, with its settings for small images.
-Mat matchByOracles(const Mat& left, const Mat& right, int numDisparities, const PaperSystem& system)
+Mat matchByOracles(const Mat& left, const Mat& right, int numDisparities, const System& system)
 {
     const double delta0 = 0.004, beta = 0.95;
-    const hdp::MatchingCostParams costParams = { 10, 2, 0.11f, 1 };
+    const hdp::MatchingCostParams costParams = { false, 10, 2, 0.11f, 1 };
     const Ptr<TreeStrategy> strategy = system.createTree();
     const Ptr<DisparityPredictionModel> model =
         DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL);
@@ -76,7 +76,7 @@ Mat matchByOracles(const Mat& left, const Mat& right, int numDisparities, const 
 }
 
 //! Share of the pixels in which the library and the oracles differ
-double differenceToOracles(const PaperSystem& system, bool inColor)
+double differenceToOracles(const System& system, bool inColor)
 {
     const int numDisparities = 23;
     int different = 0, all = 0;
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_PaperSystem, testing::ValuesIn(paperSyst
 
 //////////////////////////////////// the Aloe pair ////////////////////////////////////
 
-typedef testing::TestWithParam<PaperSystem> HDPStereo_SlowAloe;
+typedef testing::TestWithParam<System> HDPStereo_SlowAloe;
 
 //! The authors' program on the same images has these errors; a percentage point is left for what is random (RT) or
 //! open (the order of equal edges).

@@ -2,8 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The disparity maps of the paper's nine systems, compared with those in testdata/cv/hdpstereo, which are found through
-// OPENCV_TEST_DATA_PATH=<checkout>/testdata: PAIR_SYSTEM.png, 8 bit, whole disparities. The pairs are not stored:
+// The disparity maps of the paper's nine systems and of PRESET_TREE, compared with those in testdata/cv/hdpstereo,
+// which are found through OPENCV_TEST_DATA_PATH=<checkout>/testdata: PAIR_SYSTEM.png, whole disparities in 8 bit or, of a
+// matcher with sub-pixel ones, disparities times 16 in 16 bit. The pairs are not stored:
 // "synthetic" is generated, and "aloe" is the Aloe pair of OpenCV's samples, reduced to a quarter of its width.
 //
 // To make the maps again, after a change that is meant to change them and with all other tests passing:
@@ -22,30 +23,33 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "paper_systems.hpp"
+#include "systems.hpp"
 #include "synthetic_pair.hpp"
 
 namespace opencv_test {
 namespace {
 
-//! Compares a map with its reference, or writes it.
-void checkReference(const std::string& name, const Mat& disparity)
+//! Compares a matcher's map with its reference, or writes it.
+void checkReference(const std::string& name, HDPTreeMatcher& matcher, const Mat& left, const Mat& right)
 {
     const double tolerance = 0.005;
-    Mat whole;
-    disparity.convertTo(whole, CV_8U, 1. / StereoMatcher::DISP_SCALE);
+    Mat map;
+    if (matcher.getUseSubpixel())
+        match(matcher, left, right).convertTo(map, CV_16U);
+    else
+        match(matcher, left, right).convertTo(map, CV_8U, 1. / StereoMatcher::DISP_SCALE);
     if (const char* folder = std::getenv("HDPSTEREO_WRITE_REFERENCE"))
     {
         const std::string path = std::string(folder) + "/" + name;
-        ASSERT_TRUE(cv::imwrite(path, whole)) << "cannot write " << path;
+        ASSERT_TRUE(cv::imwrite(path, map)) << "cannot write " << path;
         throw SkipTestException("written: " + path);
     }
     const Mat reference = cv::imread(cvtest::findDataFile("hdpstereo/" + name), IMREAD_UNCHANGED);
     ASSERT_FALSE(reference.empty());
-    ASSERT_EQ(whole.type(), reference.type());
-    ASSERT_EQ(whole.size(), reference.size());
-    const int different = countDifferent(reference, whole);
-    EXPECT_LE(different, tolerance * whole.total()) << name << ": " << 100. * different / whole.total() << " % differ";
+    ASSERT_EQ(map.type(), reference.type());
+    ASSERT_EQ(map.size(), reference.size());
+    const int different = countDifferent(reference, map);
+    EXPECT_LE(different, tolerance * map.total()) << name << ": " << 100. * different / map.total() << " % differ";
 }
 
 //! FNV-1a of the pixels of a continuous image
@@ -67,24 +71,25 @@ Mat readReduced(const std::string& name, uint64 expected)
     return reduced;
 }
 
-typedef testing::TestWithParam<PaperSystem> HDPStereo_ReferenceOutput;
+typedef testing::TestWithParam<System> HDPStereo_ReferenceOutput;
+typedef testing::TestWithParam<System> HDPStereo_ReferenceOutputAloe;
 
 TEST_P(HDPStereo_ReferenceOutput, synthetic)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 100);
-    const Mat disparity = match(*createSystem(GetParam(), 32), pair.left, pair.right);
-    checkReference(std::string("synthetic_") + GetParam().fileName + ".png", disparity);
+    checkReference(std::string("synthetic_") + GetParam().fileName + ".png", *createSystem(GetParam(), 32), pair.left,
+                   pair.right);
 }
 
-TEST_P(HDPStereo_ReferenceOutput, aloe)
+TEST_P(HDPStereo_ReferenceOutputAloe, aloe)
 {
     const Mat left = readReduced("aloeL.jpg", 17099323032531505918ULL),
               right = readReduced("aloeR.jpg", 9001120562101999804ULL);
-    const Mat disparity = match(*createSystem(GetParam(), 64), left, right);
-    checkReference(std::string("aloe_") + GetParam().fileName + ".png", disparity);
+    checkReference(std::string("aloe_") + GetParam().fileName + ".png", *createSystem(GetParam(), 64), left, right);
 }
 
-INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutput, testing::ValuesIn(paperSystems));
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutput, testing::ValuesIn(allSystems()));
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutputAloe, testing::ValuesIn(paperSystems));
 
 } // namespace
 } // namespace opencv_test

@@ -46,8 +46,7 @@ public:
     @param layer 0 .. getNumLayers() - 1.
     @param means, sigmas, weights Receive K numbers each.
      */
-    CV_WRAP virtual void getLayer(int layer, CV_OUT std::vector<double>& means,
-                                  CV_OUT std::vector<double>& sigmas,
+    CV_WRAP virtual void getLayer(int layer, CV_OUT std::vector<double>& means, CV_OUT std::vector<double>& sigmas,
                                   CV_OUT std::vector<double>& weights) const = 0;
 
     /** @brief \f$GMM_l(o)\f$, the density of the mixture at an offset.

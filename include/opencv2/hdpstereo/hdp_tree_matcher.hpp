@@ -33,15 +33,15 @@ The parameters that cv::StereoMatcher declares mean what they mean there:
 - minDisparity: the smallest disparity in pixels, of any sign.
 - numDisparities: number of candidates, > 0, no multiple of 16 needed. The largest disparity is
   minDisparity + numDisparities - 1; minDisparity - 1 and this one must fit into CV_16S, times 16.
-- blockSize: the side of the square window over which the matching cost is averaged, odd, 1..31; 1, as in the
-  paper, is one pixel.
+- blockSize: the side of the matching cost's square window, odd, 1..31: the paper's cost is averaged over it (1, as in
+  the paper, is one pixel), the census cost compares its pixels.
 - disp12MaxDiff: largest allowed difference, in pixels, between the disparity of a left pixel and the largest one
   that maps to the same pixel of the right image; other pixels become invalid. <= 0 turns the check off.
 - speckleWindowSize, speckleRange: see cv::filterSpeckles; speckleRange is in pixels, a window size of 0 turns the
   filter off.
 
-The result does not depend on the number of threads nor on the processor's SIMD width. A matcher may be used from one thread at a time; two
-matchers never share state. Reused for pairs of the same size it keeps its buffers.
+The result does not depend on the number of threads nor on the processor's SIMD width. A matcher may be used from one
+thread at a time; two matchers never share state. Reused for pairs of the same size it keeps its buffers.
 
 Setters throw cv::Exception for values out of their range and leave the matcher as it was. What depends on several
 parameters or on the images is checked by compute(), before it does any work.
@@ -52,7 +52,23 @@ public:
     //! Sets of parameters. A preset only sets values that have setters of their own.
     enum
     {
-        PRESET_PAPER = 0 //!< the system that made the paper's tables, HDP+MST; see also setTreeStrategy()
+        PRESET_PAPER = 0, //!< the system that made the paper's tables, HDP+MST; see also setTreeStrategy()
+        PRESET_TREE = 4 //!< trees on every layer as in the paper, with the census cost, the layer above as prior and a
+                        //!< sub-pixel winner: half the errors of PRESET_PAPER on Middlebury 2006, and faster
+    };
+
+    //! Matching costs
+    enum
+    {
+        COST_COLOR_GRADIENT = 0, //!< truncated colour and gradient difference, the paper's; see setColorTruncation()
+        COST_CENSUS = 1          //!< number of pixels in the window that are darker than its centre in one image only
+    };
+
+    //! Where the distribution P(D_l) of a layer's disparities comes from
+    enum
+    {
+        PRIOR_SUPPORT_POINTS = 0, //!< sparse, left-right checked matches in the layer, the paper's
+        PRIOR_UPPER_LAYER = 1     //!< the disparities of the layer above, which are there already
     };
 
     //! Value of delta0, beta and the disparity median that leaves the choice to the matcher
@@ -143,6 +159,37 @@ public:
     /** @copybrief setDisparityMedianSize @sa setDisparityMedianSize */
     CV_WRAP virtual int getDisparityMedianSize() const = 0;
 
+    /** @brief How often the median filter runs over each layer's disparities: 1..8, 1 by default. */
+    CV_WRAP virtual void setDisparityMedianPasses(int passes) = 0;
+    /** @copybrief setDisparityMedianPasses @sa setDisparityMedianPasses */
+    CV_WRAP virtual int getDisparityMedianPasses() const = 0;
+
+    /** @brief The matching cost: HDPTreeMatcher::COST_COLOR_GRADIENT (default) or HDPTreeMatcher::COST_CENSUS.
+
+    The census cost compares every second pixel of the window, as on a checkerboard, with its centre, in grey; blockSize
+    must be 3, 5 or 7 then. It does not depend on the exposure of the images. */
+    CV_WRAP virtual void setMatchingCost(int matchingCost) = 0;
+    /** @copybrief setMatchingCost @sa setMatchingCost */
+    CV_WRAP virtual int getMatchingCost() const = 0;
+
+    /** @brief Where P(D_l) comes from: HDPTreeMatcher::PRIOR_SUPPORT_POINTS (default), which leaves out disparities of
+    textureless surfaces, or HDPTreeMatcher::PRIOR_UPPER_LAYER, which costs nothing. */
+    CV_WRAP virtual void setDisparityPrior(int disparityPrior) = 0;
+    /** @copybrief setDisparityPrior @sa setDisparityPrior */
+    CV_WRAP virtual int getDisparityPrior() const = 0;
+
+    /** @brief Candidates added on both sides of each predicted interval, 0..64; 0 by default. A sub-pixel winner needs
+    neighbours, so 1 pays with setUseSubpixel(). */
+    CV_WRAP virtual void setIntervalMargin(int margin) = 0;
+    /** @copybrief setIntervalMargin @sa setIntervalMargin */
+    CV_WRAP virtual int getIntervalMargin() const = 0;
+
+    /** @brief Whether the winner is moved to the minimum of the parabola through its aggregated cost and those of the
+    candidates beside it, in 1/16 pixel (true), or is a whole disparity (false, default). */
+    CV_WRAP virtual void setUseSubpixel(bool useSubpixel) = 0;
+    /** @copybrief setUseSubpixel @sa setUseSubpixel */
+    CV_WRAP virtual bool getUseSubpixel() const = 0;
+
     /** @brief Share of the disparity range that the last compute() searched, \f$R_l\f$ of the paper's Table 1.
     @param ratios Receives a number in [0, 1] per layer, the finest first; empty before the first compute().
      */
@@ -158,7 +205,7 @@ public:
     /** @brief Creates a matcher.
     @param minDisparity Smallest disparity in pixels.
     @param numDisparities Number of candidates, > 0.
-    @param preset HDPTreeMatcher::PRESET_PAPER.
+    @param preset HDPTreeMatcher::PRESET_PAPER or HDPTreeMatcher::PRESET_TREE.
      */
     CV_WRAP static Ptr<HDPTreeMatcher> create(int minDisparity = 0, int numDisparities = 64,
                                               int preset = HDPTreeMatcher::PRESET_PAPER);
