@@ -5,7 +5,6 @@
 #include "disparity_prediction.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace cv {
 namespace stereo {
@@ -43,6 +42,9 @@ DisparityInterval growInterval(const std::vector<double>& row, double delta, int
     return interval;
 }
 
+//! Of a disparity times scale.
+int wholeDisparity(int disparity, int scale) { return (disparity + scale / 2) / scale; }
+
 } // namespace
 
 void predictIntervals(const DisparityPredictionModel& model, int layer, const std::vector<double>& prior,
@@ -72,7 +74,7 @@ void upperHistogram(const Mat& upper, int scale, int numDisparities, std::vector
     std::vector<double> pixels((numDisparities + 1) / 2);
     for (int y = 0; y < upper.rows; ++y)
         for (int x = 0; x < upper.cols; ++x)
-            ++pixels[(upper.at<ushort>(y, x) + scale / 2) / scale];
+            ++pixels[wholeDisparity(upper.at<ushort>(y, x), scale)];
     histogram.resize(numDisparities);
     for (int d = 0; d < numDisparities; ++d)
         histogram[d] = pixels[d / 2] + (double)upper.total() / pixels.size();
@@ -88,7 +90,7 @@ void assignIntervals(const Mat& upper, int scale, Size size, const std::vector<D
             const ushort* above = upper.ptr<ushort>(std::min(y / 2, upper.rows - 1));
             DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
             for (int x = 0; x < size.width; ++x)
-                interval[x] = intervals[(above[std::min(x / 2, upper.cols - 1)] + scale / 2) / scale];
+                interval[x] = intervals[wholeDisparity(above[std::min(x / 2, upper.cols - 1)], scale)];
         }
     });
 }
@@ -102,8 +104,6 @@ struct GaussianMixture
     std::vector<double> means, sigmas, weights;
 };
 
-bool isFinite(double value) { return std::abs(value) <= std::numeric_limits<double>::max(); }
-
 GaussianMixture checkedMixture(const std::vector<double>& means, const std::vector<double>& sigmas,
                                const std::vector<double>& weights)
 {
@@ -114,9 +114,9 @@ GaussianMixture checkedMixture(const std::vector<double>& means, const std::vect
     double sum = 0;
     for (size_t k = 0; k < means.size(); ++k)
     {
-        if (!isFinite(means[k]))
+        if (!std::isfinite(means[k]))
             CV_Error(Error::StsOutOfRange, "means must be finite");
-        if (!isFinite(sigmas[k]) || sigmas[k] <= 0)
+        if (!std::isfinite(sigmas[k]) || sigmas[k] <= 0)
             CV_Error(Error::StsOutOfRange, "sigmas must be finite and > 0");
         if (!(weights[k] >= 0 && weights[k] <= 1))
             CV_Error(Error::StsOutOfRange, "weights must be in [0, 1]");

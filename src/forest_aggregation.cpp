@@ -85,9 +85,12 @@ struct Aggregation
 
     int width() const { return forest.links.cols; }
 
+    //! Candidates on each side of a run that are there for the parabola
+    static int margin(bool subpixel) { return subpixel ? 1 : 0; }
+
     static int countRuns(int candidates, bool subpixel)
     {
-        const int step = subpixel ? chunk - 2 : chunk;
+        const int step = chunk - 2 * margin(subpixel);
         return candidates <= chunk ? 1 : (candidates + step - 1) / step;
     }
 
@@ -99,10 +102,10 @@ struct Aggregation
             const Candidates all = { first, end - first, first, end };
             return all;
         }
-        const int margin = subpixel ? 1 : 0, step = chunk - 2 * margin;
+        const int beside = margin(subpixel), step = chunk - 2 * beside;
         const int begin = first + i * step;
-        Candidates some = { std::max(begin - margin, first), 0, begin, std::min(begin + step, end) };
-        some.count = std::min(begin + step + margin, end) - some.first;
+        Candidates some = { std::max(begin - beside, first), 0, begin, std::min(begin + step, end) };
+        some.count = std::min(begin + step + beside, end) - some.first;
         return some;
     }
 

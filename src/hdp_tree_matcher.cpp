@@ -12,7 +12,7 @@
 #include "support_points.hpp"
 #include "tree_strategy.hpp"
 
-#include <limits>
+#include <cmath>
 
 namespace cv {
 namespace stereo {
@@ -37,8 +37,6 @@ template <typename T> T checked(T value, bool isValid, const char* name, const c
     }
     return value;
 }
-
-bool isFinite(double value) { return std::abs(value) <= std::numeric_limits<double>::max(); }
 
 //! What a preset sets and a file holds. Setters only take values that are valid by themselves; what depends on several
 //! of them or on the images is checked in compute().
@@ -81,8 +79,8 @@ struct Parameters
     }
     void setSpeckleRange(int value)
     {
-        speckleRange =
-            checked(value, value >= 0 && value <= SHRT_MAX / cv::StereoMatcher::DISP_SCALE, "speckleRange", "in 0..2047");
+        speckleRange = checked(value, value >= 0 && value <= SHRT_MAX / cv::StereoMatcher::DISP_SCALE, "speckleRange",
+                               "in 0..2047");
     }
     void setDisp12MaxDiff(int value) { disp12MaxDiff = value; }
     void setTreeStrategy(const Ptr<TreeStrategy>& value)
@@ -104,14 +102,18 @@ struct Parameters
     {
         beta = checked(value, value == HDPTreeMatcher::AUTO || (value >= 0 && value <= 1), "beta", "in [0, 1] or AUTO");
     }
-    void setGamma(double value) { gamma = checked(value, isFinite(value) && value > 0, "gamma", "finite and > 0"); }
+    void setGamma(double value)
+    {
+        gamma = checked(value, std::isfinite(value) && value > 0, "gamma", "finite and > 0");
+    }
     void setColorTruncation(double value)
     {
-        colorTruncation = checked(value, isFinite(value) && value >= 0, "colorTruncation", "finite and >= 0");
+        colorTruncation = checked(value, std::isfinite(value) && value >= 0, "colorTruncation", "finite and >= 0");
     }
     void setGradientTruncation(double value)
     {
-        gradientTruncation = checked(value, isFinite(value) && value >= 0, "gradientTruncation", "finite and >= 0");
+        gradientTruncation =
+            checked(value, std::isfinite(value) && value >= 0, "gradientTruncation", "finite and >= 0");
     }
     void setColorWeight(double value)
     {
@@ -275,15 +277,30 @@ public:
 
     void write(FileStorage& fs) const CV_OVERRIDE
     {
-        fs << "name" << getDefaultName() << "minDisparity" << p_.minDisparity << "numDisparities" << p_.numDisparities
-           << "blockSize" << p_.blockSize << "speckleWindowSize" << p_.speckleWindowSize << "speckleRange"
-           << p_.speckleRange << "disp12MaxDiff" << p_.disp12MaxDiff << "usePrediction" << (int)p_.usePrediction
-           << "useMedianPrefilter" << (int)p_.useMedianPrefilter << "numLayers" << p_.numLayers << "delta0" << p_.delta0
-           << "beta" << p_.beta << "gamma" << p_.gamma << "colorTruncation" << p_.colorTruncation
-           << "gradientTruncation" << p_.gradientTruncation << "colorWeight" << p_.colorWeight << "disparityMedianSize"
-           << p_.disparityMedianSize << "disparityMedianPasses" << p_.disparityMedianPasses << "matchingCost"
-           << p_.matchingCost << "disparityPrior" << p_.disparityPrior << "intervalMargin" << p_.intervalMargin
+        // clang-format off
+        fs << "name" << getDefaultName()
+           << "minDisparity" << p_.minDisparity
+           << "numDisparities" << p_.numDisparities
+           << "blockSize" << p_.blockSize
+           << "speckleWindowSize" << p_.speckleWindowSize
+           << "speckleRange" << p_.speckleRange
+           << "disp12MaxDiff" << p_.disp12MaxDiff
+           << "usePrediction" << (int)p_.usePrediction
+           << "useMedianPrefilter" << (int)p_.useMedianPrefilter
+           << "numLayers" << p_.numLayers
+           << "delta0" << p_.delta0
+           << "beta" << p_.beta
+           << "gamma" << p_.gamma
+           << "colorTruncation" << p_.colorTruncation
+           << "gradientTruncation" << p_.gradientTruncation
+           << "colorWeight" << p_.colorWeight
+           << "disparityMedianSize" << p_.disparityMedianSize
+           << "disparityMedianPasses" << p_.disparityMedianPasses
+           << "matchingCost" << p_.matchingCost
+           << "disparityPrior" << p_.disparityPrior
+           << "intervalMargin" << p_.intervalMargin
            << "useSubpixel" << (int)p_.useSubpixel;
+        // clang-format on
         fs << "treeStrategy"
            << "{"
            << "strategy" << p_.treeStrategy->getDefaultName();
@@ -417,7 +434,7 @@ private:
                     disparityHistogram(points_, disparities, prior_);
                 });
             else
-                upperHistogram(disparity_, scale, disparities, prior_);
+                clock_.run("disparity prediction", [&] { upperHistogram(disparity_, scale, disparities, prior_); });
             clock_.run("disparity prediction", [&] {
                 predictIntervals(*settings.model, layer, prior_, layerDisparities(p_.numDisparities, layer + 1),
                                  settings.delta0 * (1 << layer), p_.intervalMargin, intervals_);
@@ -443,8 +460,8 @@ private:
             swap(winner_, disparity_);
             for (int pass = 0; settings.medianSize > 0 && pass < p_.disparityMedianPasses; ++pass)
             {
-                swap(disparity_, winner_);
-                medianDisparity(winner_, settings.medianSize, disparity_);
+                medianDisparity(disparity_, settings.medianSize, winner_);
+                swap(winner_, disparity_);
             }
         });
     }

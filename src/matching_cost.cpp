@@ -23,8 +23,8 @@ const int padding = 8;
 // Units of a gradient in one intensity level a pixel: the largest, borderGain * 255, still fits into 16 bit
 const int gradientScale = 32;
 
-// How much more than inside the image the one-sided difference counts at the border. With this factor the disparities
-// near the left border are those of the authors' program; it keeps smooth surfaces from matching the clamped column.
+// How much more than inside the image the one-sided difference counts at the border. It keeps smooth surfaces from
+// matching the clamped column; the factor is fitted to the disparity maps of the authors' program.
 const int borderGain = 4;
 
 //! Grey levels, 0.299 R + 0.587 G + 0.114 B, in 1 / 65536. Rounded to whole levels they cost accuracy: the gradients of

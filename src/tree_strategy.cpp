@@ -4,7 +4,7 @@
 #include "precomp.hpp"
 #include "tree_strategy.hpp"
 
-#include <limits>
+#include <cmath>
 
 namespace cv {
 namespace stereo {
@@ -42,7 +42,7 @@ namespace {
 
 double checkedK(double k)
 {
-    if (!(k >= 0 && k <= std::numeric_limits<double>::max()))
+    if (!(k >= 0 && std::isfinite(k)))
         CV_Error(Error::StsOutOfRange, "k must be finite and >= 0");
     return k;
 }
