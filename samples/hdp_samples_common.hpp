@@ -14,6 +14,8 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <functional>
+#include <iostream>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -22,6 +24,7 @@
 
 #include "opencv2/core.hpp"
 #include "opencv2/core/utility.hpp"
+#include "opencv2/core/utils/logger.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 #include "opencv2/hdpstereo.hpp"
@@ -100,6 +103,66 @@ inline int getInteger(const cv::CommandLineParser& parser, const String& name, i
     return int(value);
 }
 
+//! The module's presets, by the names that the samples know them by.
+struct Preset
+{
+    const char* name;
+    int value;
+};
+const Preset PRESETS[] = { { "paper", cv::stereo::HDPTreeMatcher::PRESET_PAPER },
+                           { "tree", cv::stereo::HDPTreeMatcher::PRESET_TREE } };
+
+inline int getPreset(const cv::CommandLineParser& parser, const String& option)
+{
+    const String name = parser.get<String>(option);
+    String names;
+    for (const Preset& preset : PRESETS)
+    {
+        if (name == preset.name)
+            return preset.value;
+        names += (names.empty() ? "" : ", ") + String(preset.name);
+    }
+    fail("--" + option + "=" + name + ": unknown, there are: " + names);
+    return -1;
+}
+
+//! The range that --min-disparity and --num-disparities give; by default a fifth of the width.
+inline cv::Range getDisparities(const cv::CommandLineParser& parser, cv::Size size)
+{
+    const int limit = 1 << 15; // the matchers themselves are stricter
+    const int minDisparity = getInteger(parser, "min-disparity", -limit, limit);
+    const int numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, limit)
+                                                             : std::max(int(cv::alignSize(size.width / 5, 16)), 16);
+    return cv::Range(minDisparity, minDisparity + numDisparities);
+}
+
+//! main() of a sample: its exit status. Errors are reported in one line.
+inline int runSample(int argc, char** argv, const String& keys, const String& about, const std::vector<String>& flags,
+                     int maxPositional, const std::function<void(const cv::CommandLineParser&)>& run)
+{
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    try
+    {
+        cv::CommandLineParser parser(argc, argv, keys);
+        parser.about(about);
+        checkArguments(argc, argv, parser, flags, maxPositional);
+        if (parser.has("help"))
+            parser.printMessage();
+        else
+            run(parser);
+        return 0;
+    }
+    catch (const cv::Exception& e)
+    {
+        std::cerr << "error: " << e.err << std::endl;
+    }
+    catch (const std::exception& e)
+    {
+        std::cerr << "error: " << e.what() << std::endl;
+    }
+    return 1;
+}
+
 // ---- Files
 
 inline bool hasExtension(const String& path, const String& extension)
@@ -156,6 +219,18 @@ inline Mat readDisparity(const String& path, double scale = 0)
     const Mat known = isFloat ? Mat(cv::abs(image) <= std::numeric_limits<float>::max()) : Mat(image != 0);
     disparity.setTo(NO_DISPARITY, ~known);
     return disparity;
+}
+
+//! The rectified pair given as @left and @right, CV_8UC3.
+inline void readPair(const cv::CommandLineParser& parser, Mat& left, Mat& right)
+{
+    if (!parser.has("@left") || !parser.has("@right"))
+        fail("a left and a right image are needed, see --help");
+    left = readImage(parser.get<String>("@left"), cv::IMREAD_COLOR);
+    right = readImage(parser.get<String>("@right"), cv::IMREAD_COLOR);
+    if (left.size() != right.size())
+        fail(
+            cv::format("the images differ in size: %d x %d and %d x %d", left.cols, left.rows, right.cols, right.rows));
 }
 
 //! Writes FILE.pfm (NO_DISPARITY is infinity) or a 16-bit FILE.png: disparity * 256, where 0 means no disparity, so
@@ -254,6 +329,41 @@ inline Mat wrongPixels(const Mat& disparity, const Mat& truth, const Mat& mask, 
 inline double percent(const Mat& pixels, const Mat& mask)
 {
     return 100. * cv::countNonZero(pixels) / std::max(cv::countNonZero(mask), 1);
+}
+
+struct Truth
+{
+    Mat disparity; // empty if there is no truth
+    Mat judged;    // mask of the pixels that count
+    bool nonOccluded;
+};
+
+inline Mat readTruthFile(const cv::CommandLineParser& parser, const String& option, cv::Size size)
+{
+    const double scale = parser.has("truth-scale") ? getNumber(parser, "truth-scale", 1e-3, 1e6) : 0;
+    const Mat disparity = readDisparity(parser.get<String>(option), scale);
+    if (disparity.size() != size)
+        fail(cv::format("--%s is %d x %d, the images are %d x %d", option.c_str(), disparity.cols, disparity.rows,
+                        size.width, size.height));
+    return disparity;
+}
+
+//! The truth given by --truth, --truth-right and --truth-scale.
+inline Truth readTruth(const cv::CommandLineParser& parser, cv::Size size)
+{
+    Truth truth = { Mat(), Mat(), parser.has("truth-right") };
+    if (!parser.has("truth"))
+    {
+        if (truth.nonOccluded || parser.has("truth-scale"))
+            fail("--truth-right and --truth-scale need --truth");
+        return truth;
+    }
+    truth.disparity = readTruthFile(parser, "truth", size);
+    truth.judged = truth.nonOccluded ? nonOccludedPixels(truth.disparity, readTruthFile(parser, "truth-right", size))
+                                     : knownPixels(truth.disparity);
+    if (cv::countNonZero(truth.judged) == 0)
+        fail("--truth knows no pixel" + String(truth.nonOccluded ? " that --truth-right agrees with" : ""));
+    return truth;
 }
 
 // ---- Pictures

@@ -8,7 +8,6 @@
 
 #include <iostream>
 
-#include "opencv2/core/utils/logger.hpp"
 #include "opencv2/hdpstereo.hpp"
 
 #include "hdp_samples_common.hpp"
@@ -41,61 +40,19 @@ static const char* const KEYS =
 
 static const std::vector<String> FLAGS = { "help", "h", "?", "no-prediction", "median-prefilter" };
 
-struct Truth
-{
-    Mat disparity;
-    Mat judged; // mask of the pixels that count
-    bool nonOccluded;
-};
-
 static void checkOptions(const CommandLineParser& parser)
 {
-    if (!parser.has("@left") || !parser.has("@right"))
-        fail("a left and a right image are needed, see --help");
-
     const String output = parser.get<String>("output"), picture = parser.get<String>("picture");
     if (!output.empty() && !hasExtension(output, ".png") && !hasExtension(output, ".pfm"))
         fail("--output=" + output + ": neither a .png nor a .pfm file");
     if (!picture.empty() && !haveImageWriter(picture))
         fail("--picture=" + picture + ": not a kind of image that can be written");
 
-    if ((parser.has("truth-right") || parser.has("truth-scale")) && !parser.has("truth"))
-        fail("--truth-right and --truth-scale need --truth");
     const bool camera = parser.has("focal") && parser.has("baseline");
     if (parser.has("point-cloud") && parser.has("Q") == camera)
         fail("--point-cloud needs either --Q, or --focal and --baseline");
     if (!parser.has("point-cloud") && (parser.has("Q") || parser.has("focal") || parser.has("baseline")))
         fail("--Q, --focal and --baseline need --point-cloud");
-}
-
-static void readPair(const CommandLineParser& parser, Mat& left, Mat& right)
-{
-    left = readImage(parser.get<String>("@left"), IMREAD_COLOR);
-    right = readImage(parser.get<String>("@right"), IMREAD_COLOR);
-    if (left.size() != right.size())
-        fail(format("the images differ in size: %d x %d and %d x %d", left.cols, left.rows, right.cols, right.rows));
-}
-
-static Mat readTruthFile(const CommandLineParser& parser, const String& option, Size size)
-{
-    const double scale = parser.has("truth-scale") ? getNumber(parser, "truth-scale", 1e-3, 1e6) : 0;
-    const Mat disparity = readDisparity(parser.get<String>(option), scale);
-    if (disparity.size() != size)
-        fail(format("--%s is %d x %d, the images are %d x %d", option.c_str(), disparity.cols, disparity.rows,
-                    size.width, size.height));
-    return disparity;
-}
-
-static Truth readTruth(const CommandLineParser& parser, Size size)
-{
-    Truth truth;
-    truth.disparity = readTruthFile(parser, "truth", size);
-    truth.nonOccluded = parser.has("truth-right");
-    truth.judged = truth.nonOccluded ? nonOccludedPixels(truth.disparity, readTruthFile(parser, "truth-right", size))
-                                     : knownPixels(truth.disparity);
-    if (countNonZero(truth.judged) == 0)
-        fail("--truth knows no pixel" + String(truth.nonOccluded ? " that --truth-right agrees with" : ""));
-    return truth;
 }
 
 static Matx44d readCamera(const CommandLineParser& parser, Size size)
@@ -124,16 +81,10 @@ static Matx44d readCamera(const CommandLineParser& parser, Size size)
 
 static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, Size size)
 {
-    const String preset = parser.get<String>("preset"), tree = parser.get<String>("tree");
-    if (preset != "paper" && preset != "tree")
-        fail("--preset=" + preset + ": unknown, there are: paper, tree");
-
-    const int limit = 1 << 15; // the matcher itself is stricter
-    const int minDisparity = getInteger(parser, "min-disparity", -limit, limit);
-    const int numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, limit)
-                                                             : std::max(int(alignSize(size.width / 5, 16)), 16);
-    Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(
-        minDisparity, numDisparities, preset == "paper" ? HDPTreeMatcher::PRESET_PAPER : HDPTreeMatcher::PRESET_TREE);
+    const String tree = parser.get<String>("tree");
+    const Range disparities = getDisparities(parser, size);
+    Ptr<HDPTreeMatcher> matcher =
+        HDPTreeMatcher::create(disparities.start, disparities.size(), getPreset(parser, "preset"));
 
     if (tree == "mst")
         matcher->setTreeStrategy(stereo::createMinimumSpanningTree());
@@ -214,7 +165,7 @@ static void run(const CommandLineParser& parser)
 
     Mat left, right;
     readPair(parser, left, right);
-    const Truth truth = parser.has("truth") ? readTruth(parser, left.size()) : Truth();
+    const Truth truth = readTruth(parser, left.size());
     const Matx44d Q = parser.has("point-cloud") ? readCamera(parser, left.size()) : Matx44d();
 
     Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.size());
@@ -244,25 +195,8 @@ static void run(const CommandLineParser& parser)
 
 int main(int argc, char** argv)
 {
-    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below, in one line
-    try
-    {
-        CommandLineParser parser(argc, argv, KEYS);
-        parser.about("Disparity of a rectified stereo pair: non-local matching, hierarchical disparity prediction.\n");
-        checkArguments(argc, argv, parser, FLAGS, 2);
-        if (parser.has("help"))
-            parser.printMessage();
-        else
-            run(parser);
-        return 0;
-    }
-    catch (const cv::Exception& e)
-    {
-        std::cerr << "error: " << e.err << std::endl;
-    }
-    catch (const std::exception& e)
-    {
-        std::cerr << "error: " << e.what() << std::endl;
-    }
-    return 1;
+    return runSample(argc, argv, KEYS,
+                     "Disparity of a rectified stereo pair: non-local matching, hierarchical disparity "
+                     "prediction.\n",
+                     FLAGS, 2, run);
 }
