@@ -5,6 +5,8 @@
 
 // The matcher and OpenCV's own ones on the same pairs. A short run:
 //   opencv_perf_hdpstereo --gtest_param_filter='*640x480*' --perf_min_samples=1 --perf_force_samples=1
+// The 24 megapixels, which take minutes and 4 GB, are left out unless asked for:
+//   opencv_perf_hdpstereo --gtest_param_filter='*6000x4000*' --test_tag_enable=verylong
 
 namespace opencv_test {
 namespace {
@@ -13,9 +15,20 @@ using namespace perf;
 using namespace testing;
 
 const Size sizes[] = { szVGA, sz720p, Size(1390, 1110) };
+const Size allSizes[] = { szVGA, sz720p, Size(1390, 1110), Size(6000, 4000) };
 
-//! The range to be searched grows with the image: 64, 128 and 256 for the three sizes.
-int numDisparitiesFor(Size size) { return size.width <= 640 ? 64 : size.width <= 1280 ? 128 : 256; }
+//! The range to be searched grows with the image: 64, 128, 256 and 1024 for the four sizes.
+int numDisparitiesFor(Size size)
+{
+    return size.width <= 640 ? 64 : size.width <= 1280 ? 128 : size.width <= 1390 ? 256 : 1024;
+}
+
+//! Skips the test if the size is too large for a usual round.
+void applySizeTag(Size size)
+{
+    if (size.width > 1390)
+        applyTestTag(CV_TEST_TAG_VERYLONG);
+}
 
 //! Noise at three scales. With a contrast of 1 a rough surface, with 0 a smooth one of nearly one color.
 Mat makeTexture(RNG& rng, Size size, double contrast)
@@ -96,10 +109,11 @@ CV_ENUM(Preset, HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE)
 typedef tuple<Size, Preset> PresetParams;
 typedef TestBaseWithParam<PresetParams> Perf_HDPTreeMatcher_Preset;
 
-PERF_TEST_P(Perf_HDPTreeMatcher_Preset, compute, Combine(ValuesIn(sizes), Preset::all()))
+PERF_TEST_P(Perf_HDPTreeMatcher_Preset, compute, Combine(ValuesIn(allSizes), Preset::all()))
 {
     const Size size = get<0>(GetParam());
     const int numDisparities = numDisparitiesFor(size);
+    applySizeTag(size);
 
     Mat left, right, disparity(size, CV_16SC1);
     makePair(size, numDisparities, left, right);
@@ -139,10 +153,11 @@ CV_ENUM(SGBMMode, StereoSGBM::MODE_SGBM, StereoSGBM::MODE_SGBM_3WAY)
 typedef tuple<Size, SGBMMode> SGBMParams;
 typedef TestBaseWithParam<SGBMParams> Perf_StereoSGBM;
 
-PERF_TEST_P(Perf_StereoSGBM, compute, Combine(ValuesIn(sizes), SGBMMode::all()))
+PERF_TEST_P(Perf_StereoSGBM, compute, Combine(ValuesIn(allSizes), SGBMMode::all()))
 {
     const Size size = get<0>(GetParam());
     const int numDisparities = numDisparitiesFor(size);
+    applySizeTag(size);
 
     Mat left, right, disparity(size, CV_16SC1);
     makePair(size, numDisparities, left, right);
@@ -158,10 +173,11 @@ PERF_TEST_P(Perf_StereoSGBM, compute, Combine(ValuesIn(sizes), SGBMMode::all()))
 
 typedef TestBaseWithParam<Size> Perf_StereoBM;
 
-PERF_TEST_P(Perf_StereoBM, compute, ValuesIn(sizes))
+PERF_TEST_P(Perf_StereoBM, compute, ValuesIn(allSizes))
 {
     const Size size = GetParam();
     const int numDisparities = numDisparitiesFor(size);
+    applySizeTag(size);
 
     Mat left, right, disparity(size, CV_16SC1);
     makePair(size, numDisparities, left, right);
