@@ -2,7 +2,7 @@
 # Installs what is missing, builds the module with its tests against the installed OpenCV, and runs them.
 #   scripts/test.sh                       tests, and one short round of the performance tests
 #   scripts/test.sh --sanitize            tests but the slow ones, under AddressSanitizer and UndefinedBehaviorSanitizer,
-#                                         and the sample on a full-size pair
+#                                         and the samples: one on a full-size pair, the benchmark on a small one
 #   scripts/test.sh [--sanitize] OPTION...  the tests alone, with these options of theirs, e.g. --gtest_filter=...
 # OPENCV_SOURCE_DIR=<OpenCV's source> in the environment: uses that one instead of Debian's source package.
 # shellcheck source-path=SCRIPTDIR source=common.sh
@@ -45,7 +45,7 @@ if [ -n "$sanitize" ]; then
     directory=$build/sanitize
     options=("-DHDPSTEREO_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=RelWithDebInfo
         "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1")
-    targets=(opencv_test_hdpstereo example_hdpstereo_hdp_stereo_match)
+    targets=(opencv_test_hdpstereo example_hdpstereo_hdp_stereo_match example_hdpstereo_hdp_benchmark)
 fi
 
 if ! find_opencv_source; then
@@ -73,6 +73,9 @@ if [ -n "$sanitize" ] && [ $# -eq 0 ]; then
     say "Matching the Aloe pair at full size under the sanitizers"
     "$directory/bin/example_hdpstereo_hdp_stereo_match" "$OPENCV_SAMPLES_DATA_PATH"/aloe{L,R}.jpg --num-disparities=256 \
         "--truth=$OPENCV_SAMPLES_DATA_PATH/aloeGT.png" "--output=$directory/aloe.png" "--picture=$directory/aloe_picture.png"
+    say "The benchmark on a small pair under the sanitizers (its figures mean nothing)"
+    "$directory/bin/example_hdpstereo_hdp_benchmark" "$OPENCV_SAMPLES_DATA_PATH"/aloe{L,R}.jpg --resize=160x136 \
+        --num-disparities=32 "--truth=$OPENCV_SAMPLES_DATA_PATH/aloeGT.png" --runs=2 --stages
     # These would take ten minutes: all nine systems at full size, most of them over the full range.
     set -- '--gtest_filter=-HDPStereo_Slow*'
     say "Running the tests but HDPStereo_Slow* under the sanitizers"
