@@ -5,7 +5,7 @@
 
 // The matcher and OpenCV's own ones on the same pairs. A short run:
 //   opencv_perf_hdpstereo --gtest_param_filter='*640x480*' --perf_min_samples=1 --perf_force_samples=1
-// The 24 megapixels, which take minutes and 4 GB, are left out unless asked for:
+// The 24 megapixels, which take minutes and 2 GB, are left out unless asked for:
 //   opencv_perf_hdpstereo --gtest_param_filter='*6000x4000*' --test_tag_enable=verylong
 
 namespace opencv_test {

@@ -230,7 +230,7 @@ static String runMemoryOf(const Method& method, char** argv, double& bytesPerPix
     int status = 0;
     waitpid(child, &status, 0);
     if (WIFSIGNALED(status))
-        return format("killed by signal %d%s", WTERMSIG(status), WTERMSIG(status) == 9 ? ": out of memory?" : "");
+        return format("killed by signal %d (out of memory?)", WTERMSIG(status));
     if (status != 0 || std::sscanf(text, "%lf", &bytesPerPixel) != 1)
         return "failed, see above";
     return String();
@@ -316,7 +316,8 @@ static void measureTimes(std::vector<Result>& results, const Pair& pair, const T
                 {
                     matcher = createMatcher(result.method, disparities);
                     result.errors = computeErrors(computeDense(*matcher, result.method, input, disparities), truth);
-                    matcher.release();
+                    if (result.method.kind != HDP_PRESET) // its buffers are those of a wider pair
+                        matcher.release();
                 }
                 if (!matcher)
                 {
