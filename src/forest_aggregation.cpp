@@ -24,11 +24,10 @@ const int largeTree = 1 << 15;
 const int64 taskWork = 1 << 16;
 
 template <int lanes>
-void aggregate(const TreeWalk& walk, int size, int width, const MatchingCost& cost, const EdgeSimilarity& similarity,
-               int first, float* aggregated)
+void aggregate(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity, int first,
+               float* aggregated)
 {
-    for (int i = 0; i < size; ++i)
-        cost.evaluate<lanes>(walk.pixels[i] / width, walk.pixels[i] % width, first, aggregated + (size_t)i * lanes);
+    cost.evaluate(walk.pixels.data(), size, first, lanes, aggregated);
 
     for (int i = size - 1; i > 0; --i) // leaves to root
     {
@@ -83,8 +82,6 @@ struct Aggregation
     const bool subpixel;
     ushort* disparity;
 
-    int width() const { return forest.links.cols; }
-
     //! Candidates on each side of a run that are there for the parabola
     static int margin(bool subpixel) { return subpixel ? 1 : 0; }
 
@@ -134,8 +131,7 @@ struct Aggregation
     void takeWinners(const TreeWalk& walk, int size, const Candidates& candidates, std::vector<float>& aggregated,
                      std::vector<float>& lowest, std::vector<ushort>& winner) const
     {
-        const int lanes =
-            aggregateTree(walk, size, width(), cost, similarity, candidates.first, candidates.count, aggregated);
+        const int lanes = aggregateTree(walk, size, cost, similarity, candidates.first, candidates.count, aggregated);
         for (int i = 0; i < size; ++i)
         {
             const Winner here = takeWinner(&aggregated[(size_t)i * lanes], candidates);
@@ -163,7 +159,7 @@ struct Aggregation
         if (runs == 1)
         {
             const Candidates candidates = run(interval, 0);
-            const int lanes = aggregateTree(scratch.walk, tree.size, width(), cost, similarity, candidates.first,
+            const int lanes = aggregateTree(scratch.walk, tree.size, cost, similarity, candidates.first,
                                             candidates.count, scratch.aggregated);
             for (int i = 0; i < tree.size; ++i)
                 disparity[pixels[i]] = takeWinner(&scratch.aggregated[(size_t)i * lanes], candidates).disparity;
@@ -257,16 +253,16 @@ EdgeSimilarity::EdgeSimilarity(double gamma)
         table[w] = (float)std::exp(-w / gamma);
 }
 
-int aggregateTree(const TreeWalk& walk, int size, int width, const MatchingCost& cost, const EdgeSimilarity& similarity,
-                  int first, int count, std::vector<float>& aggregated)
+int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity, int first,
+                  int count, std::vector<float>& aggregated)
 {
     const int lanes = count <= 4 ? 4 : 8;
     if (aggregated.size() < (size_t)size * lanes)
         aggregated.resize((size_t)size * lanes);
     if (lanes == 4)
-        aggregate<4>(walk, size, width, cost, similarity, first, aggregated.data());
+        aggregate<4>(walk, size, cost, similarity, first, aggregated.data());
     else
-        aggregate<8>(walk, size, width, cost, similarity, first, aggregated.data());
+        aggregate<8>(walk, size, cost, similarity, first, aggregated.data());
     return lanes;
 }
 

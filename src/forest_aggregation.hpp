@@ -22,15 +22,14 @@ struct CV_EXPORTS EdgeSimilarity
 /** The aggregated cost C(p, x) = sum over q in the tree of S(p, q) M(q, x) (section 3.3), in two passes.
 @param walk The tree's walk.
 @param size Number of pixels of the tree.
-@param width Columns of the layer.
 @param cost The layer's matching cost.
 @param similarity S of neighbours.
 @param first The first of up to 8 candidates x.
 @param count Their number.
 @param aggregated Receives C(walk.pixels[i], first + k) at [i * lanes + k], k < count.
 @return lanes, 4 or 8: 4 if count <= 4. */
-CV_EXPORTS int aggregateTree(const TreeWalk& walk, int size, int width, const MatchingCost& cost,
-                             const EdgeSimilarity& similarity, int first, int count, std::vector<float>& aggregated);
+CV_EXPORTS int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity,
+                             int first, int count, std::vector<float>& aggregated);
 
 //! Memory of one thread for the trees it works on
 struct AggregationScratch

@@ -62,8 +62,7 @@ void expectExplicitSums(const Layer& layer, double gamma)
         for (int count = 1; count <= 8; ++count)
         {
             const int first = (count * 5 + tree.root) % (numDisparities - count + 1);
-            const int lanes =
-                hdp::aggregateTree(walk, tree.size, layer.left.cols, layer.cost, similarity, first, count, sums);
+            const int lanes = hdp::aggregateTree(walk, tree.size, layer.cost, similarity, first, count, sums);
             ASSERT_EQ(count <= 4 ? 4 : 8, lanes);
             for (int i = 0; i < tree.size; i += 1 + tree.size / 50)
             {

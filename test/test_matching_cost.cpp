@@ -27,7 +27,8 @@ void expectFormula(const MatchingCost& cost, const Formula& formula, Size size, 
             for (int first = 0; first < candidates; first += 3) // any first candidate, not multiples of lanes only
             {
                 float costs[lanes];
-                cost.evaluate<lanes>(y, x, first, costs);
+                const int pixel = y * size.width + x;
+                cost.evaluate(&pixel, 1, first, lanes, costs);
                 for (int k = 0; k < lanes && first + k < candidates; ++k)
                     ASSERT_NEAR(formula(y, x, first + k), costs[k], tolerance + 1e-6 * costs[k])
                         << lanes << " lanes, y " << y << " x " << x << " candidate " << first + k;
@@ -44,6 +45,8 @@ void testCost(const Mat& left, const Mat& right, int candidates, const MatchingC
     const double tolerance = toleranceOf(left.channels(), params);
     expectFormula<4>(cost, formula, left.size(), candidates, tolerance);
     expectFormula<8>(cost, formula, left.size(), candidates, tolerance);
+    expectFormula<16>(cost, formula, left.size(), candidates, tolerance);
+    expectFormula<32>(cost, formula, left.size(), candidates, tolerance);
 }
 
 // channels, blockSize
@@ -126,6 +129,8 @@ void testCensus(const Mat& left, const Mat& right, int candidates, int blockSize
     const oracle::CensusCost formula(left, right, blockSize);
     expectFormula<4>(cost, formula, left.size(), candidates, 0);
     expectFormula<8>(cost, formula, left.size(), candidates, 0);
+    expectFormula<16>(cost, formula, left.size(), candidates, 0);
+    expectFormula<32>(cost, formula, left.size(), candidates, 0);
 }
 
 // channels, blockSize
@@ -160,7 +165,8 @@ TEST_P(HDPStereo_CensusCost, largest_cost)
     MatchingCost cost;
     cost.prepare(left, right, 4, censusParams(blockSize));
     float costs[4];
-    cost.evaluate<4>(4, 4, 0, costs);
+    const int centre = 4 * left.cols + 4;
+    cost.evaluate(&centre, 1, 0, 4, costs);
     EXPECT_EQ(blockSize * blockSize / 2, costs[0]);
     testCensus(left, right, 4, blockSize);
 }
@@ -188,8 +194,9 @@ TEST(HDPStereo_MatchingCostInput, census_is_the_same_for_any_exposure)
             for (int x = 0; x < size.width; ++x)
             {
                 float expected[8], actual[8];
-                before.evaluate<8>(y, x, 3, expected);
-                after.evaluate<8>(y, x, 3, actual);
+                const int pixel = y * size.width + x;
+                before.evaluate(&pixel, 1, 3, 8, expected);
+                after.evaluate(&pixel, 1, 3, 8, actual);
                 for (int k = 0; k < 8; ++k)
                     ASSERT_EQ(expected[k], actual[k]) << "y " << y << " x " << x << " candidate " << 3 + k;
             }

@@ -1,0 +1,167 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set (see CMakeLists.txt), so without include guard, and with nothing that a
+// linker might share between them: plain pointers, no containers.
+#include "matching_cost.hpp"
+#include "vectorized.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+/** A row of the census transform, a bit for each pixel of the checkerboard around the centre, set if it is darker.
+@param grey The first pixel of the row; it has a border of the radius, and may be read up to column cols.
+@param step From a row to the next.
+@param radius Of the window, 1 to 3.
+@param mirrored Whether the image is mirrored: the window is then, too, so that its bits are the same ones.
+@param cols Columns to compute.
+@param census Receives the row, 8 bits in each of its planes.
+@param planeSize From a plane to the next. */
+void censusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize);
+
+//! MatchingCost::evaluate()
+void evaluateCost(const CostPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+void censusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize)
+{
+    // Of the last plane's bits that compare nothing: the centre, which is not darker than itself
+    ptrdiff_t offsets[24] = { 0 };
+    int bits = 0;
+    for (int dy = -radius; dy <= radius; ++dy)
+        for (int dx = -radius; dx <= radius; ++dx)
+            if ((dx + dy) % 2 != 0)
+                offsets[bits++] = dy * step + (mirrored ? -dx : dx);
+    for (int bit = 0; bit < bits; bit += 8, census += planeSize)
+    {
+        const ptrdiff_t* offset = offsets + bit;
+        const uchar *p0 = grey + offset[0], *p1 = grey + offset[1], *p2 = grey + offset[2], *p3 = grey + offset[3],
+                    *p4 = grey + offset[4], *p5 = grey + offset[5], *p6 = grey + offset[6], *p7 = grey + offset[7];
+        HDP_VECTORIZED for (int x = 0; x < cols; ++x)
+        {
+            const uchar centre = grey[x];
+            census[x] = (uchar)((p0[x] < centre ? 1 : 0) | (p1[x] < centre ? 2 : 0) | (p2[x] < centre ? 4 : 0) |
+                                (p3[x] < centre ? 8 : 0) | (p4[x] < centre ? 16 : 0) | (p5[x] < centre ? 32 : 0) |
+                                (p6[x] < centre ? 64 : 0) | (p7[x] < centre ? 128 : 0));
+        }
+    }
+}
+
+namespace {
+
+//! The number of bits set
+inline uchar popCount(uchar bits)
+{
+    bits = (uchar)(bits - ((bits >> 1) & 0x55));
+    bits = (uchar)((bits & 0x33) + ((bits >> 2) & 0x33));
+    return (uchar)((bits + (bits >> 4)) & 0x0f);
+}
+
+template <int lanes, int planes>
+void censusCost(const uchar* pixel, size_t pixelPlane, const uchar* candidates, size_t candidatePlane, float* cost)
+{
+    const uchar a = pixel[0], b = planes > 1 ? pixel[pixelPlane] : 0, c = planes > 2 ? pixel[2 * pixelPlane] : 0;
+    const uchar *as = candidates, *bs = candidates + candidatePlane, *cs = candidates + 2 * candidatePlane;
+    uchar bits[lanes];
+    HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
+    {
+        const uchar x = (uchar)(a ^ as[k]);
+        if (planes == 1)
+            bits[k] = popCount(x);
+        else
+        {
+            const uchar y = (uchar)(b ^ bs[k]), xy = (uchar)(x ^ y);
+            if (planes == 2)
+                bits[k] = (uchar)(popCount(x) + popCount(y));
+            else
+            {
+                // Sum and carry of three bits: two counts instead of three
+                const uchar z = (uchar)(c ^ cs[k]);
+                bits[k] = (uchar)(popCount((uchar)(xy ^ z)) + 2 * popCount((uchar)((x & y) | (xy & z))));
+            }
+        }
+    }
+    HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = bits[k];
+}
+
+template <int lanes> void colorAndGradientCost(const CostPlanes& planes, int y, int x, int first, float* cost)
+{
+    const int mirroredX = planes.width - 1 - x + 2 * (planes.blockSize / 2) + first;
+    float sum[lanes] = { 0 };
+    for (int dy = 0; dy < planes.blockSize; ++dy)
+    {
+        const uchar* pixels = planes.left + (y + dy) * planes.leftStep + x;
+        const uchar* candidates = planes.right + (y + dy) * planes.rightStep + mirroredX;
+        const short* slope = planes.leftGradient + (y + dy) * planes.leftStep + x;
+        const short* slopes = planes.rightGradient + (y + dy) * planes.rightStep + mirroredX;
+        for (int dx = 0; dx < planes.blockSize; ++dx, ++pixels, --candidates, ++slope, --slopes)
+        {
+            short color[lanes] = { 0 };
+            for (int c = 0; c < planes.count; ++c)
+            {
+                const short pixel = pixels[c * planes.leftPlane];
+                const uchar* candidate = candidates + c * planes.rightPlane;
+                HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
+                {
+                    const short difference = (short)(pixel - candidate[k]);
+                    color[k] = (short)(color[k] + std::max<short>(difference, (short)-difference));
+                }
+            }
+            HDP_VECTORIZED for (int k = 0; k < lanes; ++k) sum[k] +=
+                planes.colorWeight * std::min((float)color[k], planes.colorTruncation) +
+                planes.gradientWeight * std::min((float)std::abs(*slope - slopes[k]), planes.gradientTruncation);
+        }
+    }
+    HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = sum[k];
+}
+
+template <int lanes> void evaluateCosts(const CostPlanes& planes, const int* pixels, int count, int first, float* cost)
+{
+    // Exact: p + 0.5 is 0.5 / width and more away from a whole number of rows, the product's error far less.
+    const double rowsPerPixel = 1. / planes.width;
+    for (int i = 0; i < count; ++i, cost += lanes)
+    {
+        const int y = (int)((pixels[i] + 0.5) * rowsPerPixel), x = pixels[i] - y * planes.width;
+        if (planes.census)
+        {
+            const uchar* pixel = planes.left + y * planes.leftStep + x;
+            const uchar* candidates = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
+            if (planes.count == 3)
+                censusCost<lanes, 3>(pixel, planes.leftPlane, candidates, planes.rightPlane, cost);
+            else if (planes.count == 2)
+                censusCost<lanes, 2>(pixel, planes.leftPlane, candidates, planes.rightPlane, cost);
+            else
+                censusCost<lanes, 1>(pixel, planes.leftPlane, candidates, planes.rightPlane, cost);
+        }
+        else
+            colorAndGradientCost<lanes>(planes, y, x, first, cost);
+    }
+}
+
+} // namespace
+
+void evaluateCost(const CostPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost)
+{
+    switch (lanes)
+    {
+    case 4:
+        return evaluateCosts<4>(planes, pixels, count, first, cost);
+    case 8:
+        return evaluateCosts<8>(planes, pixels, count, first, cost);
+    case 16:
+        return evaluateCosts<16>(planes, pixels, count, first, cost);
+    default:
+        return evaluateCosts<32>(planes, pixels, count, first, cost);
+    }
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
