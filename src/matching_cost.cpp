@@ -59,6 +59,19 @@ void horizontalGradient(const Mat& image, Mat& gradient)
     });
 }
 
+template <typename T> void copyColumns(const T* from, int step, int width, T* to)
+{
+    if (step == 1)
+        std::copy(from, from + width, to);
+    else if (step == -1)
+    {
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) to[x] = from[-x];
+    }
+    else
+        for (int x = 0; x < width; ++x, from += step)
+            to[x] = *from;
+}
+
 //! Copies a channel into rows of bordered with `before` and `after` more columns and `radius` more rows around it,
 //! all from the nearest pixel; mirrored on request.
 template <typename T>
@@ -70,12 +83,7 @@ void copyBordered(const Mat& image, int channel, int radius, int before, int aft
         {
             const T* from = image.ptr<T>(std::min(std::max(y - radius, 0), image.rows - 1)) + channel;
             T* to = bordered.ptr<T>(y);
-            if (mirrored)
-                for (int x = 0; x < width; ++x)
-                    to[before + x] = from[(width - 1 - x) * step];
-            else
-                for (int x = 0; x < width; ++x)
-                    to[before + x] = from[x * step];
+            copyColumns(mirrored ? from + (width - 1) * step : from, mirrored ? -step : step, width, to + before);
             std::fill(to, to + before, to[before]);
             std::fill(to + before + width, to + before + width + after, to[before + width - 1]);
         }

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Compiled once for each instruction set (see CMakeLists.txt), so without include guard, and with nothing that a
-// linker might share between them: plain pointers, no containers.
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "matching_cost.hpp"
 #include "vectorized.hpp"
 
@@ -61,31 +60,43 @@ inline uchar popCount(uchar bits)
     return (uchar)((bits + (bits >> 4)) & 0x0f);
 }
 
-template <int lanes, int planes>
-void censusCost(const uchar* pixel, size_t pixelPlane, const uchar* candidates, size_t candidatePlane, float* cost)
+//! The sum of the bits that differ from those of the candidates, in 1 to 3 planes
+template <int planes> inline uchar countDifferences(const uchar* pixel, const uchar* const* candidates, int k)
 {
-    const uchar a = pixel[0], b = planes > 1 ? pixel[pixelPlane] : 0, c = planes > 2 ? pixel[2 * pixelPlane] : 0;
-    const uchar *as = candidates, *bs = candidates + candidatePlane, *cs = candidates + 2 * candidatePlane;
-    uchar bits[lanes];
-    HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
+    const uchar x = (uchar)(pixel[0] ^ candidates[0][k]);
+    if (planes == 1)
+        return popCount(x);
+    const uchar y = (uchar)(pixel[1] ^ candidates[1][k]);
+    if (planes == 2)
+        return (uchar)(popCount(x) + popCount(y));
+    // Sum and carry of three bits: two counts instead of three
+    const uchar z = (uchar)(pixel[2] ^ candidates[2][k]), xy = (uchar)(x ^ y);
+    return (uchar)(popCount((uchar)(xy ^ z)) + 2 * popCount((uchar)((x & y) | (xy & z))));
+}
+
+//! Exact: p + 0.5 is 0.5 / width and more away from a whole number of rows, the product's error far less.
+inline int rowOf(int p, double rowsPerPixel) { return (int)((p + 0.5) * rowsPerPixel); }
+
+template <int lanes, int count>
+void censusCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
+{
+    // There is that much to read, and fewer would not be vectorised as well.
+    const int bytes = lanes < 16 ? 16 : lanes;
+    const double rowsPerPixel = 1. / planes.width;
+    for (int i = 0; i < size; ++i, cost += lanes)
     {
-        const uchar x = (uchar)(a ^ as[k]);
-        if (planes == 1)
-            bits[k] = popCount(x);
-        else
+        const int y = rowOf(pixels[i], rowsPerPixel), x = pixels[i] - y * planes.width;
+        uchar pixel[count], bits[bytes];
+        const uchar* candidates[count];
+        for (int plane = 0; plane < count; ++plane)
         {
-            const uchar y = (uchar)(b ^ bs[k]), xy = (uchar)(x ^ y);
-            if (planes == 2)
-                bits[k] = (uchar)(popCount(x) + popCount(y));
-            else
-            {
-                // Sum and carry of three bits: two counts instead of three
-                const uchar z = (uchar)(c ^ cs[k]);
-                bits[k] = (uchar)(popCount((uchar)(xy ^ z)) + 2 * popCount((uchar)((x & y) | (xy & z))));
-            }
+            pixel[plane] = planes.left[plane * planes.leftPlane + y * planes.leftStep + x];
+            candidates[plane] =
+                planes.right + plane * planes.rightPlane + y * planes.rightStep + (planes.width - 1 - x + first);
         }
+        HDP_VECTORIZED for (int k = 0; k < bytes; ++k) bits[k] = countDifferences<count>(pixel, candidates, k);
+        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = bits[k];
     }
-    HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = bits[k];
 }
 
 template <int lanes> void colorAndGradientCost(const CostPlanes& planes, int y, int x, int first, float* cost)
@@ -121,24 +132,21 @@ template <int lanes> void colorAndGradientCost(const CostPlanes& planes, int y, 
 
 template <int lanes> void evaluateCosts(const CostPlanes& planes, const int* pixels, int count, int first, float* cost)
 {
-    // Exact: p + 0.5 is 0.5 / width and more away from a whole number of rows, the product's error far less.
+    if (planes.census)
+    {
+        if (planes.count == 3)
+            censusCosts<lanes, 3>(planes, pixels, count, first, cost);
+        else if (planes.count == 2)
+            censusCosts<lanes, 2>(planes, pixels, count, first, cost);
+        else
+            censusCosts<lanes, 1>(planes, pixels, count, first, cost);
+        return;
+    }
     const double rowsPerPixel = 1. / planes.width;
     for (int i = 0; i < count; ++i, cost += lanes)
     {
-        const int y = (int)((pixels[i] + 0.5) * rowsPerPixel), x = pixels[i] - y * planes.width;
-        if (planes.census)
-        {
-            const uchar* pixel = planes.left + y * planes.leftStep + x;
-            const uchar* candidates = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
-            if (planes.count == 3)
-                censusCost<lanes, 3>(pixel, planes.leftPlane, candidates, planes.rightPlane, cost);
-            else if (planes.count == 2)
-                censusCost<lanes, 2>(pixel, planes.leftPlane, candidates, planes.rightPlane, cost);
-            else
-                censusCost<lanes, 1>(pixel, planes.leftPlane, candidates, planes.rightPlane, cost);
-        }
-        else
-            colorAndGradientCost<lanes>(planes, y, x, first, cost);
+        const int y = rowOf(pixels[i], rowsPerPixel);
+        colorAndGradientCost<lanes>(planes, y, pixels[i] - y * planes.width, first, cost);
     }
 }
 

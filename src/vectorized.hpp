@@ -4,15 +4,18 @@
 #ifndef OPENCV_HDPSTEREO_VECTORIZED_HPP
 #define OPENCV_HDPSTEREO_VECTORIZED_HPP
 
-/** Before a loop whose rounds are independent of one another, for the compiler to make vector operations of:
-what is written in one round is neither read nor written in another, and GCC does not unroll it before it could see that
-it is one for vectors. */
+/** HDP_VECTORIZED before a loop over lanes, or other rounds that are independent of one another, for the compiler to make
+vector operations of: what a round writes is neither read nor written in another, and GCC does not unroll the loop before
+it could see that it is one for vectors. More than 8 lanes need a loop around, of 8 each: HDP_UNROLLED. */
 #if defined(__clang__)
 #define HDP_VECTORIZED _Pragma("clang loop vectorize(assume_safety)")
+#define HDP_UNROLLED _Pragma("clang loop unroll(full)")
 #elif defined(__GNUC__)
 #define HDP_VECTORIZED _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
+#define HDP_UNROLLED _Pragma("GCC unroll 8")
 #else
 #define HDP_VECTORIZED
+#define HDP_UNROLLED
 #endif
 
 #endif
