@@ -52,26 +52,42 @@ void censusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int
 
 namespace {
 
-//! The number of bits set
-inline uchar popCount(uchar bits)
+// 8 candidates' bytes, anywhere in memory
+#ifdef __GNUC__
+typedef uint64 __attribute__((__may_alias__, __aligned__(1))) EightBytes;
+#else
+typedef uint64 EightBytes;
+#endif
+
+inline uint64 eightTimes(uint64 byte) { return byte * 0x0101010101010101; }
+
+//! The number of bits set in each 4 bits
+inline uint64 countInNibbles(uint64 bits)
 {
-    bits = (uchar)(bits - ((bits >> 1) & 0x55));
-    bits = (uchar)((bits & 0x33) + ((bits >> 2) & 0x33));
-    return (uchar)((bits + (bits >> 4)) & 0x0f);
+    bits -= (bits >> 1) & eightTimes(0x55);
+    return (bits & eightTimes(0x33)) + ((bits >> 2) & eightTimes(0x33));
 }
 
-//! The sum of the bits that differ from those of the candidates, in 1 to 3 planes
-template <int planes> inline uchar countDifferences(const uchar* pixel, const uchar* const* candidates, int k)
+//! The number of bits of the 1 to 3 planes that differ, in each byte
+template <int count> inline uint64 countDifferences(const uint64* pixel, const EightBytes* const* candidates, int i)
 {
-    const uchar x = (uchar)(pixel[0] ^ candidates[0][k]);
-    if (planes == 1)
-        return popCount(x);
-    const uchar y = (uchar)(pixel[1] ^ candidates[1][k]);
-    if (planes == 2)
-        return (uchar)(popCount(x) + popCount(y));
-    // Sum and carry of three bits: two counts instead of three
-    const uchar z = (uchar)(pixel[2] ^ candidates[2][k]), xy = (uchar)(x ^ y);
-    return (uchar)(popCount((uchar)(xy ^ z)) + 2 * popCount((uchar)((x & y) | (xy & z))));
+    const uint64 x = pixel[0] ^ candidates[0][i];
+    uint64 nibbles;
+    if (count == 1)
+        nibbles = countInNibbles(x);
+    else
+    {
+        const uint64 y = pixel[count > 1 ? 1 : 0] ^ candidates[count > 1 ? 1 : 0][i];
+        if (count == 2)
+            nibbles = countInNibbles(x) + countInNibbles(y);
+        else
+        {
+            // Sum and carry of three bits: two counts instead of three
+            const uint64 z = pixel[count > 2 ? 2 : 0] ^ candidates[count > 2 ? 2 : 0][i], xy = x ^ y;
+            nibbles = countInNibbles(xy ^ z) + 2 * countInNibbles((x & y) | (xy & z));
+        }
+    }
+    return (nibbles & eightTimes(0x0f)) + ((nibbles >> 4) & eightTimes(0x0f));
 }
 
 //! Exact: p + 0.5 is 0.5 / width and more away from a whole number of rows, the product's error far less.
@@ -80,22 +96,23 @@ inline int rowOf(int p, double rowsPerPixel) { return (int)((p + 0.5) * rowsPerP
 template <int lanes, int count>
 void censusCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
 {
-    // There is that much to read, and fewer would not be vectorised as well.
-    const int bytes = lanes < 16 ? 16 : lanes;
+    const int words = lanes < 16 ? 2 : lanes / 8; // there is that much to read; less would not be vectorised
     const double rowsPerPixel = 1. / planes.width;
     for (int i = 0; i < size; ++i, cost += lanes)
     {
         const int y = rowOf(pixels[i], rowsPerPixel), x = pixels[i] - y * planes.width;
-        uchar pixel[count], bits[bytes];
-        const uchar* candidates[count];
+        const uchar* left = planes.left + y * planes.leftStep + x;
+        const uchar* right = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
+        uint64 pixel[count], bits[words];
+        const EightBytes* candidates[count];
         for (int plane = 0; plane < count; ++plane)
         {
-            pixel[plane] = planes.left[plane * planes.leftPlane + y * planes.leftStep + x];
-            candidates[plane] =
-                planes.right + plane * planes.rightPlane + y * planes.rightStep + (planes.width - 1 - x + first);
+            pixel[plane] = eightTimes(left[plane * planes.leftPlane]);
+            candidates[plane] = reinterpret_cast<const EightBytes*>(right + plane * planes.rightPlane);
         }
-        HDP_VECTORIZED for (int k = 0; k < bytes; ++k) bits[k] = countDifferences<count>(pixel, candidates, k);
-        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = bits[k];
+        HDP_VECTORIZED for (int k = 0; k < words; ++k) bits[k] = countDifferences<count>(pixel, candidates, k);
+        const uchar* bytes = reinterpret_cast<const uchar*>(bits);
+        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = bytes[k];
     }
 }
 
