@@ -33,19 +33,9 @@ const float noCost = -1;
 // Nodes that are worked on together, so that what was computed last is still in the cache
 const int block = 64;
 
-// Lanes of a vectorised loop
-template <int lanes> struct Step
-{
-    enum
-    {
-        value = lanes < 8 ? lanes : 8
-    };
-};
-
 //! Leaves to root: what comes from the node's own subtree
 template <int lanes> void passUp(const TreeWalk& walk, int size, const float* similarity, float* costs)
 {
-    const int step = Step<lanes>::value;
     const int* parents = walk.parents.data();
     const uchar* weights = walk.weights.data();
     for (int i = size - 1; i > 0; --i)
@@ -53,17 +43,13 @@ template <int lanes> void passUp(const TreeWalk& walk, int size, const float* si
         const float s = similarity[weights[i]];
         const float* child = costs + (size_t)i * lanes;
         float* parent = costs + (size_t)parents[i] * lanes;
-        HDP_UNROLLED for (int b = 0; b < lanes; b += step)
-        {
-            HDP_VECTORIZED for (int k = b; k < b + step; ++k) parent[k] += s * child[k];
-        }
+        HDP_FOR_LANES(k, lanes) parent[k] += s * child[k];
     }
 }
 
 //! Root to leaves: what comes from the rest of the tree
 template <int lanes> void passDown(const TreeWalk& walk, int begin, int end, const float* similarity, float* costs)
 {
-    const int step = Step<lanes>::value;
     const int* parents = walk.parents.data();
     const uchar* weights = walk.weights.data();
     for (int i = std::max(begin, 1); i < end; ++i)
@@ -71,10 +57,7 @@ template <int lanes> void passDown(const TreeWalk& walk, int begin, int end, con
         const float s = similarity[weights[i]], rest = 1 - s * s;
         float* child = costs + (size_t)i * lanes;
         const float* parent = costs + (size_t)parents[i] * lanes;
-        HDP_UNROLLED for (int b = 0; b < lanes; b += step)
-        {
-            HDP_VECTORIZED for (int k = b; k < b + step; ++k) child[k] = s * parent[k] + rest * child[k];
-        }
+        HDP_FOR_LANES(k, lanes) child[k] = s * parent[k] + rest * child[k];
     }
 }
 

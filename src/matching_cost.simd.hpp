@@ -116,55 +116,60 @@ void censusCosts(const CostPlanes& planes, const int* pixels, int size, int firs
     }
 }
 
-template <int lanes> void colorAndGradientCost(const CostPlanes& planes, int y, int x, int first, float* cost)
+inline short absolute(short value) { return std::max<short>(value, (short)-value); }
+
+template <int lanes, int channels>
+void colorAndGradientCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
 {
-    const int mirroredX = planes.width - 1 - x + 2 * (planes.blockSize / 2) + first;
-    float sum[lanes] = { 0 };
-    for (int dy = 0; dy < planes.blockSize; ++dy)
+    const double rowsPerPixel = 1. / planes.width;
+    const float colorWeight = planes.colorWeight, colorTruncation = planes.colorTruncation,
+                gradientWeight = planes.gradientWeight, gradientTruncation = planes.gradientTruncation;
+    for (int i = 0; i < size; ++i, cost += lanes)
     {
-        const uchar* pixels = planes.left + (y + dy) * planes.leftStep + x;
-        const uchar* candidates = planes.right + (y + dy) * planes.rightStep + mirroredX;
-        const short* slope = planes.leftGradient + (y + dy) * planes.leftStep + x;
-        const short* slopes = planes.rightGradient + (y + dy) * planes.rightStep + mirroredX;
-        for (int dx = 0; dx < planes.blockSize; ++dx, ++pixels, --candidates, ++slope, --slopes)
-        {
-            short color[lanes] = { 0 };
-            for (int c = 0; c < planes.count; ++c)
+        const int y = rowOf(pixels[i], rowsPerPixel), x = pixels[i] - y * planes.width;
+        const int mirroredX = planes.width - 1 - x + planes.blockSize - 1 + first;
+        float sum[lanes] = { 0 };
+        for (int dy = 0; dy < planes.blockSize; ++dy)
+            for (int dx = 0; dx < planes.blockSize; ++dx)
             {
-                const short pixel = pixels[c * planes.leftPlane];
-                const uchar* candidate = candidates + c * planes.rightPlane;
+                const size_t left = (y + dy) * planes.leftStep + x + dx;
+                const size_t right = (y + dy) * planes.rightStep + mirroredX - dx;
+                const uchar *pixel = planes.left + left, *candidates = planes.right + right;
+                const short slope = planes.leftGradient[left], blue = pixel[0],
+                            green = channels > 1 ? pixel[planes.leftPlane] : 0,
+                            red = channels > 1 ? pixel[2 * planes.leftPlane] : 0;
+                const short* slopes = planes.rightGradient + right;
+                const size_t plane = channels > 1 ? planes.rightPlane : 0;
+                const uchar *greens = candidates + plane, *reds = greens + plane;
+                short color[lanes];
                 HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
                 {
-                    const short difference = (short)(pixel - candidate[k]);
-                    color[k] = (short)(color[k] + std::max<short>(difference, (short)-difference));
+                    short difference = absolute((short)(blue - candidates[k]));
+                    if (channels > 1)
+                        difference = (short)(difference + absolute((short)(green - greens[k])) +
+                                             absolute((short)(red - reds[k])));
+                    color[k] = difference;
                 }
+                HDP_VECTORIZED for (int k = 0; k < lanes; ++k) sum[k] +=
+                    colorWeight * std::min((float)color[k], colorTruncation) +
+                    gradientWeight * std::min((float)std::abs(slope - slopes[k]), gradientTruncation);
             }
-            HDP_VECTORIZED for (int k = 0; k < lanes; ++k) sum[k] +=
-                planes.colorWeight * std::min((float)color[k], planes.colorTruncation) +
-                planes.gradientWeight * std::min((float)std::abs(*slope - slopes[k]), planes.gradientTruncation);
-        }
+        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = sum[k];
     }
-    HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = sum[k];
 }
 
-template <int lanes> void evaluateCosts(const CostPlanes& planes, const int* pixels, int count, int first, float* cost)
+template <int lanes> void evaluateCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
 {
-    if (planes.census)
-    {
-        if (planes.count == 3)
-            censusCosts<lanes, 3>(planes, pixels, count, first, cost);
-        else if (planes.count == 2)
-            censusCosts<lanes, 2>(planes, pixels, count, first, cost);
-        else
-            censusCosts<lanes, 1>(planes, pixels, count, first, cost);
-        return;
-    }
-    const double rowsPerPixel = 1. / planes.width;
-    for (int i = 0; i < count; ++i, cost += lanes)
-    {
-        const int y = rowOf(pixels[i], rowsPerPixel);
-        colorAndGradientCost<lanes>(planes, y, pixels[i] - y * planes.width, first, cost);
-    }
+    if (!planes.census && planes.count == 3)
+        colorAndGradientCosts<lanes, 3>(planes, pixels, size, first, cost);
+    else if (!planes.census)
+        colorAndGradientCosts<lanes, 1>(planes, pixels, size, first, cost);
+    else if (planes.count == 3)
+        censusCosts<lanes, 3>(planes, pixels, size, first, cost);
+    else if (planes.count == 2)
+        censusCosts<lanes, 2>(planes, pixels, size, first, cost);
+    else
+        censusCosts<lanes, 1>(planes, pixels, size, first, cost);
 }
 
 } // namespace

@@ -4,9 +4,10 @@
 #ifndef OPENCV_HDPSTEREO_VECTORIZED_HPP
 #define OPENCV_HDPSTEREO_VECTORIZED_HPP
 
-/** HDP_VECTORIZED before a loop over lanes, or other rounds that are independent of one another, for the compiler to make
-vector operations of: what a round writes is neither read nor written in another, and GCC does not unroll the loop before
-it could see that it is one for vectors. More than 8 lanes need a loop around, of 8 each: HDP_UNROLLED. */
+/** HDP_VECTORIZED before a loop whose rounds are independent of one another, for the compiler to make vector operations
+of: what a round writes is neither read nor written in another, and GCC does not unroll the loop before it could see that
+it is one for vectors. HDP_FOR_LANES(k, lanes) is such a loop over 4, 8, 16 or 32 lanes, a number that is known to the
+compiler, in groups of 8 that are unrolled. */
 #if defined(__clang__)
 #define HDP_VECTORIZED _Pragma("clang loop vectorize(assume_safety)")
 #define HDP_UNROLLED _Pragma("clang loop unroll(full)")
@@ -17,5 +18,8 @@ it could see that it is one for vectors. More than 8 lanes need a loop around, o
 #define HDP_VECTORIZED
 #define HDP_UNROLLED
 #endif
+#define HDP_FOR_LANES(k, lanes)                                                                                        \
+    HDP_UNROLLED for (int group = 0; group < (lanes); group += (lanes) < 8 ? (lanes) : 8)                              \
+        HDP_VECTORIZED for (int k = group; k < group + ((lanes) < 8 ? (lanes) : 8); ++k)
 
 #endif
