@@ -5,6 +5,8 @@
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "matching_cost.hpp"
 #include "vectorized.hpp"
+#include <cstring>
+#include <type_traits>
 
 namespace cv {
 namespace stereo {
@@ -52,67 +54,60 @@ void censusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int
 
 namespace {
 
-// 8 candidates' bytes, anywhere in memory
-#ifdef __GNUC__
-typedef uint64 __attribute__((__may_alias__, __aligned__(1))) EightBytes;
-#else
-typedef uint64 EightBytes;
-#endif
-
-inline uint64 eightTimes(uint64 byte) { return byte * 0x0101010101010101; }
+//! A byte in each of a word's; words are of as many bytes as there are candidates, up to 8.
+template <typename Word> inline Word repeated(unsigned byte) { return (Word)-1 / 255 * byte; }
 
 //! The number of bits set in each 4 bits
-inline uint64 countInNibbles(uint64 bits)
+template <typename Word> inline Word countInNibbles(Word bits)
 {
-    bits -= (bits >> 1) & eightTimes(0x55);
-    return (bits & eightTimes(0x33)) + ((bits >> 2) & eightTimes(0x33));
+    bits -= (bits >> 1) & repeated<Word>(0x55);
+    return (bits & repeated<Word>(0x33)) + ((bits >> 2) & repeated<Word>(0x33));
 }
 
-//! The number of bits of the 1 to 3 planes that differ, in each byte
-template <int count> inline uint64 countDifferences(const uint64* pixel, const EightBytes* const* candidates, int i)
+//! The number of bits set in each byte of 1 to 3 words
+template <int count, typename Word> inline Word countInBytes(Word a, Word b, Word c)
 {
-    const uint64 x = pixel[0] ^ candidates[0][i];
-    uint64 nibbles;
-    if (count == 1)
-        nibbles = countInNibbles(x);
-    else
-    {
-        const uint64 y = pixel[count > 1 ? 1 : 0] ^ candidates[count > 1 ? 1 : 0][i];
-        if (count == 2)
-            nibbles = countInNibbles(x) + countInNibbles(y);
-        else
-        {
-            // Sum and carry of three bits: two counts instead of three
-            const uint64 z = pixel[count > 2 ? 2 : 0] ^ candidates[count > 2 ? 2 : 0][i], xy = x ^ y;
-            nibbles = countInNibbles(xy ^ z) + 2 * countInNibbles((x & y) | (xy & z));
-        }
-    }
-    return (nibbles & eightTimes(0x0f)) + ((nibbles >> 4) & eightTimes(0x0f));
+    // Sum and carry of three bits: two counts instead of three
+    const Word nibbles = count == 1   ? countInNibbles(a)
+                         : count == 2 ? countInNibbles(a) + countInNibbles(b)
+                                      : countInNibbles(a ^ b ^ c) + 2 * countInNibbles((a & b) | ((a ^ b) & c));
+    return (nibbles & repeated<Word>(0x0f)) + ((nibbles >> 4) & repeated<Word>(0x0f));
 }
 
 //! Exact: p + 0.5 is 0.5 / width and more away from a whole number of rows, the product's error far less.
 inline int rowOf(int p, double rowsPerPixel) { return (int)((p + 0.5) * rowsPerPixel); }
 
-template <int lanes, int count>
+template <int lanes, int count, typename Word>
 void censusCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
 {
-    const int words = lanes < 16 ? 2 : lanes / 8; // there is that much to read; less would not be vectorised
+    // Bits are counted in all words of a block at once, in order to fill vectors.
+    const int block = lanes > 16 ? 1 : 32, words = lanes / (int)sizeof(Word);
     const double rowsPerPixel = 1. / planes.width;
-    for (int i = 0; i < size; ++i, cost += lanes)
+    Word differences[count][block * words], bits[block * words];
+    for (int begin = 0; begin < size; begin += block)
     {
-        const int y = rowOf(pixels[i], rowsPerPixel), x = pixels[i] - y * planes.width;
-        const uchar* left = planes.left + y * planes.leftStep + x;
-        const uchar* right = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
-        uint64 pixel[count], bits[words];
-        const EightBytes* candidates[count];
-        for (int plane = 0; plane < count; ++plane)
+        const int pixelCount = block == 1 ? 1 : std::min(block, size - begin);
+        for (int i = 0; i < pixelCount; ++i)
         {
-            pixel[plane] = eightTimes(left[plane * planes.leftPlane]);
-            candidates[plane] = reinterpret_cast<const EightBytes*>(right + plane * planes.rightPlane);
+            const int p = pixels[begin + i], y = rowOf(p, rowsPerPixel), x = p - y * planes.width;
+            const uchar* left = planes.left + y * planes.leftStep + x;
+            const uchar* right = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
+            for (int plane = 0; plane < count; ++plane, left += planes.leftPlane, right += planes.rightPlane)
+            {
+                const Word pixel = repeated<Word>(*left);
+                HDP_VECTORIZED for (int k = 0; k < words; ++k)
+                {
+                    Word candidates;
+                    std::memcpy(&candidates, right + k * sizeof(Word), sizeof(Word));
+                    differences[plane][i * words + k] = candidates ^ pixel;
+                }
+            }
         }
-        HDP_VECTORIZED for (int k = 0; k < words; ++k) bits[k] = countDifferences<count>(pixel, candidates, k);
+        HDP_VECTORIZED for (int k = 0; k < pixelCount * words; ++k) bits[k] = countInBytes<count>(
+            differences[0][k], differences[count > 1 ? 1 : 0][k], differences[count > 2 ? 2 : 0][k]);
         const uchar* bytes = reinterpret_cast<const uchar*>(bits);
-        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = bytes[k];
+        HDP_VECTORIZED for (int k = 0; k < pixelCount * lanes; ++k) cost[k] = bytes[k];
+        cost += pixelCount * lanes;
     }
 }
 
@@ -160,16 +155,17 @@ void colorAndGradientCosts(const CostPlanes& planes, const int* pixels, int size
 
 template <int lanes> void evaluateCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
 {
+    typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
     if (!planes.census && planes.count == 3)
         colorAndGradientCosts<lanes, 3>(planes, pixels, size, first, cost);
     else if (!planes.census)
         colorAndGradientCosts<lanes, 1>(planes, pixels, size, first, cost);
     else if (planes.count == 3)
-        censusCosts<lanes, 3>(planes, pixels, size, first, cost);
+        censusCosts<lanes, 3, Word>(planes, pixels, size, first, cost);
     else if (planes.count == 2)
-        censusCosts<lanes, 2>(planes, pixels, size, first, cost);
+        censusCosts<lanes, 2, Word>(planes, pixels, size, first, cost);
     else
-        censusCosts<lanes, 1>(planes, pixels, size, first, cost);
+        censusCosts<lanes, 1, Word>(planes, pixels, size, first, cost);
 }
 
 } // namespace
