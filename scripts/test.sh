@@ -36,6 +36,26 @@ run_tests()
     failed=$((failed + bad))
 }
 
+# compare_instruction_sets PROGRAM: one more test, that the reference maps are the same to the bit, whichever of the
+# instruction sets that the library is built for is used.
+compare_instruction_sets()
+{
+    local program=$1 maps=$directory/maps without status=0
+    rm -rf "$maps"
+    for without in none AVX512-SKX AVX512-SKX,AVX2; do
+        mkdir -p "$maps/without-$without"
+        OPENCV_CPU_DISABLE=${without#none} HDPSTEREO_WRITE_REFERENCE=$maps/without-$without \
+            "$program" '--gtest_filter=HDPStereo_ReferenceOutput*' >"$maps/without-$without.log" 2>&1 || status=1
+        [ -n "$(ls "$maps/without-$without")" ] && diff -r "$maps/without-none" "$maps/without-$without" || status=1
+    done
+    if [ "$status" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        say "the reference maps depend on the instruction set, or are not written; see $maps"
+        failed=$((failed + 1))
+    fi
+}
+
 install_packages build-essential cmake libopencv-dev
 
 directory=$build/release
@@ -83,6 +103,10 @@ else
     say "Running the tests${sanitize:+ under the sanitizers}"
 fi
 run_tests "$directory/bin/opencv_test_hdpstereo" "$@"
+if [ -z "$sanitize" ] && [ $# -eq 0 ]; then
+    say "Comparing the reference maps between instruction sets"
+    compare_instruction_sets "$directory/bin/opencv_test_hdpstereo"
+fi
 if [ -z "$sanitize" ] && [ $# -eq 0 ] && [ -x "$directory/bin/opencv_perf_hdpstereo" ]; then
     say "Running the performance tests, one round of the smallest images"
     run_tests "$directory/bin/opencv_perf_hdpstereo" "--gtest_param_filter=*640x480*" \

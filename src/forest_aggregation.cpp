@@ -3,8 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
 #include "forest_aggregation.hpp"
+#include "forest_aggregation.simd.hpp"
+#include "forest_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
-#include <cfloat>
 #include <cmath>
 #include <mutex>
 
@@ -14,39 +15,21 @@ namespace hdp {
 
 namespace {
 
-// Candidates that are aggregated together: a tree with more is walked in chunks, so memory stays O(pixels).
-const int chunk = 8;
+// Costs of a tree that are in memory at once: a tree with more candidates is aggregated in runs of some, so that memory
+// stays O(pixels) and in the caches.
+const int64 costsAtOnce = 1 << 22;
 
 // Smaller trees are aggregated by one thread each.
 const int largeTree = 1 << 15;
 
+// With no more candidates, a large tree is a task like others.
+const int smallRun = 8;
+
+// Groups of candidates that a large tree's are divided into
+const int maxGroups = 4;
+
 // Work, in aggregated costs, of a task of small trees
 const int64 taskWork = 1 << 16;
-
-template <int lanes>
-void aggregate(const TreeWalk& walk, int size, int width, const MatchingCost& cost, const EdgeSimilarity& similarity,
-               int first, float* aggregated)
-{
-    for (int i = 0; i < size; ++i)
-        cost.evaluate<lanes>(walk.pixels[i] / width, walk.pixels[i] % width, first, aggregated + (size_t)i * lanes);
-
-    for (int i = size - 1; i > 0; --i) // leaves to root
-    {
-        const float s = similarity.table[walk.weights[i]];
-        const float* child = aggregated + (size_t)i * lanes;
-        float* parent = aggregated + (size_t)walk.parents[i] * lanes;
-        for (int k = 0; k < lanes; ++k)
-            parent[k] += s * child[k];
-    }
-    for (int i = 1; i < size; ++i) // root to leaves
-    {
-        const float s = similarity.table[walk.weights[i]], own = 1 - s * s;
-        float* child = aggregated + (size_t)i * lanes;
-        const float* parent = aggregated + (size_t)walk.parents[i] * lanes;
-        for (int k = 0; k < lanes; ++k)
-            child[k] = s * parent[k] + own * child[k];
-    }
-}
 
 //! The parabola through the costs of three neighbouring candidates has its minimum this far from the middle one, in
 //! 1 / subpixelScale pixels.
@@ -56,24 +39,25 @@ int parabolaOffset(float before, float middle, float after)
     return curvature > 0 ? cvRound((before - after) / curvature * (subpixelScale / 2)) : 0;
 }
 
-struct Winner
+//! The lanes for a run of candidates: few more than there are, and not too many for the memory
+int countLanes(int candidates, int treeSize)
 {
-    float cost;
-    ushort disparity;
+    int lanes = 4;
+    while (lanes < candidates && lanes < 32 && (lanes < 8 || 2 * lanes * (int64)treeSize <= costsAtOnce))
+        lanes *= 2;
+    return lanes;
+}
 
-    bool beats(const Winner& other) const
-    {
-        return cost < other.cost || (cost == other.cost && disparity < other.disparity);
-    }
-};
-
-//! A run of candidates that are aggregated together, and those of them that may win. The others are there for the
-//! parabola, and may win in the runs before and after.
-struct Candidates
+//! Evaluates and aggregates the costs of a run of candidates; see aggregateRun().
+void takeRun(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity,
+             const Range& run, int lanes, bool joins, std::vector<float>& costs, RunWinner* winners)
 {
-    int first, count;
-    int begin, end;
-};
+    if (costs.size() < (size_t)size * lanes)
+        costs.resize((size_t)size * lanes);
+    cost.evaluate(walk.pixels.data(), size, run.start, lanes, costs.data());
+    CV_CPU_DISPATCH(aggregateRun, (walk, size, similarity.table, run, lanes, joins, costs.data(), winners),
+                    CV_CPU_DISPATCH_MODES_ALL);
+}
 
 struct Aggregation
 {
@@ -83,69 +67,28 @@ struct Aggregation
     const bool subpixel;
     ushort* disparity;
 
-    int width() const { return forest.links.cols; }
-
-    //! Candidates on each side of a run that are there for the parabola
-    static int margin(bool subpixel) { return subpixel ? 1 : 0; }
-
-    static int countRuns(int candidates, bool subpixel)
+    //! The winners of some candidates, run by run
+    void takeWinners(const TreeWalk& walk, int size, const Range& candidates, std::vector<float>& costs,
+                     std::vector<RunWinner>& winners) const
     {
-        const int step = chunk - 2 * margin(subpixel);
-        return candidates <= chunk ? 1 : (candidates + step - 1) / step;
+        if (winners.size() < (size_t)size)
+            winners.resize(size);
+        for (int first = candidates.start; first < candidates.end;)
+        {
+            const int lanes = countLanes(candidates.end - first, size);
+            const Range run(first, std::min(first + lanes, candidates.end));
+            takeRun(walk, size, cost, similarity, run, lanes, first > candidates.start, costs, winners.data());
+            first = run.end;
+        }
     }
 
-    Candidates run(const DisparityInterval& interval, int i) const
+    ushort winningDisparity(const RunWinner& winner) const
     {
-        const int first = interval.first, end = interval.last + 1;
-        if (end - first <= chunk)
-        {
-            const Candidates all = { first, end - first, first, end };
-            return all;
-        }
-        const int beside = margin(subpixel), step = chunk - 2 * beside;
-        const int begin = first + i * step;
-        Candidates some = { std::max(begin - beside, first), 0, begin, std::min(begin + step, end) };
-        some.count = std::min(begin + step + beside, end) - some.first;
-        return some;
-    }
-
-    //! The first of the lowest costs.
-    Winner takeWinner(const float* costs, const Candidates& candidates) const
-    {
-        int winner = candidates.begin - candidates.first;
-        float lowest = costs[winner];
-        for (int k = winner + 1; k < candidates.end - candidates.first; ++k)
-        {
-            winner = costs[k] < lowest ? k : winner;
-            lowest = std::min(costs[k], lowest);
-        }
-        int value = candidates.first + winner;
-        if (subpixel)
-        {
-            value *= subpixelScale;
-            if (winner > 0 && winner + 1 < candidates.count)
-                value += parabolaOffset(costs[winner - 1], lowest, costs[winner + 1]);
-        }
-        const Winner result = { lowest, (ushort)value };
-        return result;
-    }
-
-    //! Aggregates some candidates and keeps the winners that beat those of other candidates.
-    void takeWinners(const TreeWalk& walk, int size, const Candidates& candidates, std::vector<float>& aggregated,
-                     std::vector<float>& lowest, std::vector<ushort>& winner) const
-    {
-        const int lanes =
-            aggregateTree(walk, size, width(), cost, similarity, candidates.first, candidates.count, aggregated);
-        for (int i = 0; i < size; ++i)
-        {
-            const Winner here = takeWinner(&aggregated[(size_t)i * lanes], candidates);
-            const Winner other = { lowest[i], winner[i] };
-            if (here.beats(other))
-            {
-                lowest[i] = here.cost;
-                winner[i] = here.disparity;
-            }
-        }
+        if (!subpixel)
+            return (ushort)winner.disparity;
+        const bool hasParabola = winner.before >= 0 && winner.after >= 0;
+        return (ushort)(winner.disparity * subpixelScale +
+                        (hasParabola ? parabolaOffset(winner.before, winner.lowest, winner.after) : 0));
     }
 
     void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
@@ -158,26 +101,9 @@ struct Aggregation
             return;
         }
         walkTree(forest, tree, scratch.walk);
-        const int* pixels = scratch.walk.pixels.data();
-        const int runs = countRuns(interval.size(), subpixel);
-        if (runs == 1)
-        {
-            const Candidates candidates = run(interval, 0);
-            const int lanes = aggregateTree(scratch.walk, tree.size, width(), cost, similarity, candidates.first,
-                                            candidates.count, scratch.aggregated);
-            for (int i = 0; i < tree.size; ++i)
-                disparity[pixels[i]] = takeWinner(&scratch.aggregated[(size_t)i * lanes], candidates).disparity;
-        }
-        else
-        {
-            scratch.lowest.assign(tree.size, FLT_MAX);
-            scratch.winner.assign(tree.size, 0);
-            for (int i = 0; i < runs; ++i)
-                takeWinners(scratch.walk, tree.size, run(interval, i), scratch.aggregated, scratch.lowest,
-                            scratch.winner);
-            for (int i = 0; i < tree.size; ++i)
-                disparity[pixels[i]] = scratch.winner[i];
-        }
+        takeWinners(scratch.walk, tree.size, Range(interval.first, interval.last + 1), scratch.costs, scratch.winners);
+        for (int i = 0; i < tree.size; ++i)
+            disparity[scratch.walk.pixels[i]] = winningDisparity(scratch.winners[i]);
     }
 };
 
@@ -209,44 +135,38 @@ private:
     std::unique_ptr<AggregationScratch> scratch_;
 };
 
-//! A large tree with many candidates: its runs side by side. A winner is the lowest pair (cost, candidate), which does
-//! not depend on the order in which runs end.
+//! A large tree with many candidates: groups of them side by side
 void processLarge(const Aggregation& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
 {
     std::mutex mutex;
     ScratchLoan result(buffers, mutex);
     TreeWalk& walk = (*result).walk;
-    std::vector<float>& lowest = (*result).lowest;
-    std::vector<ushort>& winner = (*result).winner;
     walkTree(aggregation.forest, tree, walk);
-    lowest.assign(tree.size, FLT_MAX);
-    winner.assign(tree.size, 0);
 
-    std::mutex resultMutex;
-    const int runs = Aggregation::countRuns(tree.interval.size(), aggregation.subpixel);
-    const auto aggregateRuns = [&](const Range& range) {
-        ScratchLoan loan(buffers, mutex);
-        AggregationScratch& scratch = *loan;
-        scratch.lowest.assign(tree.size, FLT_MAX);
-        scratch.winner.assign(tree.size, 0);
-        for (int i = range.start; i < range.end; ++i)
-            aggregation.takeWinners(walk, tree.size, aggregation.run(tree.interval, i), scratch.aggregated,
-                                    scratch.lowest, scratch.winner);
-        std::lock_guard<std::mutex> lock(resultMutex);
-        for (int i = 0; i < tree.size; ++i)
-        {
-            const Winner here = { scratch.lowest[i], scratch.winner[i] }, other = { lowest[i], winner[i] };
-            if (here.beats(other))
-            {
-                lowest[i] = here.cost;
-                winner[i] = here.disparity;
-            }
-        }
+    // Whole runs for each group
+    const int candidates = tree.interval.size(), lanes = countLanes(candidates, tree.size);
+    const int runs = (candidates + lanes - 1) / lanes, count = std::min(runs, maxGroups);
+    const auto firstOf = [&](int group) {
+        return tree.interval.first + std::min(group * runs / count * lanes, candidates);
     };
-    // At most 8 at once bounds the memory.
-    parallel_for_(Range(0, runs), aggregateRuns, std::min(runs, 8));
-    for (int i = 0; i < tree.size; ++i)
-        aggregation.disparity[walk.pixels[i]] = winner[i];
+    std::vector<std::vector<RunWinner>>& groups = buffers.groups;
+    groups.resize(maxGroups);
+    const auto takeGroups = [&](const Range& range) {
+        ScratchLoan scratch(buffers, mutex);
+        for (int g = range.start; g < range.end; ++g)
+            aggregation.takeWinners(walk, tree.size, Range(firstOf(g), firstOf(g + 1)), (*scratch).costs, groups[g]);
+    };
+    parallel_for_(Range(0, count), takeGroups, count);
+
+    parallel_for_(Range(0, tree.size), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+        {
+            RunWinner winner = groups[0][i];
+            for (int g = 1; g < count; ++g)
+                cpu_baseline::joinWinner(winner, groups[g][i], firstOf(g));
+            aggregation.disparity[walk.pixels[i]] = aggregation.winningDisparity(winner);
+        }
+    });
 }
 
 } // namespace
@@ -257,16 +177,11 @@ EdgeSimilarity::EdgeSimilarity(double gamma)
         table[w] = (float)std::exp(-w / gamma);
 }
 
-int aggregateTree(const TreeWalk& walk, int size, int width, const MatchingCost& cost, const EdgeSimilarity& similarity,
-                  int first, int count, std::vector<float>& aggregated)
+int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity, int first,
+                  int count, std::vector<float>& aggregated)
 {
-    const int lanes = count <= 4 ? 4 : 8;
-    if (aggregated.size() < (size_t)size * lanes)
-        aggregated.resize((size_t)size * lanes);
-    if (lanes == 4)
-        aggregate<4>(walk, size, width, cost, similarity, first, aggregated.data());
-    else
-        aggregate<8>(walk, size, width, cost, similarity, first, aggregated.data());
+    const int lanes = countLanes(count, 1);
+    takeRun(walk, size, cost, similarity, Range(first, first + count), lanes, false, aggregated, nullptr);
     return lanes;
 }
 
@@ -282,7 +197,7 @@ void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, do
     for (int t = 0; t < (int)forest.trees.size(); ++t)
     {
         const DisparityTree& tree = forest.trees[t];
-        if (tree.size >= largeTree && tree.interval.size() > chunk)
+        if (tree.size >= largeTree && tree.interval.size() > smallRun)
         {
             processLarge(aggregation, tree, buffers);
             work = taskWork;

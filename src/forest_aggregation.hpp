@@ -22,28 +22,37 @@ struct CV_EXPORTS EdgeSimilarity
 /** The aggregated cost C(p, x) = sum over q in the tree of S(p, q) M(q, x) (section 3.3), in two passes.
 @param walk The tree's walk.
 @param size Number of pixels of the tree.
-@param width Columns of the layer.
 @param cost The layer's matching cost.
 @param similarity S of neighbours.
-@param first The first of up to 8 candidates x.
+@param first The first of up to 32 candidates x.
 @param count Their number.
 @param aggregated Receives C(walk.pixels[i], first + k) at [i * lanes + k], k < count.
-@return lanes, 4 or 8: 4 if count <= 4. */
-CV_EXPORTS int aggregateTree(const TreeWalk& walk, int size, int width, const MatchingCost& cost,
-                             const EdgeSimilarity& similarity, int first, int count, std::vector<float>& aggregated);
+@return lanes: the first of 4, 8, 16 and 32 that is not less than count. */
+CV_EXPORTS int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity,
+                             int first, int count, std::vector<float>& aggregated);
+
+//! The winner of some successive candidates, and the costs that its parabola needs, or may need when it is compared with
+//! that of the candidates after
+struct RunWinner
+{
+    float lowest;        // its cost
+    float before, after; // costs of the candidates beside it, negative where there are none
+    float first, last;   // costs of the first and the last candidate
+    int disparity;
+};
 
 //! Memory of one thread for the trees it works on
 struct AggregationScratch
 {
     TreeWalk walk;
-    std::vector<float> aggregated;
-    std::vector<float> lowest;  // cost of the winner so far
-    std::vector<ushort> winner; // by position in the walk
+    std::vector<float> costs;
+    std::vector<RunWinner> winners; // by position in the walk
 };
 
 struct AggregationBuffers
 {
     std::vector<std::unique_ptr<AggregationScratch>> idle;
+    std::vector<std::vector<RunWinner>> groups; // of a large tree's candidates
 };
 
 //! Units of a sub-pixel disparity in one pixel

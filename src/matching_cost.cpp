@@ -3,13 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
 #include "matching_cost.hpp"
-
-// A loop over lanes: GCC unrolls it before it could see that it is one for vectors.
-#if defined(__GNUC__) && !defined(__clang__)
-#define HDP_VECTORIZED _Pragma("GCC unroll 1")
-#else
-#define HDP_VECTORIZED
-#endif
+#include "matching_cost.simd.hpp"
+#include "matching_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 namespace cv {
 namespace stereo {
@@ -18,7 +13,10 @@ namespace hdp {
 namespace {
 
 // Columns behind the last candidate that evaluate() may read
-const int padding = 8;
+const int padding = 32;
+
+// Columns of a census row are computed in groups of this many.
+const int censusColumns = 32;
 
 // Units of a gradient in one intensity level a pixel: the largest, borderGain * 255, still fits into 16 bit
 const int gradientScale = 32;
@@ -61,6 +59,19 @@ void horizontalGradient(const Mat& image, Mat& gradient)
     });
 }
 
+template <typename T> void copyColumns(const T* from, int step, int width, T* to)
+{
+    if (step == 1)
+        std::copy(from, from + width, to);
+    else if (step == -1)
+    {
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) to[x] = from[-x];
+    }
+    else
+        for (int x = 0; x < width; ++x, from += step)
+            to[x] = *from;
+}
+
 //! Copies a channel into rows of bordered with `before` and `after` more columns and `radius` more rows around it,
 //! all from the nearest pixel; mirrored on request.
 template <typename T>
@@ -72,157 +83,99 @@ void copyBordered(const Mat& image, int channel, int radius, int before, int aft
         {
             const T* from = image.ptr<T>(std::min(std::max(y - radius, 0), image.rows - 1)) + channel;
             T* to = bordered.ptr<T>(y);
-            if (mirrored)
-                for (int x = 0; x < width; ++x)
-                    to[before + x] = from[(width - 1 - x) * step];
-            else
-                for (int x = 0; x < width; ++x)
-                    to[before + x] = from[x * step];
+            copyColumns(mirrored ? from + (width - 1) * step : from, mirrored ? -step : step, width, to + before);
             std::fill(to, to + before, to[before]);
             std::fill(to + before + width, to + before + width + after, to[before + width - 1]);
         }
     });
 }
 
-//! A bit for each pixel of the checkerboard around the centre, set if it is darker. grey is bordered by the radius.
-void censusTransform(const Mat& grey, int radius, Mat& census)
+void computeCensusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census,
+                      size_t planeSize)
 {
-    census.create(grey.rows - 2 * radius, grey.cols - 2 * radius, CV_32S);
-    parallel_for_(Range(0, census.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const uchar* centre = grey.ptr(y + radius) + radius;
-            unsigned* bits = census.ptr<unsigned>(y);
-            const int cols = census.cols;
-            std::fill(bits, bits + cols, 0u);
-            unsigned bit = 1;
-            for (int dy = -radius; dy <= radius; ++dy)
-                for (int dx = -radius; dx <= radius; ++dx)
-                {
-                    if ((dx + dy) % 2 == 0)
-                        continue;
-                    const uchar* other = grey.ptr(y + radius + dy) + radius + dx;
-                    for (int x = 0; x < cols; ++x)
-                        bits[x] |= (unsigned)-(int)(other[x] < centre[x]) & bit;
-                    bit <<= 1;
-                }
-        }
-    });
+    CV_CPU_DISPATCH(censusRow, (grey, step, radius, mirrored, cols, census, planeSize), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 } // namespace
 
 void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities, const MatchingCostParams& params)
 {
-    census_ = params.census;
     blockSize_ = params.blockSize;
-    radius_ = census_ ? 0 : blockSize_ / 2;
-    width_ = left.cols;
     channels_ = left.channels();
+    planes_.census = params.census;
+    planes_.width = left.cols;
+    planes_.blockSize = params.census ? 1 : blockSize_;
+    planes_.count = params.census ? (blockSize_ * blockSize_ / 2 + 7) / 8 : channels_;
     // The means over the channels and the window and the gradient's units are left to the weights.
     const float area = (float)(blockSize_ * blockSize_);
-    colorTruncation_ = params.colorTruncation * channels_;
-    gradientTruncation_ = params.gradientTruncation * gradientScale;
-    colorWeight_ = params.colorWeight / (channels_ * area);
-    gradientWeight_ = (1 - params.colorWeight) / (gradientScale * area);
+    planes_.colorTruncation = params.colorTruncation * channels_;
+    planes_.gradientTruncation = params.gradientTruncation * gradientScale;
+    planes_.colorWeight = params.colorWeight / (channels_ * area);
+    planes_.gradientWeight = (1 - params.colorWeight) / (gradientScale * area);
 
-    const int behind = radius_ + numDisparities + padding;
-    if (census_)
+    if (params.census)
     {
         prepareCensus(left, false, 0);
-        prepareCensus(right, true, behind);
+        prepareCensus(right, true, numDisparities + padding);
     }
     else
     {
-        prepareColorAndGradient(left, false, radius_);
-        prepareColorAndGradient(right, true, behind);
+        prepareColorAndGradient(left, false, 0);
+        prepareColorAndGradient(right, true, numDisparities + padding);
+        planes_.leftGradient = leftGradient_.ptr<short>();
+        planes_.rightGradient = rightGradient_.ptr<short>();
     }
+    planes_.left = left_.ptr();
+    planes_.right = right_.ptr();
+    planes_.leftStep = left_.step;
+    planes_.rightStep = right_.step;
+    planes_.leftPlane = left_.step * (left_.rows / planes_.count);
+    planes_.rightPlane = right_.step * (right_.rows / planes_.count);
 }
 
 void MatchingCost::prepareColorAndGradient(const Mat& image, bool mirrored, int after)
 {
-    const int rows = image.rows + 2 * radius_;
+    const int radius = blockSize_ / 2, rows = image.rows + 2 * radius;
     Mat& color = mirrored ? right_ : left_;
     Mat& gradient = mirrored ? rightGradient_ : leftGradient_;
     horizontalGradient(image, gradient_);
-    color.create(channels_ * rows, width_ + radius_ + after, CV_8U);
+    color.create(channels_ * rows, image.cols + 2 * radius + after, CV_8U);
     gradient.create(rows, color.cols, CV_16S);
     for (int c = 0; c < channels_; ++c)
-        copyBordered<uchar>(image, c, radius_, radius_, after, mirrored, color.rowRange(c * rows, (c + 1) * rows));
-    copyBordered<short>(gradient_, 0, radius_, radius_, after, mirrored, gradient);
-    (mirrored ? rightPlane_ : leftPlane_) = color.step * rows;
+        copyBordered<uchar>(image, c, radius, radius, radius + after, mirrored,
+                            color.rowRange(c * rows, (c + 1) * rows));
+    copyBordered<short>(gradient_, 0, radius, radius, radius + after, mirrored, gradient);
 }
 
 void MatchingCost::prepareCensus(const Mat& image, bool mirrored, int after)
 {
-    const int radius = blockSize_ / 2;
+    const int radius = blockSize_ / 2, width = image.cols, planes = planes_.count, rows = image.rows;
+    const int cols = (int)alignSize(width, censusColumns); // what is computed past the width is overwritten or not read
     Mat grey = image;
     if (channels_ == 3)
         cvtColor(image, grey, COLOR_BGR2GRAY);
-    copyMakeBorder(grey, grey_, radius, radius, radius, radius, BORDER_REPLICATE | BORDER_ISOLATED);
-    censusTransform(grey_, radius, bits_);
-    Mat& census = mirrored ? rightCensus_ : leftCensus_;
-    census.create(image.rows, width_ + after, CV_32S);
-    copyBordered<int>(bits_, 0, 0, 0, after, mirrored, census);
-}
-
-template <int lanes> void MatchingCost::evaluate(int y, int x, int first, float* cost) const
-{
-    if (census_)
-        census<lanes>(y, x, first, cost);
-    else
-        colorAndGradient<lanes>(y, x, first, cost);
-}
-
-template <int lanes> void MatchingCost::census(int y, int x, int first, float* cost) const
-{
-    const unsigned pixel = leftCensus_.ptr<unsigned>(y)[x];
-    const unsigned* candidates = rightCensus_.ptr<unsigned>(y) + width_ - 1 - x + first;
-    HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
-    {
-        // The number of bits set, in steps that exist on vectors.
-        unsigned bits = pixel ^ candidates[k];
-        bits -= (bits >> 1) & 0x55555555;
-        bits = (bits & 0x33333333) + ((bits >> 2) & 0x33333333);
-        bits = (bits + (bits >> 4)) & 0x0f0f0f0f;
-        bits += bits >> 8;
-        cost[k] = (float)(int)((bits + (bits >> 16)) & 63);
-    }
-}
-
-template <int lanes> void MatchingCost::colorAndGradient(int y, int x, int first, float* cost) const
-{
-    const int mirroredX = width_ - 1 - x + 2 * radius_ + first;
-    float sum[lanes] = { 0 };
-    for (int dy = 0; dy < blockSize_; ++dy)
-    {
-        const uchar* pixels = left_.ptr(y + dy) + x;
-        const uchar* candidates = right_.ptr(y + dy) + mirroredX;
-        const short* slope = leftGradient_.ptr<short>(y + dy) + x;
-        const short* slopes = rightGradient_.ptr<short>(y + dy) + mirroredX;
-        for (int dx = 0; dx < blockSize_; ++dx, ++pixels, --candidates, ++slope, --slopes)
+    grey_.create(rows + 2 * radius, cols + 2 * radius, CV_8U);
+    copyBordered<uchar>(grey, 0, radius, radius, radius + cols - width, mirrored, grey_);
+    Mat& census = mirrored ? right_ : left_;
+    census.create(planes * rows, std::max(width + after, cols), CV_8U);
+    parallel_for_(Range(0, rows), [&](const Range& range) {
+        for (int y = range.start; y < range.end; ++y)
         {
-            short color[lanes] = { 0 };
-            for (int c = 0; c < channels_; ++c)
+            computeCensusRow(grey_.ptr(y + radius) + radius, (ptrdiff_t)grey_.step, radius, mirrored, cols,
+                             census.ptr(y), census.step * rows);
+            for (int plane = 0; plane < planes; ++plane)
             {
-                const short pixel = pixels[c * leftPlane_];
-                const uchar* candidate = candidates + c * rightPlane_;
-                HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
-                {
-                    const short difference = (short)(pixel - candidate[k]);
-                    color[k] = (short)(color[k] + std::max<short>(difference, (short)-difference));
-                }
+                uchar* row = census.ptr(plane * rows + y);
+                std::fill(row + width, row + census.cols, row[width - 1]);
             }
-            HDP_VECTORIZED for (int k = 0; k < lanes; ++k) sum[k] +=
-                colorWeight_ * std::min((float)color[k], colorTruncation_) +
-                gradientWeight_ * std::min((float)std::abs(*slope - slopes[k]), gradientTruncation_);
         }
-    }
-    std::copy(sum, sum + lanes, cost);
+    });
 }
 
-template CV_EXPORTS void MatchingCost::evaluate<4>(int y, int x, int first, float* cost) const;
-template CV_EXPORTS void MatchingCost::evaluate<8>(int y, int x, int first, float* cost) const;
+void MatchingCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
+{
+    CV_CPU_DISPATCH(evaluateCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
+}
 
 } // namespace hdp
 } // namespace stereo

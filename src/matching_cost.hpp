@@ -19,6 +19,23 @@ struct MatchingCostParams
     int blockSize;            // side of the window the cost is averaged over
 };
 
+//! The planes of a pair, as MatchingCost holds them: rows of the right image are mirrored and padded. Without their
+//! borders, the window of pixel (x, y) and those of its candidates have their first pixels at
+//! left[y * leftStep + x] and right[y * rightStep + width - 1 - x + candidate + blockSize - 1].
+struct CostPlanes
+{
+    bool census;
+    int width;     // of the image
+    int blockSize; // of the window that evaluate() averages over: 1 for the census cost
+    int count;     // of colour or census planes
+    const uchar *left, *right;
+    const short *leftGradient, *rightGradient; // in rows of as many elements as those of left and right
+    size_t leftStep, rightStep;                // from a row to the next
+    size_t leftPlane, rightPlane;              // from a plane to the next
+    float colorTruncation, gradientTruncation; // in the units of sums over the channels and of the gradient planes
+    float colorWeight, gradientWeight;         // of these sums
+};
+
 /** The matching cost M(p, x) of a layer (section 3.3):
 colorWeight * min(mean_c |I_c(p) - I'_c(p - x)|, colorTruncation)
 + (1 - colorWeight) * min(|grad(p) - grad'(p - x)|, gradientTruncation), columns clamped to the image. grad is half the
@@ -28,34 +45,47 @@ to the only neighbour.
 Or the census cost: the number of pixels, of every second one in the window as on a checkerboard, that are darker than
 the centre in one image and not in the other.
 
-The right image is stored mirrored and padded, so that the candidates of a pixel follow one another in memory. */
+The right image is stored mirrored and padded, so that the candidates of a pixel follow one another in memory. The census
+is in planes of 8 bits: 3 for a window of 7, 2 for 5, 1 for 3. */
 class CV_EXPORTS MatchingCost
 {
 public:
     //! Takes a pair of one size, CV_8UC1 or CV_8UC3, and the number of candidates a pixel may be asked for.
     void prepare(const Mat& left, const Mat& right, int numDisparities, const MatchingCostParams& params);
 
-    //! M(p, x) for x = first .. first + lanes - 1, lanes being 4 or 8; candidates past the last one are padding.
-    template <int lanes> void evaluate(int y, int x, int first, float* cost) const;
+    /** Costs M(p, x) of some pixels.
+    @param pixels The pixels, y * width + x each.
+    @param count Their number.
+    @param first The first of the candidates x.
+    @param lanes The number of candidates, 4, 8, 16 or 32; costs of those past the last one mean nothing.
+    @param cost Receives M(pixels[i], first + k) at [i * lanes + k]. */
+    void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const;
+
+    //! The number of planes of 8 bits that hold the census of a pixel; 0 for the cost of colour and gradient
+    int planes() const { return planes_.census ? planes_.count : 0; }
+    //! A row of the left image's census: pixel x is at [x].
+    const uchar* leftPlane(int plane, int y) const
+    {
+        return planes_.left + plane * planes_.leftPlane + y * planes_.leftStep;
+    }
+    //! A row of the right image's census: candidate d of pixel x is at [width - 1 - x + d], and there are 32 more bytes
+    //! to read behind the last candidate.
+    const uchar* rightPlane(int plane, int y) const
+    {
+        return planes_.right + plane * planes_.rightPlane + y * planes_.rightStep;
+    }
 
 private:
     void prepareColorAndGradient(const Mat& image, bool mirrored, int after);
     void prepareCensus(const Mat& image, bool mirrored, int after);
-    template <int lanes> void colorAndGradient(int y, int x, int first, float* cost) const;
-    template <int lanes> void census(int y, int x, int first, float* cost) const;
 
-    bool census_;
-    int blockSize_, radius_;
-    int width_, channels_; // of the image
-    float colorTruncation_, gradientTruncation_, colorWeight_,
-        gradientWeight_;            // in the units of sums and of the planes
-    size_t leftPlane_, rightPlane_; // from a channel to the next
-    Mat left_;                      // CV_8UC1 planes of the channels below one another, bordered by radius_
-    Mat leftGradient_;              // CV_16SC1, fixed point, bordered by radius_
-    Mat right_;                     // as left_, mirrored, with a border for all candidates
-    Mat rightGradient_;             // as leftGradient_, mirrored, with a border for all candidates
-    Mat leftCensus_, rightCensus_;  // CV_32SC1, a bit a compared pixel; the right one mirrored, with a border as above
-    Mat gradient_, grey_, bits_;
+    int blockSize_, channels_;
+    CostPlanes planes_;
+    Mat left_;          // CV_8UC1 planes of the channels or of the census below one another, the former bordered
+    Mat leftGradient_;  // CV_16SC1, fixed point, bordered by half the window
+    Mat right_;         // as left_, mirrored, with a border for all candidates
+    Mat rightGradient_; // as leftGradient_, mirrored, with a border for all candidates
+    Mat gradient_, grey_;
 };
 
 } // namespace hdp

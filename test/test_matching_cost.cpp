@@ -27,7 +27,8 @@ void expectFormula(const MatchingCost& cost, const Formula& formula, Size size, 
             for (int first = 0; first < candidates; first += 3) // any first candidate, not multiples of lanes only
             {
                 float costs[lanes];
-                cost.evaluate<lanes>(y, x, first, costs);
+                const int pixel = y * size.width + x;
+                cost.evaluate(&pixel, 1, first, lanes, costs);
                 for (int k = 0; k < lanes && first + k < candidates; ++k)
                     ASSERT_NEAR(formula(y, x, first + k), costs[k], tolerance + 1e-6 * costs[k])
                         << lanes << " lanes, y " << y << " x " << x << " candidate " << first + k;
@@ -44,6 +45,8 @@ void testCost(const Mat& left, const Mat& right, int candidates, const MatchingC
     const double tolerance = toleranceOf(left.channels(), params);
     expectFormula<4>(cost, formula, left.size(), candidates, tolerance);
     expectFormula<8>(cost, formula, left.size(), candidates, tolerance);
+    expectFormula<16>(cost, formula, left.size(), candidates, tolerance);
+    expectFormula<32>(cost, formula, left.size(), candidates, tolerance);
 }
 
 // channels, blockSize
@@ -126,6 +129,8 @@ void testCensus(const Mat& left, const Mat& right, int candidates, int blockSize
     const oracle::CensusCost formula(left, right, blockSize);
     expectFormula<4>(cost, formula, left.size(), candidates, 0);
     expectFormula<8>(cost, formula, left.size(), candidates, 0);
+    expectFormula<16>(cost, formula, left.size(), candidates, 0);
+    expectFormula<32>(cost, formula, left.size(), candidates, 0);
 }
 
 // channels, blockSize
@@ -160,12 +165,50 @@ TEST_P(HDPStereo_CensusCost, largest_cost)
     MatchingCost cost;
     cost.prepare(left, right, 4, censusParams(blockSize));
     float costs[4];
-    cost.evaluate<4>(4, 4, 0, costs);
+    const int centre = 4 * left.cols + 4;
+    cost.evaluate(&centre, 1, 0, 4, costs);
     EXPECT_EQ(blockSize * blockSize / 2, costs[0]);
     testCensus(left, right, 4, blockSize);
 }
 
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_CensusCost, testing::Combine(testing::Values(1, 3), testing::Values(3, 5, 7)));
+
+//! The rows of bytes for those that compare them themselves: as many bits differ as the cost tells. There are 32 bytes
+//! more than candidates.
+TEST_P(HDPStereo_CensusCost, planes)
+{
+    const int type = CV_8UC(get<0>(GetParam())), blockSize = get<1>(GetParam()), candidates = 13, behind = 32;
+    RNG rng(34);
+    for (const Size& size : { Size(1, 1), Size(5, 3), Size(70, 4) })
+    {
+        const Mat left = randomImage(rng, size, type), right = randomImage(rng, size, type);
+        MatchingCost cost;
+        cost.prepare(left, right, candidates, censusParams(blockSize));
+        ASSERT_EQ(blockSize == 7 ? 3 : blockSize == 5 ? 2 : 1, cost.planes());
+        const oracle::CensusCost formula(left, right, blockSize);
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+                for (int d = 0; d < candidates + behind; ++d)
+                {
+                    int different = 0;
+                    for (int plane = 0; plane < cost.planes(); ++plane)
+                    {
+                        const int differences =
+                            cost.leftPlane(plane, y)[x] ^ cost.rightPlane(plane, y)[size.width - 1 - x + d];
+                        for (int bit = 0; bit < 8; ++bit)
+                            different += differences >> bit & 1;
+                    }
+                    if (d < candidates)
+                    {
+                        ASSERT_EQ(formula(y, x, d), different) << "y " << y << " x " << x << " candidate " << d;
+                    }
+                }
+    }
+    MatchingCost color;
+    const Mat image(4, 4, type, Scalar::all(0));
+    color.prepare(image, image, candidates, paperParams);
+    EXPECT_EQ(0, color.planes());
+}
 
 //! A monotone change of one image's grey levels changes nothing.
 TEST(HDPStereo_MatchingCostInput, census_is_the_same_for_any_exposure)
@@ -188,11 +231,39 @@ TEST(HDPStereo_MatchingCostInput, census_is_the_same_for_any_exposure)
             for (int x = 0; x < size.width; ++x)
             {
                 float expected[8], actual[8];
-                before.evaluate<8>(y, x, 3, expected);
-                after.evaluate<8>(y, x, 3, actual);
+                const int pixel = y * size.width + x;
+                before.evaluate(&pixel, 1, 3, 8, expected);
+                after.evaluate(&pixel, 1, 3, 8, actual);
                 for (int k = 0; k < 8; ++k)
                     ASSERT_EQ(expected[k], actual[k]) << "y " << y << " x " << x << " candidate " << 3 + k;
             }
+    }
+}
+
+//! Pixels in any order, several times, as a tree's walk may have them
+TEST(HDPStereo_MatchingCostInput, many_pixels_at_once)
+{
+    RNG rng(35);
+    const Size size(37, 11);
+    const Mat left = randomImage(rng, size, CV_8UC3), right = randomImage(rng, size, CV_8UC3);
+    for (const MatchingCostParams& params : { paperParams, censusParams(3), censusParams(5), censusParams(7) })
+    {
+        MatchingCost cost;
+        cost.prepare(left, right, 40, params);
+        std::vector<int> pixels(500);
+        for (int& pixel : pixels)
+            pixel = rng.uniform(0, size.area());
+        for (int lanes : { 4, 8, 16, 32 })
+        {
+            std::vector<float> all(pixels.size() * lanes), one(lanes);
+            cost.evaluate(pixels.data(), (int)pixels.size(), 5, lanes, all.data());
+            for (size_t i = 0; i < pixels.size(); ++i)
+            {
+                cost.evaluate(&pixels[i], 1, 5, lanes, one.data());
+                for (int k = 0; k < lanes; ++k)
+                    ASSERT_EQ(one[k], all[i * lanes + k]) << lanes << " lanes, pixel " << pixels[i];
+            }
+        }
     }
 }
 

@@ -1,0 +1,193 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "matching_cost.hpp"
+#include "vectorized.hpp"
+#include <cstring>
+#include <type_traits>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+/** A row of the census transform, a bit for each pixel of the checkerboard around the centre, set if it is darker.
+@param grey The first pixel of the row; it has a border of the radius, and may be read up to column cols.
+@param step From a row to the next.
+@param radius Of the window, 1 to 3.
+@param mirrored Whether the image is mirrored: the window is then, too, so that its bits are the same ones.
+@param cols Columns to compute.
+@param census Receives the row, 8 bits in each of its planes.
+@param planeSize From a plane to the next. */
+void censusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize);
+
+//! MatchingCost::evaluate()
+void evaluateCost(const CostPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+void censusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize)
+{
+    // Of the last plane's bits that compare nothing: the centre, which is not darker than itself
+    ptrdiff_t offsets[24] = { 0 };
+    int bits = 0;
+    for (int dy = -radius; dy <= radius; ++dy)
+        for (int dx = -radius; dx <= radius; ++dx)
+            if ((dx + dy) % 2 != 0)
+                offsets[bits++] = dy * step + (mirrored ? -dx : dx);
+    for (int bit = 0; bit < bits; bit += 8, census += planeSize)
+    {
+        const ptrdiff_t* offset = offsets + bit;
+        const uchar *p0 = grey + offset[0], *p1 = grey + offset[1], *p2 = grey + offset[2], *p3 = grey + offset[3],
+                    *p4 = grey + offset[4], *p5 = grey + offset[5], *p6 = grey + offset[6], *p7 = grey + offset[7];
+        HDP_VECTORIZED for (int x = 0; x < cols; ++x)
+        {
+            const uchar centre = grey[x];
+            census[x] = (uchar)((p0[x] < centre ? 1 : 0) | (p1[x] < centre ? 2 : 0) | (p2[x] < centre ? 4 : 0) |
+                                (p3[x] < centre ? 8 : 0) | (p4[x] < centre ? 16 : 0) | (p5[x] < centre ? 32 : 0) |
+                                (p6[x] < centre ? 64 : 0) | (p7[x] < centre ? 128 : 0));
+        }
+    }
+}
+
+namespace {
+
+//! A byte in each of a word's; words are of as many bytes as there are candidates, up to 8.
+template <typename Word> inline Word repeated(unsigned byte) { return (Word)-1 / 255 * byte; }
+
+//! The number of bits set in each 4 bits
+template <typename Word> inline Word countInNibbles(Word bits)
+{
+    bits -= (bits >> 1) & repeated<Word>(0x55);
+    return (bits & repeated<Word>(0x33)) + ((bits >> 2) & repeated<Word>(0x33));
+}
+
+//! The number of bits set in each byte of 1 to 3 words
+template <int count, typename Word> inline Word countInBytes(Word a, Word b, Word c)
+{
+    // Sum and carry of three bits: two counts instead of three
+    const Word nibbles = count == 1   ? countInNibbles(a)
+                         : count == 2 ? countInNibbles(a) + countInNibbles(b)
+                                      : countInNibbles(a ^ b ^ c) + 2 * countInNibbles((a & b) | ((a ^ b) & c));
+    return (nibbles & repeated<Word>(0x0f)) + ((nibbles >> 4) & repeated<Word>(0x0f));
+}
+
+//! Exact: p + 0.5 is 0.5 / width and more away from a whole number of rows, the product's error far less.
+inline int rowOf(int p, double rowsPerPixel) { return (int)((p + 0.5) * rowsPerPixel); }
+
+template <int lanes, int count, typename Word>
+void censusCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
+{
+    // Bits are counted in all words of a block at once, in order to fill vectors.
+    const int block = lanes > 16 ? 1 : 32, words = lanes / (int)sizeof(Word);
+    const double rowsPerPixel = 1. / planes.width;
+    Word differences[count][block * words], bits[block * words];
+    for (int begin = 0; begin < size; begin += block)
+    {
+        const int pixelCount = block == 1 ? 1 : std::min(block, size - begin);
+        for (int i = 0; i < pixelCount; ++i)
+        {
+            const int p = pixels[begin + i], y = rowOf(p, rowsPerPixel), x = p - y * planes.width;
+            const uchar* left = planes.left + y * planes.leftStep + x;
+            const uchar* right = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
+            for (int plane = 0; plane < count; ++plane, left += planes.leftPlane, right += planes.rightPlane)
+            {
+                const Word pixel = repeated<Word>(*left);
+                HDP_VECTORIZED for (int k = 0; k < words; ++k)
+                {
+                    Word candidates;
+                    std::memcpy(&candidates, right + k * sizeof(Word), sizeof(Word));
+                    differences[plane][i * words + k] = candidates ^ pixel;
+                }
+            }
+        }
+        HDP_VECTORIZED for (int k = 0; k < pixelCount * words; ++k) bits[k] = countInBytes<count>(
+            differences[0][k], differences[count > 1 ? 1 : 0][k], differences[count > 2 ? 2 : 0][k]);
+        const uchar* bytes = reinterpret_cast<const uchar*>(bits);
+        HDP_VECTORIZED for (int k = 0; k < pixelCount * lanes; ++k) cost[k] = bytes[k];
+        cost += pixelCount * lanes;
+    }
+}
+
+inline short absolute(short value) { return std::max<short>(value, (short)-value); }
+
+template <int lanes, int channels>
+void colorAndGradientCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
+{
+    const double rowsPerPixel = 1. / planes.width;
+    const float colorWeight = planes.colorWeight, colorTruncation = planes.colorTruncation,
+                gradientWeight = planes.gradientWeight, gradientTruncation = planes.gradientTruncation;
+    for (int i = 0; i < size; ++i, cost += lanes)
+    {
+        const int y = rowOf(pixels[i], rowsPerPixel), x = pixels[i] - y * planes.width;
+        const int mirroredX = planes.width - 1 - x + planes.blockSize - 1 + first;
+        float sum[lanes] = { 0 };
+        for (int dy = 0; dy < planes.blockSize; ++dy)
+            for (int dx = 0; dx < planes.blockSize; ++dx)
+            {
+                const size_t left = (y + dy) * planes.leftStep + x + dx;
+                const size_t right = (y + dy) * planes.rightStep + mirroredX - dx;
+                const uchar *pixel = planes.left + left, *candidates = planes.right + right;
+                const short slope = planes.leftGradient[left], blue = pixel[0],
+                            green = channels > 1 ? pixel[planes.leftPlane] : 0,
+                            red = channels > 1 ? pixel[2 * planes.leftPlane] : 0;
+                const short* slopes = planes.rightGradient + right;
+                const size_t plane = channels > 1 ? planes.rightPlane : 0;
+                const uchar *greens = candidates + plane, *reds = greens + plane;
+                short color[lanes];
+                HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
+                {
+                    short difference = absolute((short)(blue - candidates[k]));
+                    if (channels > 1)
+                        difference = (short)(difference + absolute((short)(green - greens[k])) +
+                                             absolute((short)(red - reds[k])));
+                    color[k] = difference;
+                }
+                HDP_VECTORIZED for (int k = 0; k < lanes; ++k) sum[k] +=
+                    colorWeight * std::min((float)color[k], colorTruncation) +
+                    gradientWeight * std::min((float)std::abs(slope - slopes[k]), gradientTruncation);
+            }
+        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = sum[k];
+    }
+}
+
+template <int lanes> void evaluateCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
+{
+    typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
+    if (!planes.census && planes.count == 3)
+        colorAndGradientCosts<lanes, 3>(planes, pixels, size, first, cost);
+    else if (!planes.census)
+        colorAndGradientCosts<lanes, 1>(planes, pixels, size, first, cost);
+    else if (planes.count == 3)
+        censusCosts<lanes, 3, Word>(planes, pixels, size, first, cost);
+    else if (planes.count == 2)
+        censusCosts<lanes, 2, Word>(planes, pixels, size, first, cost);
+    else
+        censusCosts<lanes, 1, Word>(planes, pixels, size, first, cost);
+}
+
+} // namespace
+
+void evaluateCost(const CostPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost)
+{
+    switch (lanes)
+    {
+    case 4:
+        return evaluateCosts<4>(planes, pixels, count, first, cost);
+    case 8:
+        return evaluateCosts<8>(planes, pixels, count, first, cost);
+    case 16:
+        return evaluateCosts<16>(planes, pixels, count, first, cost);
+    default:
+        return evaluateCosts<32>(planes, pixels, count, first, cost);
+    }
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
