@@ -88,10 +88,9 @@ template <int lanes> inline int findLowest(const float* costs, const int* exclud
 {
     const CostBits* bits = reinterpret_cast<const CostBits*>(costs);
     int lowest = INT_MAX, position = lanes;
-    HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
-        lowest = std::min(lowest, bits[k] | excluded[k]);
-    HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
-        position = std::min(position, (bits[k] | excluded[k]) == lowest ? k : lanes);
+    HDP_VECTORIZED for (int k = 0; k < lanes; ++k) lowest = std::min(lowest, bits[k] | excluded[k]);
+    HDP_VECTORIZED for (int k = 0; k < lanes; ++k) position =
+        std::min(position, (bits[k] | excluded[k]) == lowest ? k : lanes);
     return position;
 }
 
@@ -99,8 +98,7 @@ template <int lanes> void takeWinners(const float* costs, int size, const Range&
 {
     const int count = run.end - run.start;
     int excluded[lanes];
-    HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
-        excluded[k] = k < count ? 0 : INT_MAX;
+    HDP_VECTORIZED for (int k = 0; k < lanes; ++k) excluded[k] = k < count ? 0 : INT_MAX;
     for (int i = 0; i < size; ++i, costs += lanes)
     {
         const int k = findLowest<lanes>(costs, excluded), disparity = run.start + k;

@@ -22,7 +22,8 @@ struct Layer
     hdp::MatchingCost cost;
     Mat_<double> costTable;
 
-    Layer(RNG& rng, Size size, const TreeStrategy& strategy, const Mat& pixelIntv, double beta, bool link)
+    Layer(RNG& rng, Size size, const TreeStrategy& strategy, const Mat& pixelIntv, double beta, bool link,
+          int disparities = numDisparities)
         : left(patchyImage(rng, size, CV_8UC1)), right(size, CV_8UC1)
     {
         const Mat noise = randomImage(rng, size, CV_8UC1, 6);
@@ -31,8 +32,8 @@ struct Layer
         hdp::ForestBuffers buffers;
         hdp::buildForest(left, pixelIntv, strategy, beta, link, buffers, forest);
         expectedForest = oracle::buildForest(left, pixelIntv, strategy, beta, link);
-        cost.prepare(left, right, numDisparities, costParams);
-        costTable = oracle::costTable(oracle::Cost(left, right, costParams), size, numDisparities);
+        cost.prepare(left, right, disparities, costParams);
+        costTable = oracle::costTable(oracle::Cost(left, right, costParams), size, disparities);
     }
 };
 
@@ -176,8 +177,7 @@ TEST(HDPStereo_ForestAggregation, winner_of_explicit_sums)
             }
 }
 
-//! Each number of candidates goes its own way through the groups of 4 and 8; sub-pixel ones overlap, so that a winner
-//! at the border of a group has both its neighbours.
+//! Each number of candidates has its own number of lanes, some of them for nothing.
 TEST(HDPStereo_ForestAggregation, winner_among_any_number_of_candidates)
 {
     RNG rng(21);
@@ -195,18 +195,21 @@ TEST(HDPStereo_ForestAggregation, winner_among_any_number_of_candidates)
             }
 }
 
-//! A large tree's groups of candidates go side by side.
-TEST(HDPStereo_ForestAggregation, winner_in_a_large_tree)
+//! Several runs, with winners at their borders: in a small tree one after the other, in a large one in groups side by side
+TEST(HDPStereo_ForestAggregation, winner_of_several_runs)
 {
     RNG rng(26);
     hdp::AggregationBuffers buffers;
-    const Size size(210, 160);
-    const Mat fullRange(size, CV_16UC2, Scalar(0, numDisparities - 1));
-    const Layer layer(rng, size, *createMinimumSpanningTree(), fullRange, 0.95, true);
-    ASSERT_EQ(1u, layer.forest.trees.size());
-    for (bool subpixel : { false, true })
-        for (double gamma : { 1., 25.5 })
-            expectWinners(layer, gamma, subpixel, buffers, 997);
+    const int candidates = 150;
+    for (const Size& size : { Size(30, 12), Size(210, 160) })
+    {
+        const Mat fullRange(size, CV_16UC2, Scalar(0, candidates - 1));
+        const Layer layer(rng, size, *createMinimumSpanningTree(), fullRange, 0.95, true, candidates);
+        ASSERT_EQ(1u, layer.forest.trees.size());
+        for (bool subpixel : { false, true })
+            for (double gamma : { 1., 25.5 }) // with the smaller one winners are everywhere in the range
+                expectWinners(layer, gamma, subpixel, buffers, size.area() / 35 | 1);
+    }
 }
 
 TEST(HDPStereo_ForestAggregation, lowest_disparity_wins_a_tie)
