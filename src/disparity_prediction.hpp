@@ -10,6 +10,9 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
+//! Units of a sub-pixel disparity in one pixel
+const int subpixelScale = 16;
+
 //! Disparities first .. last; empty if last < first. Stored in Mats as CV_16UC2.
 struct DisparityInterval
 {

@@ -49,6 +49,29 @@ void medianDisparity(const Mat& disparity, int size, Mat& filtered)
     }
 }
 
+void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity)
+{
+    disparity.create(size, CV_16U);
+    parallel_for_(Range(0, size.height), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const auto clampRow = [&](int row) { return std::min(std::max(row, 0), upper.rows - 1); };
+            const ushort* own = upper.ptr<ushort>(clampRow(y / 2));
+            const ushort* beside = upper.ptr<ushort>(clampRow(y % 2 ? y / 2 + 1 : y / 2 - 1));
+            ushort* row = disparity.ptr<ushort>(y);
+            for (int x = 0; x < size.width; ++x)
+            {
+                const int column = std::min(x / 2, upper.cols - 1), d = own[column];
+                const int next = std::min(std::max(x % 2 ? column + 1 : column - 1, 0), upper.cols - 1);
+                const auto sameSurface = [&](int other) { return std::abs(other - d) <= scale ? other : d; };
+                row[x] = (ushort)((9 * d + 3 * sameSurface(own[next]) + 3 * sameSurface(beside[column]) +
+                                   sameSurface(beside[next]) + 4) /
+                                  8);
+            }
+        }
+    });
+}
+
 void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
 {
     const int scale = 16;

@@ -13,6 +13,13 @@ namespace hdp {
 //! Median of size x size pixels, borders replicated. disparity: CV_16UC1.
 CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& filtered);
 
+/** The disparities of a layer from those of the layer above: bilinear inside a surface, its pixel's own at its border.
+@param upper CV_16UC1, times scale.
+@param scale Units of a disparity in one pixel.
+@param size Of the layer.
+@param disparity Receives CV_16UC1, times scale. */
+CV_EXPORTS void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity);
+
 //! Marks the pixels as invalid whose disparity differs by more than maxDiff pixels from the largest one that maps to
 //! the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
 CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);

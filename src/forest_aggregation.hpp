@@ -55,9 +55,6 @@ struct AggregationBuffers
     std::vector<std::vector<RunWinner>> groups; // of a large tree's candidates
 };
 
-//! Units of a sub-pixel disparity in one pixel
-const int subpixelScale = 16;
-
 /** Winner-takes-all over C(p, x), x in TreeIntv of the pixel's tree; the lowest disparity wins a tie.
 @param forest The forest.
 @param cost The layer's matching cost.

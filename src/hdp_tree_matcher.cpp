@@ -3,12 +3,14 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
 
+#include "candidate_windows.hpp"
 #include "disparity_forest.hpp"
 #include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
 #include "forest_aggregation.hpp"
 #include "image_pyramid.hpp"
 #include "matching_cost.hpp"
+#include "scanline_aggregation.hpp"
 #include "support_points.hpp"
 #include "tree_strategy.hpp"
 
@@ -25,6 +27,7 @@ const int largeImageWidth = 1000;
 const int maxBlockSize = 31;
 const int maxMedianSize = 31;
 const int maxLayers = 16;
+const int mostTopDisparities = 64;
 
 //! A value in a range, or an exception that names the argument and the range.
 template <typename T> T checked(T value, bool isValid, const char* name, const char* expected)
@@ -66,6 +69,10 @@ struct Parameters
     int disparityPrior = HDPTreeMatcher::PRIOR_SUPPORT_POINTS;
     int intervalMargin = 0;
     bool useSubpixel = false;
+    int aggregation = HDPTreeMatcher::AGGREGATION_TREES;
+    int smallPenalty = 12;
+    int largePenalty = 50;
+    int finestLayer = 0;
 
     void setMinDisparity(int value) { minDisparity = value; }
     void setNumDisparities(int value) { numDisparities = checked(value, value > 0, "numDisparities", "> 0"); }
@@ -91,7 +98,8 @@ struct Parameters
     }
     void setNumLayers(int value)
     {
-        numLayers = checked(value, value >= 1 && value <= maxLayers, "numLayers", "in 1..16");
+        numLayers = checked(value, value == HDPTreeMatcher::AUTO || (value >= 1 && value <= maxLayers), "numLayers",
+                            "in 1..16 or AUTO");
     }
     void setDelta0(double value)
     {
@@ -143,6 +151,23 @@ struct Parameters
     void setIntervalMargin(int value)
     {
         intervalMargin = checked(value, value >= 0 && value <= 64, "intervalMargin", "in 0..64");
+    }
+    void setAggregation(int value)
+    {
+        const bool isValid =
+            value == HDPTreeMatcher::AGGREGATION_TREES || value == HDPTreeMatcher::AGGREGATION_SCANLINES;
+        aggregation = checked(value, isValid, "aggregation", "AGGREGATION_TREES or AGGREGATION_SCANLINES");
+    }
+    void setSmallPenalty(int value) { smallPenalty = checkedPenalty(value, "smallPenalty"); }
+    void setLargePenalty(int value) { largePenalty = checkedPenalty(value, "largePenalty"); }
+    void setFinestLayer(int value)
+    {
+        finestLayer = checked(value, value >= 0 && value < maxLayers, "finestLayer", "in 0..15");
+    }
+
+    static int checkedPenalty(int value, const char* name)
+    {
+        return checked(value, value >= 0 && value <= ScanlinePenalties::largest, name, "in 0..100");
     }
 };
 
@@ -200,18 +225,14 @@ public:
         clock_.restart();
         searchRatios_.assign(settings.layers, 0);
 
-        std::vector<Mat> lefts, rights; // by layer
-        clock_.run("image pyramid", [&] {
-            shiftColumns(right, p_.minDisparity, shiftedRight_);
-            lefts = buildPyramid(left, settings.layers, leftPyramid_);
-            rights = buildPyramid(shiftedRight_, settings.layers, rightPyramid_);
-        });
-        for (int layer = settings.layers - 1; layer >= 0; --layer)
-            matchLayer(layer, lefts[layer], rights[layer], settings);
+        std::vector<LayerImages> images;
+        clock_.run("image pyramid", [&] { buildPyramids(left, right, settings, images); });
+        for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
+            matchLayer(layer, images[layer], settings);
 
         disparityArray.create(left.size(), CV_16S);
         Mat disparity = disparityArray.getMat();
-        clock_.run("output", [&] { finish(disparity); });
+        clock_.run("output", [&] { finish(images, settings, disparity); });
     }
 
     // cv::StereoMatcher
@@ -263,6 +284,14 @@ public:
     void setIntervalMargin(int value) CV_OVERRIDE { p_.setIntervalMargin(value); }
     bool getUseSubpixel() const CV_OVERRIDE { return p_.useSubpixel; }
     void setUseSubpixel(bool value) CV_OVERRIDE { p_.useSubpixel = value; }
+    int getAggregation() const CV_OVERRIDE { return p_.aggregation; }
+    void setAggregation(int value) CV_OVERRIDE { p_.setAggregation(value); }
+    int getSmallPenalty() const CV_OVERRIDE { return p_.smallPenalty; }
+    void setSmallPenalty(int value) CV_OVERRIDE { p_.setSmallPenalty(value); }
+    int getLargePenalty() const CV_OVERRIDE { return p_.largePenalty; }
+    void setLargePenalty(int value) CV_OVERRIDE { p_.setLargePenalty(value); }
+    int getFinestLayer() const CV_OVERRIDE { return p_.finestLayer; }
+    void setFinestLayer(int value) CV_OVERRIDE { p_.setFinestLayer(value); }
 
     void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE { ratios = searchRatios_; }
 
@@ -299,7 +328,11 @@ public:
            << "matchingCost" << p_.matchingCost
            << "disparityPrior" << p_.disparityPrior
            << "intervalMargin" << p_.intervalMargin
-           << "useSubpixel" << (int)p_.useSubpixel;
+           << "useSubpixel" << (int)p_.useSubpixel
+           << "aggregation" << p_.aggregation
+           << "smallPenalty" << p_.smallPenalty
+           << "largePenalty" << p_.largePenalty
+           << "finestLayer" << p_.finestLayer;
         // clang-format on
         fs << "treeStrategy"
            << "{"
@@ -341,6 +374,10 @@ public:
         readNumber<int>(fn, "disparityPrior", [&](int value) { p.setDisparityPrior(value); });
         readNumber<int>(fn, "intervalMargin", [&](int value) { p.setIntervalMargin(value); });
         readNumber<int>(fn, "useSubpixel", [&](int value) { p.useSubpixel = value != 0; });
+        readNumber<int>(fn, "aggregation", [&](int value) { p.setAggregation(value); });
+        readNumber<int>(fn, "smallPenalty", [&](int value) { p.setSmallPenalty(value); });
+        readNumber<int>(fn, "largePenalty", [&](int value) { p.setLargePenalty(value); });
+        readNumber<int>(fn, "finestLayer", [&](int value) { p.setFinestLayer(value); });
         p.treeStrategy = readStrategy(fn["treeStrategy"]);
         if (!fn["predictionModel"].empty())
         {
@@ -354,10 +391,18 @@ private:
     //! What the parameters amount to for an image.
     struct LayerSettings
     {
-        int layers;
+        int layers, finestLayer;
         Ptr<DisparityPredictionModel> model;
         double delta0, beta;
         int medianSize;
+        int scale; // units of a disparity in one pixel
+    };
+
+    //! What the stages see of a layer
+    struct LayerImages
+    {
+        Mat guide;       // gives the edge weights
+        Mat left, right; // give the matching cost
     };
 
     static void checkImages(const Mat& left, const Mat& right)
@@ -387,9 +432,14 @@ private:
         if (p_.matchingCost == COST_CENSUS && p_.blockSize != 3 && p_.blockSize != 5 && p_.blockSize != 7)
             CV_Error(Error::StsOutOfRange, format("blockSize must be 3, 5 or 7 for COST_CENSUS, not %d", p_.blockSize));
 
+        if (p_.aggregation == AGGREGATION_SCANLINES && p_.matchingCost != COST_CENSUS)
+            CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for AGGREGATION_SCANLINES");
+
         const bool isLarge = size.width >= largeImageWidth;
         LayerSettings settings;
-        settings.layers = p_.usePrediction ? countLayers(size, p_.numLayers) : 1;
+        settings.layers = p_.usePrediction ? countLayers(size, numLayers()) : 1;
+        settings.finestLayer = std::min(p_.finestLayer, settings.layers - 1);
+        settings.scale = p_.useSubpixel || p_.aggregation == AGGREGATION_SCANLINES ? subpixelScale : 1;
         settings.model = p_.predictionModel;
         if (!settings.model)
             settings.model = DisparityPredictionModel::createPublished(
@@ -403,59 +453,64 @@ private:
         return settings;
     }
 
-    //! Section 2.1. The layers above the image are kept in a buffer; the image itself belongs to the caller.
-    static std::vector<Mat> buildPyramid(const Mat& image, int layers, std::vector<Mat>& buffer)
+    //! AUTO: the fewest layers, but at least two, that leave the top layer at most as many disparities as this.
+    int numLayers() const
     {
-        buffer.resize(layers - 1);
-        std::vector<Mat> pyramid(1, image);
+        if (p_.numLayers != AUTO)
+            return p_.numLayers;
+        int layers = 2;
+        while (layerDisparities(p_.numDisparities, layers - 1) > mostTopDisparities)
+            ++layers;
+        return layers;
+    }
+
+    //! Section 2.1. The layers above the image are kept in a buffer; the image itself belongs to the caller.
+    static void buildPyramid(const Mat& image, int layers, std::vector<Mat>& pyramid)
+    {
+        pyramid.resize(layers);
+        pyramid[0] = image;
         for (int layer = 1; layer < layers; ++layer)
+            halveImage(pyramid[layer - 1], pyramid[layer]);
+    }
+
+    void buildPyramids(const Mat& left, const Mat& right, const LayerSettings& settings,
+                       std::vector<LayerImages>& images)
+    {
+        const bool census = p_.matchingCost == COST_CENSUS;
+        shiftColumns(right, p_.minDisparity, shiftedRight_);
+        buildPyramid(left, settings.layers, leftPyramid_);
+        if (census)
         {
-            halveImage(pyramid[layer - 1], buffer[layer - 1]);
-            pyramid.push_back(buffer[layer - 1]);
+            greyLevels(left, leftGrey_);
+            greyLevels(shiftedRight_, rightGrey_);
+            buildPyramid(leftGrey_, settings.layers, leftGreyPyramid_);
+            buildPyramid(rightGrey_, settings.layers, rightPyramid_);
         }
-        return pyramid;
+        else
+            buildPyramid(shiftedRight_, settings.layers, rightPyramid_);
+        images.resize(settings.layers);
+        for (int layer = 0; layer < settings.layers; ++layer)
+        {
+            images[layer].guide = leftPyramid_[layer];
+            images[layer].left = census ? leftGreyPyramid_[layer] : leftPyramid_[layer];
+            images[layer].right = rightPyramid_[layer];
+        }
+        leftPyramid_[0].release(); // of the caller
     }
 
     //! Section 3: disparity_, that of the layer above, becomes that of this layer.
-    void matchLayer(int layer, const Mat& left, const Mat& right, const LayerSettings& settings)
+    void matchLayer(int layer, const LayerImages& images, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
-        const int scale = p_.useSubpixel ? subpixelScale : 1;
-        if (layer == settings.layers - 1)
-            clock_.run("disparity prediction", [&] {
-                pixelIntv_.create(left.size(), CV_16UC2);
-                pixelIntv_.setTo(Scalar(0, disparities - 1));
-            });
-        else
-        {
-            if (p_.disparityPrior == PRIOR_SUPPORT_POINTS)
-                clock_.run("support points", [&] {
-                    findSupportPoints(left, right, disparities, supportPoints_, points_);
-                    disparityHistogram(points_, disparities, prior_);
-                });
-            else
-                clock_.run("disparity prediction", [&] { upperHistogram(disparity_, scale, disparities, prior_); });
-            clock_.run("disparity prediction", [&] {
-                predictIntervals(*settings.model, layer, prior_, layerDisparities(p_.numDisparities, layer + 1),
-                                 settings.delta0 * (1 << layer), p_.intervalMargin, intervals_);
-                assignIntervals(disparity_, scale, left.size(), intervals_, pixelIntv_);
-            });
-        }
-
-        clock_.run("disparity forest", [&] {
-            if (p_.useMedianPrefilter)
-                medianBlur(left, guide_, 3);
-            buildForest(p_.useMedianPrefilter ? guide_ : left, pixelIntv_, *p_.treeStrategy, settings.beta,
-                        !p_.usePrediction, forestBuffers_, forest_);
-            searchRatios_[layer] = searchRatio(forest_, disparities);
-        });
         clock_.run("matching cost", [&] {
             const MatchingCostParams params = { p_.matchingCost == COST_CENSUS, (float)p_.colorTruncation,
                                                 (float)p_.gradientTruncation, (float)p_.colorWeight, p_.blockSize };
-            cost_.prepare(left, right, disparities, params);
+            cost_.prepare(images.left, images.right, disparities, params);
         });
-        clock_.run("cost aggregation",
-                   [&] { aggregateForest(forest_, cost_, p_.gamma, p_.useSubpixel, aggregation_, winner_); });
+        if (layer == settings.layers - 1 || p_.aggregation == AGGREGATION_TREES)
+            aggregateTrees(layer, images, settings);
+        else
+            aggregateScanlines(layer, images, settings);
         clock_.run("disparity median", [&] {
             swap(winner_, disparity_);
             for (int pass = 0; settings.medianSize > 0 && pass < p_.disparityMedianPasses; ++pass)
@@ -466,12 +521,80 @@ private:
         });
     }
 
-    //! From candidates of layer 0 to what cv::StereoMatcher promises.
-    void finish(Mat& disparity)
+    //! Sections 3.1 to 3.3
+    void aggregateTrees(int layer, const LayerImages& images, const LayerSettings& settings)
     {
+        const int disparities = layerDisparities(p_.numDisparities, layer);
+        const Size size = images.guide.size();
+        if (layer == settings.layers - 1)
+            clock_.run("disparity prediction", [&] {
+                pixelIntv_.create(size, CV_16UC2);
+                pixelIntv_.setTo(Scalar(0, disparities - 1));
+            });
+        else
+        {
+            if (p_.disparityPrior == PRIOR_SUPPORT_POINTS)
+                clock_.run("support points", [&] {
+                    Mat left = images.left, right = images.right;
+                    if (left.depth() != CV_8U) // grey levels in quarters
+                    {
+                        left.convertTo(left, CV_8U, 0.25);
+                        right.convertTo(right, CV_8U, 0.25);
+                    }
+                    findSupportPoints(left, right, disparities, supportPoints_, points_);
+                    disparityHistogram(points_, disparities, prior_);
+                });
+            else
+                clock_.run("disparity prediction",
+                           [&] { upperHistogram(disparity_, settings.scale, disparities, prior_); });
+            clock_.run("disparity prediction", [&] {
+                predictIntervals(*settings.model, layer, prior_, layerDisparities(p_.numDisparities, layer + 1),
+                                 settings.delta0 * (1 << layer), p_.intervalMargin, intervals_);
+                assignIntervals(disparity_, settings.scale, size, intervals_, pixelIntv_);
+            });
+        }
+        clock_.run("disparity forest", [&] {
+            if (p_.useMedianPrefilter)
+                medianBlur(images.guide, guide_, 3);
+            buildForest(p_.useMedianPrefilter ? guide_ : images.guide, pixelIntv_, *p_.treeStrategy, settings.beta,
+                        !p_.usePrediction, forestBuffers_, forest_);
+            searchRatios_[layer] = searchRatio(forest_, disparities);
+        });
+        clock_.run("cost aggregation",
+                   [&] { aggregateForest(forest_, cost_, p_.gamma, settings.scale > 1, aggregation_, winner_); });
+    }
+
+    //! Predicted windows instead of trees
+    void aggregateScanlines(int layer, const LayerImages& images, const LayerSettings& settings)
+    {
+        const int disparities = layerDisparities(p_.numDisparities, layer);
+        clock_.run("disparity prediction", [&] {
+            predictWindows(disparity_, settings.scale, disparities, smallest_, largest_, windows_);
+            searchRatios_[layer] = std::min<double>(CandidateWindow::candidates, disparities) / disparities;
+        });
+        clock_.run("cost aggregation", [&] {
+            const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty };
+            hdp::aggregateScanlines(cost_, images.left.size(), disparities, windows_, penalties, scanlines_, winner_);
+        });
+    }
+
+    //! From candidates of the finest layer to what cv::StereoMatcher promises.
+    void finish(const std::vector<LayerImages>& images, const LayerSettings& settings, Mat& disparity)
+    {
+        for (int layer = settings.finestLayer - 1; layer >= 0; --layer)
+        {
+            upsampleDisparity(disparity_, settings.scale, images[layer].guide.size(), winner_);
+            swap(winner_, disparity_);
+        }
         const short invalid = (short)((p_.minDisparity - 1) * DISP_SCALE);
-        disparity_.convertTo(disparity, CV_16S, p_.useSubpixel ? DISP_SCALE / subpixelScale : DISP_SCALE,
-                             (double)p_.minDisparity * DISP_SCALE);
+        const double offset = (double)p_.minDisparity * DISP_SCALE;
+        if (settings.scale > 1 && !p_.useSubpixel) // to whole pixels
+        {
+            disparity_.convertTo(disparity_, CV_16U, 1. / settings.scale);
+            disparity_.convertTo(disparity, CV_16S, DISP_SCALE, offset);
+        }
+        else
+            disparity_.convertTo(disparity, CV_16S, (double)DISP_SCALE / settings.scale, offset);
         if (p_.disp12MaxDiff > 0)
             rejectOccluded(disparity, p_.disp12MaxDiff, invalid);
         if (p_.speckleWindowSize > 0)
@@ -498,17 +621,19 @@ private:
     StageClock clock_;
 
     // Buffers that are kept between calls
-    std::vector<Mat> leftPyramid_, rightPyramid_; // from layer 1
-    Mat shiftedRight_, guide_;
+    std::vector<Mat> leftPyramid_, leftGreyPyramid_, rightPyramid_;
+    Mat shiftedRight_, leftGrey_, rightGrey_, guide_;
     SupportPointBuffers supportPoints_;
     Mat points_;
     std::vector<double> prior_;
     std::vector<DisparityInterval> intervals_;
     Mat pixelIntv_;
+    Mat smallest_, largest_, windows_;
     ForestBuffers forestBuffers_;
     DisparityForest forest_;
     MatchingCost cost_;
     AggregationBuffers aggregation_;
+    ScanlineBuffers scanlines_;
     Mat winner_, disparity_, speckles_;
 };
 
@@ -516,20 +641,37 @@ private:
 
 Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities, int preset)
 {
-    checked(preset, preset == PRESET_PAPER || preset == PRESET_TREE, "preset", "PRESET_PAPER or PRESET_TREE");
+    checked(preset, preset >= PRESET_PAPER && preset <= PRESET_TREE, "preset", "one of HDPTreeMatcher::PRESET_*");
     Parameters parameters; // its defaults are those of PRESET_PAPER
-    if (preset == PRESET_TREE)
+    if (preset != PRESET_PAPER)
     {
         parameters.setMatchingCost(COST_CENSUS);
         parameters.setBlockSize(7);
+        parameters.setGamma(20);
+        parameters.useSubpixel = true;
+        parameters.setDisparityMedianSize(5);
+    }
+    switch (preset)
+    {
+    case PRESET_TREE:
         parameters.setDisparityPrior(PRIOR_UPPER_LAYER);
         parameters.setIntervalMargin(1);
         parameters.setDelta0(0.02);
         parameters.setBeta(0.9);
-        parameters.setGamma(20);
-        parameters.useSubpixel = true;
-        parameters.setDisparityMedianSize(5);
         parameters.setDisparityMedianPasses(2);
+        break;
+    case PRESET_ULTRAFAST:
+        parameters.setFinestLayer(1);
+        // fall through
+    case PRESET_FAST:
+        parameters.setAggregation(AGGREGATION_SCANLINES);
+        parameters.setNumLayers(HDPTreeMatcher::AUTO);
+        break;
+    case PRESET_QUALITY:
+        parameters.setAggregation(AGGREGATION_SCANLINES);
+        parameters.setNumLayers(HDPTreeMatcher::AUTO);
+        parameters.setDisparityMedianPasses(2);
+        break;
     }
     parameters.setMinDisparity(minDisparity);
     parameters.setNumDisparities(numDisparities);

@@ -8,6 +8,27 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
+namespace {
+
+//! Means of 2 x 2 pixels of one or three channels; `rounding` is added to the sum of four.
+template <typename T, int rounding> void halve(const Mat& image, Mat& half)
+{
+    const int channels = image.channels();
+    parallel_for_(Range(0, half.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const T* upper = image.ptr<T>(2 * y);
+            const T* lower = image.ptr<T>(2 * y + 1);
+            T* mean = half.ptr<T>(y);
+            for (int x = 0; x < half.cols; ++x, upper += 2 * channels, lower += 2 * channels)
+                for (int c = 0; c < channels; ++c)
+                    *mean++ = (T)((upper[c] + upper[c + channels] + lower[c] + lower[c + channels] + rounding) / 4);
+        }
+    });
+}
+
+} // namespace
+
 int countLayers(Size size, int numLayers)
 {
     int layers = 1;
@@ -18,17 +39,28 @@ int countLayers(Size size, int numLayers)
 
 void halveImage(const Mat& image, Mat& half)
 {
-    const int channels = image.channels();
     half.create(image.rows / 2, image.cols / 2, image.type());
-    parallel_for_(Range(0, half.rows), [&](const Range& rows) {
+    if (image.depth() == CV_16U)
+        halve<ushort, 2>(image, half);
+    else
+        halve<uchar, 0>(image, half);
+}
+
+void greyLevels(const Mat& image, Mat& grey)
+{
+    const int channels = image.channels();
+    grey.create(image.size(), CV_16U);
+    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
-            const uchar* upper = image.ptr(2 * y);
-            const uchar* lower = image.ptr(2 * y + 1);
-            uchar* mean = half.ptr(y);
-            for (int x = 0; x < half.cols; ++x, upper += 2 * channels, lower += 2 * channels)
-                for (int c = 0; c < channels; ++c)
-                    *mean++ = (uchar)((upper[c] + upper[c + channels] + lower[c] + lower[c + channels]) / 4);
+            const uchar* pixel = image.ptr(y);
+            ushort* level = grey.ptr<ushort>(y);
+            if (channels == 1)
+                for (int x = 0; x < image.cols; ++x)
+                    level[x] = (ushort)(pixel[x] * 4);
+            else
+                for (int x = 0; x < image.cols; ++x, pixel += 3)
+                    level[x] = (ushort)((7471 * pixel[0] + 38470 * pixel[1] + 19595 * pixel[2] + 8192) >> 14);
         }
     });
 }

@@ -18,8 +18,15 @@ CV_EXPORTS int countLayers(Size size, int numLayers);
 //! d_l + 1 = floor((numDisparities - 1) / 2^l) + 1: the number of candidates of layer l.
 inline int layerDisparities(int numDisparities, int layer) { return ((numDisparities - 1) >> layer) + 1; }
 
-//! G_{l+1} of G_l: means of 2 x 2 pixels, truncated to 8 bit; an odd last row or column is left out.
+//! G_{l+1} of G_l: means of 2 x 2 pixels, truncated to 8 bit (CV_8U) or rounded (CV_16U); an odd last row or column is
+//! left out.
 CV_EXPORTS void halveImage(const Mat& image, Mat& half);
+
+/** Grey levels 0.299 R + 0.587 G + 0.114 B in quarters of a level. Means of many pixels tell faint texture apart that 8
+bits lose: the census cost of the coarse layers lives on it.
+@param image CV_8UC1 or CV_8UC3.
+@param grey CV_16UC1, 0 to 1020. */
+CV_EXPORTS void greyLevels(const Mat& image, Mat& grey);
 
 //! The right image moved by minDisparity, so that candidates count from 0: shifted(x) = right(x - minDisparity),
 //! the nearest column where there is none.

@@ -27,7 +27,7 @@ const int borderGain = 4;
 
 //! Grey levels, 0.299 R + 0.587 G + 0.114 B, in 1 / 65536. Rounded to whole levels they cost accuracy: the gradients of
 //! smooth surfaces are below one level.
-void greyLevels(const uchar* pixels, int count, int channels, int* grey)
+void gradientLevels(const uchar* pixels, int count, int channels, int* grey)
 {
     if (channels == 1)
         for (int x = 0; x < count; ++x)
@@ -49,7 +49,7 @@ void horizontalGradient(const Mat& image, Mat& gradient)
         {
             const int* g = grey.data();
             short* d = gradient.ptr<short>(y);
-            greyLevels(image.ptr(y), width, image.channels(), grey.data());
+            gradientLevels(image.ptr(y), width, image.channels(), grey.data());
             for (int x = 1; x < last; ++x)
                 d[x] = (short)((g[x + 1] - g[x - 1] + 2048) >> 12);
             const int after = std::min(1, last), before = std::max(last - 1, 0); // of an only column: itself
@@ -90,7 +90,7 @@ void copyBordered(const Mat& image, int channel, int radius, int before, int aft
     });
 }
 
-void computeCensusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census,
+void computeCensusRow(const ushort* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census,
                       size_t planeSize)
 {
     CV_CPU_DISPATCH(censusRow, (grey, step, radius, mirrored, cols, census, planeSize), CV_CPU_DISPATCH_MODES_ALL);
@@ -151,17 +151,14 @@ void MatchingCost::prepareCensus(const Mat& image, bool mirrored, int after)
 {
     const int radius = blockSize_ / 2, width = image.cols, planes = planes_.count, rows = image.rows;
     const int cols = (int)alignSize(width, censusColumns); // what is computed past the width is overwritten or not read
-    Mat grey = image;
-    if (channels_ == 3)
-        cvtColor(image, grey, COLOR_BGR2GRAY);
-    grey_.create(rows + 2 * radius, cols + 2 * radius, CV_8U);
-    copyBordered<uchar>(grey, 0, radius, radius, radius + cols - width, mirrored, grey_);
+    grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16U);
+    copyBordered<ushort>(image, 0, radius, radius, radius + cols - width, mirrored, grey_);
     Mat& census = mirrored ? right_ : left_;
     census.create(planes * rows, std::max(width + after, cols), CV_8U);
     parallel_for_(Range(0, rows), [&](const Range& range) {
         for (int y = range.start; y < range.end; ++y)
         {
-            computeCensusRow(grey_.ptr(y + radius) + radius, (ptrdiff_t)grey_.step, radius, mirrored, cols,
+            computeCensusRow(grey_.ptr<ushort>(y + radius) + radius, (ptrdiff_t)grey_.step1(), radius, mirrored, cols,
                              census.ptr(y), census.step * rows);
             for (int plane = 0; plane < planes; ++plane)
             {

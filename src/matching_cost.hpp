@@ -50,7 +50,8 @@ is in planes of 8 bits: 3 for a window of 7, 2 for 5, 1 for 3. */
 class CV_EXPORTS MatchingCost
 {
 public:
-    //! Takes a pair of one size, CV_8UC1 or CV_8UC3, and the number of candidates a pixel may be asked for.
+    //! Takes a pair of one size and the number of candidates a pixel may be asked for. The census cost takes CV_16UC1,
+    //! see greyLevels(), the other one CV_8UC1 or CV_8UC3.
     void prepare(const Mat& left, const Mat& right, int numDisparities, const MatchingCostParams& params);
 
     /** Costs M(p, x) of some pixels.

@@ -15,20 +15,21 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** A row of the census transform, a bit for each pixel of the checkerboard around the centre, set if it is darker.
 @param grey The first pixel of the row; it has a border of the radius, and may be read up to column cols.
-@param step From a row to the next.
+@param step From a row to the next, in elements.
 @param radius Of the window, 1 to 3.
 @param mirrored Whether the image is mirrored: the window is then, too, so that its bits are the same ones.
 @param cols Columns to compute.
 @param census Receives the row, 8 bits in each of its planes.
 @param planeSize From a plane to the next. */
-void censusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize);
+void censusRow(const ushort* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census,
+               size_t planeSize);
 
 //! MatchingCost::evaluate()
 void evaluateCost(const CostPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-void censusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize)
+void censusRow(const ushort* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize)
 {
     // Of the last plane's bits that compare nothing: the centre, which is not darker than itself
     ptrdiff_t offsets[24] = { 0 };
@@ -40,11 +41,11 @@ void censusRow(const uchar* grey, ptrdiff_t step, int radius, bool mirrored, int
     for (int bit = 0; bit < bits; bit += 8, census += planeSize)
     {
         const ptrdiff_t* offset = offsets + bit;
-        const uchar *p0 = grey + offset[0], *p1 = grey + offset[1], *p2 = grey + offset[2], *p3 = grey + offset[3],
-                    *p4 = grey + offset[4], *p5 = grey + offset[5], *p6 = grey + offset[6], *p7 = grey + offset[7];
+        const ushort *p0 = grey + offset[0], *p1 = grey + offset[1], *p2 = grey + offset[2], *p3 = grey + offset[3],
+                     *p4 = grey + offset[4], *p5 = grey + offset[5], *p6 = grey + offset[6], *p7 = grey + offset[7];
         HDP_VECTORIZED for (int x = 0; x < cols; ++x)
         {
-            const uchar centre = grey[x];
+            const ushort centre = grey[x];
             census[x] = (uchar)((p0[x] < centre ? 1 : 0) | (p1[x] < centre ? 2 : 0) | (p2[x] < centre ? 4 : 0) |
                                 (p3[x] < centre ? 8 : 0) | (p4[x] < centre ? 16 : 0) | (p5[x] < centre ? 32 : 0) |
                                 (p6[x] < centre ? 64 : 0) | (p7[x] < centre ? 128 : 0));

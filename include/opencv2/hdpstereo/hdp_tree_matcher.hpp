@@ -52,9 +52,20 @@ public:
     //! Sets of parameters. A preset only sets values that have setters of their own.
     enum
     {
-        PRESET_PAPER = 0, //!< the system that made the paper's tables, HDP+MST; see also setTreeStrategy()
-        PRESET_TREE = 4 //!< trees on every layer as in the paper, with the census cost, the layer above as prior and a
-                        //!< sub-pixel winner: half the errors of PRESET_PAPER on Middlebury 2006, and faster
+        PRESET_PAPER = 0,     //!< the system that made the paper's tables, HDP+MST; see also setTreeStrategy()
+        PRESET_FAST = 1,      //!< the default: a tree on the top layer, scanlines below; more accurate than
+                              //!< cv::StereoSGBM and several times faster
+        PRESET_ULTRAFAST = 2, //!< PRESET_FAST that stops at half the resolution
+        PRESET_QUALITY = 3,   //!< slower and better than PRESET_FAST
+        PRESET_TREE = 4 //!< trees on every layer as in the paper, with the census cost, the layer above as prior and
+                        //!< a sub-pixel winner
+    };
+
+    //! What smooths the costs of a layer that has a prediction
+    enum
+    {
+        AGGREGATION_TREES = 0,    //!< the disparity trees of the paper
+        AGGREGATION_SCANLINES = 1 //!< paths along the rows and columns, over 16 predicted candidates a pixel
     };
 
     //! Matching costs
@@ -100,7 +111,8 @@ public:
     CV_WRAP virtual bool getUseMedianPrefilter() const = 0;
 
     /** @brief Number of pyramid layers, the image itself included: 1..16, 3 by default. Layers that would have no
-    pixel are left out. Without effect if prediction is off. */
+    pixel are left out. HDPTreeMatcher::AUTO: the fewest, but at least 2, that leave the top layer 64 disparities or
+    less. Without effect if prediction is off. */
     CV_WRAP virtual void setNumLayers(int numLayers) = 0;
     /** @copybrief setNumLayers @sa setNumLayers */
     CV_WRAP virtual int getNumLayers() const = 0;
@@ -190,6 +202,32 @@ public:
     /** @copybrief setUseSubpixel @sa setUseSubpixel */
     CV_WRAP virtual bool getUseSubpixel() const = 0;
 
+    /** @brief What aggregates the costs of the layers below the top one, which always has a tree:
+    HDPTreeMatcher::AGGREGATION_TREES (default) or HDPTreeMatcher::AGGREGATION_SCANLINES, which needs
+    HDPTreeMatcher::COST_CENSUS. Scanlines search 16 candidates around the disparities of the layer above, so the
+    prediction model, delta0, beta and the prior have no effect with them. */
+    CV_WRAP virtual void setAggregation(int aggregation) = 0;
+    /** @copybrief setAggregation @sa setAggregation */
+    CV_WRAP virtual int getAggregation() const = 0;
+
+    /** @brief The penalty for a step of one disparity between neighbours on a scanline, P1 of cv::StereoSGBM, in bits of
+    the census: 0..100, 12 by default. */
+    CV_WRAP virtual void setSmallPenalty(int penalty) = 0;
+    /** @copybrief setSmallPenalty @sa setSmallPenalty */
+    CV_WRAP virtual int getSmallPenalty() const = 0;
+
+    /** @brief The penalty for a larger step between neighbours on a scanline, P2 of cv::StereoSGBM, in bits of the
+    census: 0..100, 50 by default. */
+    CV_WRAP virtual void setLargePenalty(int penalty) = 0;
+    /** @copybrief setLargePenalty @sa setLargePenalty */
+    CV_WRAP virtual int getLargePenalty() const = 0;
+
+    /** @brief The layer the search ends at: 0 (default), the image itself, to 15. The map of a coarser layer is enlarged
+    to the image's size. More than there are layers: the top one. Without effect if prediction is off. */
+    CV_WRAP virtual void setFinestLayer(int layer) = 0;
+    /** @copybrief setFinestLayer @sa setFinestLayer */
+    CV_WRAP virtual int getFinestLayer() const = 0;
+
     /** @brief Share of the disparity range that the last compute() searched, \f$R_l\f$ of the paper's Table 1.
     @param ratios Receives a number in [0, 1] per layer, the finest first; empty before the first compute().
      */
@@ -205,10 +243,10 @@ public:
     /** @brief Creates a matcher.
     @param minDisparity Smallest disparity in pixels.
     @param numDisparities Number of candidates, > 0.
-    @param preset HDPTreeMatcher::PRESET_PAPER or HDPTreeMatcher::PRESET_TREE.
+    @param preset One of HDPTreeMatcher::PRESET_FAST, PRESET_ULTRAFAST, PRESET_QUALITY, PRESET_TREE and PRESET_PAPER.
      */
     CV_WRAP static Ptr<HDPTreeMatcher> create(int minDisparity = 0, int numDisparities = 64,
-                                              int preset = HDPTreeMatcher::PRESET_PAPER);
+                                              int preset = HDPTreeMatcher::PRESET_FAST);
 };
 
 //! @}

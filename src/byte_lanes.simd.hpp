@@ -1,0 +1,248 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Vectors of bytes in groups of 16, one group for the candidates of a pixel; included by *.simd.hpp, once for each
+// instruction set: no include guard. All operations stay inside the groups, so that a pixel's result does not depend on
+// how many groups there are.
+
+#if CV_AVX2
+
+struct ByteLanes
+{
+    enum
+    {
+        groups = 2
+    };
+    __m256i v;
+
+    static ByteLanes of(__m256i v)
+    {
+        const ByteLanes lanes = { v };
+        return lanes;
+    }
+    static ByteLanes of(__m128i first, __m128i second)
+    {
+        return of(_mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1));
+    }
+    static ByteLanes repeat(int byte) { return of(_mm256_set1_epi8((char)byte)); }
+    static ByteLanes repeat(const uchar* const* bytes)
+    {
+        return of(_mm_set1_epi8((char)*bytes[0]), _mm_set1_epi8((char)*bytes[1]));
+    }
+    static ByteLanes load(const uchar* bytes) { return of(_mm256_loadu_si256((const __m256i*)bytes)); }
+    static ByteLanes load(const uchar* const* bytes)
+    {
+        return of(_mm_loadu_si128((const __m128i*)bytes[0]), _mm_loadu_si128((const __m128i*)bytes[1]));
+    }
+    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high)
+    {
+        return of(halves(low[0], high[0]), halves(low[1], high[1]));
+    }
+    static __m128i halves(const uchar* low, const uchar* high)
+    {
+        return _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i*)low), _mm_loadl_epi64((const __m128i*)high));
+    }
+    //! The group at bytes, then those of before but the last one.
+    static ByteLanes shiftIn(const uchar* bytes, ByteLanes before)
+    {
+        return of(_mm256_inserti128_si256(_mm256_castsi128_si256(_mm_loadu_si128((const __m128i*)bytes)),
+                                          _mm256_castsi256_si128(before.v), 1));
+    }
+    void store(uchar* bytes) const { _mm256_storeu_si256((__m256i*)bytes, v); }
+    void storeLast(uchar* bytes) const { _mm_storeu_si128((__m128i*)bytes, _mm256_extracti128_si256(v, 1)); }
+
+    ByteLanes operator&(ByteLanes b) const { return of(_mm256_and_si256(v, b.v)); }
+    ByteLanes operator|(ByteLanes b) const { return of(_mm256_or_si256(v, b.v)); }
+    ByteLanes operator^(ByteLanes b) const { return of(_mm256_xor_si256(v, b.v)); }
+    ByteLanes operator+(ByteLanes b) const { return of(_mm256_adds_epu8(v, b.v)); } // saturated
+    ByteLanes operator-(ByteLanes b) const { return of(_mm256_subs_epu8(v, b.v)); } // saturated
+    ByteLanes max(ByteLanes b) const { return of(_mm256_max_epu8(v, b.v)); }
+    //! Lane i receives lane i - 1, the first one 0.
+    ByteLanes toNext() const { return of(_mm256_slli_si256(v, 1)); }
+    //! Lane i receives lane i + 1, the last one 0.
+    ByteLanes toPrevious() const { return of(_mm256_srli_si256(v, 1)); }
+    //! Lane i receives lane order[i] of its group, or 0 if order[i] is 255.
+    ByteLanes permute(ByteLanes order) const { return of(_mm256_shuffle_epi8(v, order.v)); }
+    //! The smallest lane of each group, in all of its lanes.
+    ByteLanes minimum() const
+    {
+        __m256i m = _mm256_min_epu8(v, _mm256_shuffle_epi32(v, 0x4e));
+        m = _mm256_min_epu8(m, _mm256_shuffle_epi32(m, 0xb1));
+        const __m256i words = _mm256_setr_epi8(2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13, 2, 3, 0, 1, 6, 7,
+                                               4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
+        m = _mm256_min_epu8(m, _mm256_shuffle_epi8(m, words));
+        const __m256i bytes = _mm256_setr_epi8(1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14, 1, 0, 3, 2, 5, 4,
+                                               7, 6, 9, 8, 11, 10, 13, 12, 15, 14);
+        return of(_mm256_min_epu8(m, _mm256_shuffle_epi8(m, bytes)));
+    }
+    ByteLanes countBits() const
+    {
+        const __m256i table = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3,
+                                               1, 2, 2, 3, 2, 3, 3, 4);
+        const __m256i nibble = _mm256_set1_epi8(15);
+        return of(_mm256_add_epi8(_mm256_shuffle_epi8(table, _mm256_and_si256(v, nibble)),
+                                  _mm256_shuffle_epi8(table, _mm256_and_si256(_mm256_srli_epi16(v, 4), nibble))));
+    }
+    //! Bit i tells whether lane i equals that of b; 16 bits for each group.
+    void findEqual(ByteLanes b, unsigned* bits) const
+    {
+        const unsigned equal = (unsigned)_mm256_movemask_epi8(_mm256_cmpeq_epi8(v, b.v));
+        bits[0] = equal & 0xffff;
+        bits[1] = equal >> 16;
+    }
+};
+
+#elif CV_SSE2
+
+struct ByteLanes
+{
+    enum
+    {
+        groups = 1
+    };
+    __m128i v;
+
+    static ByteLanes of(__m128i v)
+    {
+        const ByteLanes lanes = { v };
+        return lanes;
+    }
+    static ByteLanes repeat(int byte) { return of(_mm_set1_epi8((char)byte)); }
+    static ByteLanes repeat(const uchar* const* bytes) { return repeat(*bytes[0]); }
+    static ByteLanes load(const uchar* bytes) { return of(_mm_loadu_si128((const __m128i*)bytes)); }
+    static ByteLanes load(const uchar* const* bytes) { return load(bytes[0]); }
+    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high)
+    {
+        return of(
+            _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i*)low[0]), _mm_loadl_epi64((const __m128i*)high[0])));
+    }
+    static ByteLanes shiftIn(const uchar* bytes, ByteLanes) { return load(bytes); }
+    void store(uchar* bytes) const { _mm_storeu_si128((__m128i*)bytes, v); }
+    void storeLast(uchar* bytes) const { store(bytes); }
+
+    ByteLanes operator&(ByteLanes b) const { return of(_mm_and_si128(v, b.v)); }
+    ByteLanes operator|(ByteLanes b) const { return of(_mm_or_si128(v, b.v)); }
+    ByteLanes operator^(ByteLanes b) const { return of(_mm_xor_si128(v, b.v)); }
+    ByteLanes operator+(ByteLanes b) const { return of(_mm_adds_epu8(v, b.v)); }
+    ByteLanes operator-(ByteLanes b) const { return of(_mm_subs_epu8(v, b.v)); }
+    ByteLanes max(ByteLanes b) const { return of(_mm_max_epu8(v, b.v)); }
+    ByteLanes toNext() const { return of(_mm_slli_si128(v, 1)); }
+    ByteLanes toPrevious() const { return of(_mm_srli_si128(v, 1)); }
+    ByteLanes permute(ByteLanes order) const
+    {
+        uchar lanes[32], orders[16], permuted[16];
+        store(lanes);
+        _mm_storeu_si128((__m128i*)(lanes + 16), _mm_setzero_si128());
+        order.store(orders);
+        for (int i = 0; i < 16; ++i)
+            permuted[i] = lanes[orders[i] & 31];
+        return load(permuted);
+    }
+    ByteLanes minimum() const
+    {
+        __m128i m = _mm_min_epu8(v, _mm_shuffle_epi32(v, 0x4e));
+        m = _mm_min_epu8(m, _mm_shuffle_epi32(m, 0xb1));
+        m = _mm_min_epu8(m, _mm_shufflehi_epi16(_mm_shufflelo_epi16(m, 0xb1), 0xb1));
+        return of(_mm_min_epu8(m, _mm_or_si128(_mm_slli_epi16(m, 8), _mm_srli_epi16(m, 8))));
+    }
+    ByteLanes countBits() const
+    {
+        const __m128i m1 = _mm_set1_epi8(0x55), m2 = _mm_set1_epi8(0x33), m4 = _mm_set1_epi8(0x0f);
+        __m128i n = _mm_sub_epi8(v, _mm_and_si128(_mm_srli_epi16(v, 1), m1));
+        n = _mm_add_epi8(_mm_and_si128(n, m2), _mm_and_si128(_mm_srli_epi16(n, 2), m2));
+        return of(_mm_and_si128(_mm_add_epi8(n, _mm_srli_epi16(n, 4)), m4));
+    }
+    void findEqual(ByteLanes b, unsigned* bits) const { *bits = (unsigned)_mm_movemask_epi8(_mm_cmpeq_epi8(v, b.v)); }
+};
+
+#else
+
+struct ByteLanes
+{
+    enum
+    {
+        groups = 1
+    };
+    uchar v[16];
+
+    template <class Operation> static ByteLanes each(const Operation& operation)
+    {
+        ByteLanes lanes;
+        for (int i = 0; i < 16; ++i)
+            lanes.v[i] = (uchar)operation(i);
+        return lanes;
+    }
+    static ByteLanes repeat(int byte)
+    {
+        return each([=](int) { return byte; });
+    }
+    static ByteLanes repeat(const uchar* const* bytes) { return repeat(*bytes[0]); }
+    static ByteLanes load(const uchar* bytes)
+    {
+        return each([=](int i) { return bytes[i]; });
+    }
+    static ByteLanes load(const uchar* const* bytes) { return load(bytes[0]); }
+    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high)
+    {
+        return each([=](int i) { return i < 8 ? low[0][i] : high[0][i - 8]; });
+    }
+    static ByteLanes shiftIn(const uchar* bytes, const ByteLanes&) { return load(bytes); }
+    void store(uchar* bytes) const { std::copy(v, v + 16, bytes); }
+    void storeLast(uchar* bytes) const { store(bytes); }
+
+    ByteLanes operator&(const ByteLanes& b) const
+    {
+        return each([&](int i) { return v[i] & b.v[i]; });
+    }
+    ByteLanes operator|(const ByteLanes& b) const
+    {
+        return each([&](int i) { return v[i] | b.v[i]; });
+    }
+    ByteLanes operator^(const ByteLanes& b) const
+    {
+        return each([&](int i) { return v[i] ^ b.v[i]; });
+    }
+    ByteLanes operator+(const ByteLanes& b) const
+    {
+        return each([&](int i) { return std::min(v[i] + b.v[i], 255); });
+    }
+    ByteLanes operator-(const ByteLanes& b) const
+    {
+        return each([&](int i) { return std::max(v[i] - b.v[i], 0); });
+    }
+    ByteLanes max(const ByteLanes& b) const
+    {
+        return each([&](int i) { return std::max(v[i], b.v[i]); });
+    }
+    ByteLanes toNext() const
+    {
+        return each([&](int i) { return i > 0 ? v[i - 1] : 0; });
+    }
+    ByteLanes toPrevious() const
+    {
+        return each([&](int i) { return i < 15 ? v[i + 1] : 0; });
+    }
+    ByteLanes permute(const ByteLanes& order) const
+    {
+        return each([&](int i) { return order.v[i] < 16 ? v[order.v[i]] : 0; });
+    }
+    ByteLanes minimum() const { return repeat(*std::min_element(v, v + 16)); }
+    ByteLanes countBits() const
+    {
+        return each([&](int i) {
+            int bits = 0;
+            for (int rest = v[i]; rest; rest &= rest - 1)
+                ++bits;
+            return bits;
+        });
+    }
+    void findEqual(const ByteLanes& b, unsigned* bits) const
+    {
+        *bits = 0;
+        for (int i = 0; i < 16; ++i)
+            *bits |= (unsigned)(v[i] == b.v[i]) << i;
+    }
+};
+
+#endif

@@ -1,0 +1,45 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_CANDIDATE_WINDOWS_HPP
+#define OPENCV_HDPSTEREO_CANDIDATE_WINDOWS_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+/** The candidates of the pixels below a pixel of the upper layer: two runs of successive disparities. Where the
+disparities around the pixel agree, one run follows the other. At a discontinuity the first one is around the pixel's own
+disparity and the other around that of the surface beyond. */
+struct CandidateWindow
+{
+    enum
+    {
+        runs = 2,
+        runLength = 8,
+        candidates = runs * runLength
+    };
+    short first[runs];      // the first disparity of each run
+    ushort predicted[runs]; // what the run is there for, as a disparity of the layer, times the upper layer's scale
+
+    bool isContiguous() const { return first[1] == first[0] + runLength; }
+};
+
+/** Predicts the candidates of a layer.
+@param upper The disparities of the layer above, CV_16UC1, times scale.
+@param scale Units of upper in one pixel.
+@param numDisparities Of the layer. Candidates from there on mean nothing; there are some only if it is less than
+CandidateWindow::candidates.
+@param smallest Memory to work in.
+@param largest Memory to work in.
+@param windows Receives a CandidateWindow per pixel of upper, CV_16UC4. */
+CV_EXPORTS void predictWindows(const Mat& upper, int scale, int numDisparities, Mat& smallest, Mat& largest,
+                               Mat& windows);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif

@@ -1,0 +1,47 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "scanline_aggregation.hpp"
+#include "scanline_aggregation.simd.hpp"
+#include "scanline_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+const int stripeHeight = 128;
+
+// Rows above a stripe from which on the direction from above is followed
+const int warmUpRows = 16;
+
+void dispatchStripe(const ScanlineProblem& problem, int above, const Range& rows, ScanlineScratch& scratch,
+                    Mat& disparity)
+{
+    CV_CPU_DISPATCH(aggregateStripe, (problem, above, rows, scratch, disparity), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+} // namespace
+
+void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,
+                        const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity)
+{
+    const ScanlineProblem problem = { &cost, size, numDisparities, &windows, penalties };
+    const int stripes = std::max(1, size.height / stripeHeight);
+    disparity.create(size, CV_16U);
+    buffers.stripes.resize(stripes);
+    parallel_for_(Range(0, stripes), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+        {
+            const auto border = [&](int64 index) { return (int)(size.height * index / stripes / 2 * 2); };
+            const Range rows(border(i), i + 1 < stripes ? border(i + 1) : size.height);
+            dispatchStripe(problem, std::max(rows.start - warmUpRows, 0), rows, buffers.stripes[i], disparity);
+        }
+    });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

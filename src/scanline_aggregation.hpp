@@ -1,0 +1,78 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_SCANLINE_AGGREGATION_HPP
+#define OPENCV_HDPSTEREO_SCANLINE_AGGREGATION_HPP
+
+#include "candidate_windows.hpp"
+#include "disparity_prediction.hpp"
+#include "matching_cost.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+//! Penalties, in units of the census cost, for a step of one disparity and for a larger one between neighbours; their
+//! largest value.
+struct ScanlinePenalties
+{
+    int small, large;
+    enum
+    {
+        largest = 100
+    };
+};
+
+//! What is aggregated, see aggregateScanlines()
+struct ScanlineProblem
+{
+    const MatchingCost* cost;
+    Size size;
+    int numDisparities;
+    const Mat* windows;
+    ScanlinePenalties penalties;
+    enum
+    {
+        scale = subpixelScale // of disparities
+    };
+};
+
+//! Memory of one stripe
+struct ScanlineScratch
+{
+    std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel
+    std::vector<uchar> priors, intoRight, intoLeft, intoBelow;
+};
+
+struct ScanlineBuffers
+{
+    std::vector<ScanlineScratch> stripes;
+};
+
+/** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching with the
+three directions that one sweep over the rows can do, from the left, from the right and from above. The cost of
+candidate d is the census cost plus half its distance, in pixels, from the disparity its run was predicted for.
+
+With L(p, d) of a direction and q the pixel before p,
+L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large) - m, m = min_k L(q, k),
+where candidates that q does not have count m + large. The winner has the lowest sum of the directions, each less its
+own minimum, the first of them if there are several; the tip of the V through its sum and those of the candidates beside
+it gives the sub-pixel part.
+
+The image is cut into stripes that do not depend on the number of threads; the direction from above starts anew some rows
+above each of them.
+@param cost The layer's census cost.
+@param size Of the layer.
+@param numDisparities Of the layer.
+@param windows From predictWindows(), with disparities times subpixelScale.
+@param penalties In 0..ScanlinePenalties::largest.
+@param buffers Memory to work in.
+@param disparity Receives CV_16UC1, times subpixelScale. */
+CV_EXPORTS void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,
+                                   const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif
