@@ -27,6 +27,46 @@ void medianBlurStripes(const Mat& image, int size, Mat& filtered)
     });
 }
 
+//! What the right image has at a pixel's match
+enum Match
+{
+    VISIBLE,
+    OCCLUDED, // a nearer pixel
+    OUTSIDE   // nothing, it ends before
+};
+
+/** Compares each disparity with the largest one that maps to the same column of the right image.
+@param disparity CV_16SC1 or CV_16UC1 (T), times scale.
+@param maxDiff Largest difference, in pixels, of a visible pixel.
+@param invalid Disparity of pixels that map to no column, or a value that none has.
+@param visit Called with row, column and Match of each pixel, from left to right, rows side by side. */
+template <typename T, typename Visit>
+void checkLeftRight(const Mat& disparity, int scale, int maxDiff, int invalid, const Visit& visit)
+{
+    const int64 largestDifference = (int64)maxDiff * scale;
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        std::vector<int> nearest(disparity.cols);
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const T* row = disparity.ptr<T>(y);
+            const auto column = [&](int x) { return x - cvRound(row[x] / (double)scale); };
+            std::fill(nearest.begin(), nearest.end(), SHRT_MIN);
+            for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int right = column(x);
+                if (row[x] != invalid && right >= 0 && right < disparity.cols)
+                    nearest[right] = std::max<int>(nearest[right], row[x]);
+            }
+            for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int right = column(x);
+                const bool isInside = right >= 0 && right < disparity.cols;
+                visit(y, x, !isInside ? OUTSIDE : nearest[right] - row[x] > largestDifference ? OCCLUDED : VISIBLE);
+            }
+        }
+    });
+}
+
 } // namespace
 
 void medianDisparity(const Mat& disparity, int size, Mat& filtered)
@@ -74,28 +114,19 @@ void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity)
 
 void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
 {
-    const int scale = 16;
-    const int64 largestDifference = (int64)maxDiff * scale;
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        std::vector<int> nearest(disparity.cols);
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            short* row = disparity.ptr<short>(y);
-            std::fill(nearest.begin(), nearest.end(), SHRT_MIN);
-            for (int x = 0; x < disparity.cols; ++x)
-            {
-                const int right = x - cvRound(row[x] / (double)scale);
-                if (row[x] != invalid && right >= 0 && right < disparity.cols)
-                    nearest[right] = std::max<int>(nearest[right], row[x]);
-            }
-            for (int x = 0; x < disparity.cols; ++x)
-            {
-                const int right = x - cvRound(row[x] / (double)scale);
-                if (right >= 0 && right < disparity.cols && nearest[right] - row[x] > largestDifference)
-                    row[x] = invalid;
-            }
-        }
-    });
+    const auto reject = [&](int y, int x, Match match) {
+        if (match == OCCLUDED)
+            disparity.at<short>(y, x) = invalid;
+    };
+    checkLeftRight<short>(disparity, 16, maxDiff, invalid, reject);
+}
+
+void findStable(const Mat& disparity, int scale, int maxDiff, Mat& stable)
+{
+    stable.create(disparity.size(), CV_8U);
+    const auto mark = [&](int y, int x, Match match) { stable.at<uchar>(y, x) = match == VISIBLE ? 255 : 0; };
+    const int none = -1; // all are valid
+    checkLeftRight<ushort>(disparity, scale, maxDiff, none, mark);
 }
 
 } // namespace hdp

@@ -24,6 +24,14 @@ CV_EXPORTS void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& d
 //! the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
 CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);
 
+/** Left-right check of a layer's disparities: which pixels are stable.
+@param disparity CV_16UC1, times scale.
+@param scale Units of a pixel.
+@param maxDiff A pixel is stable if the largest disparity that maps to its column of the right image is larger by
+maxDiff pixels at most. One that maps to no column is not.
+@param stable Receives CV_8UC1, 255 where stable, else 0. */
+CV_EXPORTS void findStable(const Mat& disparity, int scale, int maxDiff, Mat& stable);
+
 } // namespace hdp
 } // namespace stereo
 } // namespace cv
