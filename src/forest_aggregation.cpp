@@ -49,8 +49,9 @@ int countLanes(int candidates, int treeSize)
 }
 
 //! Evaluates and aggregates the costs of a run of candidates; see aggregateRun().
-void takeRun(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity,
-             const Range& run, int lanes, bool joins, std::vector<float>& costs, RunWinner* winners)
+template <typename Cost>
+void takeRun(const TreeWalk& walk, int size, const Cost& cost, const EdgeSimilarity& similarity, const Range& run,
+             int lanes, bool joins, std::vector<float>& costs, RunWinner* winners)
 {
     if (costs.size() < (size_t)size * lanes)
         costs.resize((size_t)size * lanes);
@@ -59,12 +60,41 @@ void takeRun(const TreeWalk& walk, int size, const MatchingCost& cost, const Edg
                     CV_CPU_DISPATCH_MODES_ALL);
 }
 
-struct Aggregation
+//! Winner-takes-all over the matching cost
+class Matching
+{
+public:
+    Matching(const MatchingCost& cost, bool subpixel) : cost_(cost), subpixel_(subpixel) {}
+
+    Range candidates(const TreeWalk&, const DisparityTree& tree) const
+    {
+        return tree.interval.empty() ? Range() : Range(tree.interval.first, tree.interval.last + 1);
+    }
+
+    void evaluate(const int* pixels, int count, int first, int lanes, float* costs) const
+    {
+        cost_.evaluate(pixels, count, first, lanes, costs);
+    }
+
+    int disparity(int, const RunWinner& winner) const
+    {
+        if (!subpixel_)
+            return winner.disparity;
+        const bool hasParabola = winner.before >= 0 && winner.after >= 0;
+        return winner.disparity * subpixelScale +
+               (hasParabola ? parabolaOffset(winner.before, winner.lowest, winner.after) : 0);
+    }
+
+private:
+    const MatchingCost& cost_;
+    const bool subpixel_;
+};
+
+template <typename Problem> struct Aggregation
 {
     const DisparityForest& forest;
-    const MatchingCost& cost;
+    const Problem& problem;
     const EdgeSimilarity similarity;
-    const bool subpixel;
     ushort* disparity;
 
     //! The winners of some candidates, run by run
@@ -77,33 +107,25 @@ struct Aggregation
         {
             const int lanes = countLanes(candidates.end - first, size);
             const Range run(first, std::min(first + lanes, candidates.end));
-            takeRun(walk, size, cost, similarity, run, lanes, first > candidates.start, costs, winners.data());
+            takeRun(walk, size, problem, similarity, run, lanes, first > candidates.start, costs, winners.data());
             first = run.end;
         }
     }
 
-    ushort winningDisparity(const RunWinner& winner) const
-    {
-        if (!subpixel)
-            return (ushort)winner.disparity;
-        const bool hasParabola = winner.before >= 0 && winner.after >= 0;
-        return (ushort)(winner.disparity * subpixelScale +
-                        (hasParabola ? parabolaOffset(winner.before, winner.lowest, winner.after) : 0));
-    }
-
     void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
     {
-        const DisparityInterval& interval = tree.interval;
-        if (interval.empty())
-        {
-            // An empty interval never joins another one.
-            disparity[tree.root] = 0;
-            return;
-        }
         walkTree(forest, tree, scratch.walk);
-        takeWinners(scratch.walk, tree.size, Range(interval.first, interval.last + 1), scratch.costs, scratch.winners);
+        const Range candidates = problem.candidates(scratch.walk, tree);
+        if (candidates.empty())
+            return;
+        takeWinners(scratch.walk, tree.size, candidates, scratch.costs, scratch.winners);
         for (int i = 0; i < tree.size; ++i)
-            disparity[scratch.walk.pixels[i]] = winningDisparity(scratch.winners[i]);
+            setDisparity(scratch.walk.pixels[i], scratch.winners[i]);
+    }
+
+    void setDisparity(int pixel, const RunWinner& winner) const
+    {
+        disparity[pixel] = (ushort)problem.disparity(pixel, winner);
     }
 };
 
@@ -136,18 +158,22 @@ private:
 };
 
 //! A large tree with many candidates: groups of them side by side
-void processLarge(const Aggregation& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
+template <typename Problem>
+void processLarge(const Aggregation<Problem>& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
 {
     std::mutex mutex;
     ScratchLoan result(buffers, mutex);
     TreeWalk& walk = (*result).walk;
     walkTree(aggregation.forest, tree, walk);
+    const Range candidates = aggregation.problem.candidates(walk, tree);
+    if (candidates.empty())
+        return;
 
     // Whole runs for each group
-    const int candidates = tree.interval.size(), lanes = countLanes(candidates, tree.size);
-    const int runs = (candidates + lanes - 1) / lanes, count = std::min(runs, maxGroups);
+    const int lanes = countLanes(candidates.size(), tree.size);
+    const int runs = (candidates.size() + lanes - 1) / lanes, count = std::min(runs, maxGroups);
     const auto firstOf = [&](int group) {
-        return tree.interval.first + std::min(group * runs / count * lanes, candidates);
+        return std::min(candidates.start + group * runs / count * lanes, candidates.end);
     };
     std::vector<std::vector<RunWinner>>& groups = buffers.groups;
     groups.resize(maxGroups);
@@ -164,7 +190,7 @@ void processLarge(const Aggregation& aggregation, const DisparityTree& tree, Agg
             RunWinner winner = groups[0][i];
             for (int g = 1; g < count; ++g)
                 cpu_baseline::joinWinner(winner, groups[g][i], firstOf(g));
-            aggregation.disparity[walk.pixels[i]] = aggregation.winningDisparity(winner);
+            aggregation.setDisparity(walk.pixels[i], winner);
         }
     });
 }
@@ -185,11 +211,11 @@ int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, cons
     return lanes;
 }
 
-void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
-                     AggregationBuffers& buffers, Mat& disparity)
+template <typename Problem>
+void takeWinners(const DisparityForest& forest, const Problem& problem, double gamma, AggregationBuffers& buffers,
+                 Mat& disparity)
 {
-    disparity.create(forest.links.size(), CV_16U);
-    const Aggregation aggregation = { forest, cost, EdgeSimilarity(gamma), subpixel, disparity.ptr<ushort>() };
+    const Aggregation<Problem> aggregation = { forest, problem, EdgeSimilarity(gamma), disparity.ptr<ushort>() };
 
     // Tasks of about the same work, in the order of the trees; large trees with many candidates are done one by one.
     std::vector<Range> tasks;
@@ -219,6 +245,14 @@ void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, do
             for (int t = tasks[i].start; t < tasks[i].end; ++t)
                 aggregation.processSmall(forest.trees[t], *scratch);
     });
+}
+
+void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
+                     AggregationBuffers& buffers, Mat& disparity)
+{
+    disparity.create(forest.links.size(), CV_16U);
+    disparity.setTo(Scalar::all(0)); // where there is no candidate
+    takeWinners(forest, Matching(cost, subpixel), gamma, buffers, disparity);
 }
 
 } // namespace hdp

@@ -31,7 +31,7 @@ struct CV_EXPORTS EdgeSimilarity
 CV_EXPORTS int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity,
                              int first, int count, std::vector<float>& aggregated);
 
-//! The winner of some successive candidates, and the costs that its parabola needs, or may need when it is compared with
+//! The winner of some successive candidates, and the costs that its fraction needs, or may need when it is compared with
 //! that of the candidates after
 struct RunWinner
 {
@@ -54,6 +54,17 @@ struct AggregationBuffers
     std::vector<std::unique_ptr<AggregationScratch>> idle;
     std::vector<std::vector<RunWinner>> groups; // of a large tree's candidates
 };
+
+/** Winner-takes-all over an aggregated cost; the lowest candidate wins a tie.
+@param forest The forest.
+@param problem Its candidates() of a tree, their cost (evaluate()), and the disparity() that a winner stands for; see
+Matching in the source.
+@param gamma Of the similarity.
+@param buffers Memory to work in.
+@param disparity CV_16UC1 of the layer's size; pixels of trees without candidates keep what they have. */
+template <typename Problem>
+void takeWinners(const DisparityForest& forest, const Problem& problem, double gamma, AggregationBuffers& buffers,
+                 Mat& disparity);
 
 /** Winner-takes-all over C(p, x), x in TreeIntv of the pixel's tree; the lowest disparity wins a tie.
 @param forest The forest.
