@@ -5,6 +5,7 @@
 #include "forest_aggregation.hpp"
 #include "forest_aggregation.simd.hpp"
 #include "forest_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "nonlocal_refinement.hpp"
 
 #include <cmath>
 #include <mutex>
@@ -246,6 +247,9 @@ void takeWinners(const DisparityForest& forest, const Problem& problem, double g
                 aggregation.processSmall(forest.trees[t], *scratch);
     });
 }
+
+template CV_EXPORTS void takeWinners(const DisparityForest& forest, const NonLocalRefinement& problem, double gamma,
+                                     AggregationBuffers& buffers, Mat& disparity);
 
 void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
                      AggregationBuffers& buffers, Mat& disparity)

@@ -58,7 +58,7 @@ struct AggregationBuffers
 /** Winner-takes-all over an aggregated cost; the lowest candidate wins a tie.
 @param forest The forest.
 @param problem Its candidates() of a tree, their cost (evaluate()), and the disparity() that a winner stands for; see
-Matching in the source.
+NonLocalRefinement.
 @param gamma Of the similarity.
 @param buffers Memory to work in.
 @param disparity CV_16UC1 of the layer's size; pixels of trees without candidates keep what they have. */

@@ -1,0 +1,362 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "oracles.hpp"
+#include "../src/disparity_refinement.hpp"
+#include "../src/nonlocal_refinement.hpp"
+
+namespace opencv_test {
+namespace {
+
+const int numDisparities = 24;
+
+//! A layer's forest, and the same one built by the rules
+struct Layer
+{
+    hdp::DisparityForest forest;
+    oracle::Forest expectedForest;
+
+    Layer(const Mat& image, const TreeStrategy& strategy, const Mat& pixelIntv)
+    {
+        hdp::ForestBuffers buffers;
+        hdp::buildForest(image, pixelIntv, strategy, 0.6, true, buffers, forest);
+        expectedForest = oracle::buildForest(image, pixelIntv, strategy, 0.6, true);
+    }
+};
+
+//! A layer of one minimum spanning tree
+Layer oneTree(const Mat& image)
+{
+    return Layer(image, *createMinimumSpanningTree(), Mat(image.size(), CV_16UC2, Scalar(0, numDisparities - 1)));
+}
+
+//! Stripes of one interval each
+Mat stripedIntervals(Size size)
+{
+    const int intervals[][2] = { { 0, 19 }, { 3, 3 }, { 5, 8 }, { 1, 0 }, { 10, 18 }, { 20, 23 } };
+    Mat pixelIntv(size, CV_16UC2);
+    for (int y = 0; y < size.height; ++y)
+        pixelIntv.row(y).setTo(Scalar(intervals[y / 4 % 6][0], intervals[y / 4 % 6][1]));
+    return pixelIntv;
+}
+
+Mat randomMask(RNG& rng, Size size, double share)
+{
+    Mat mask(size, CV_8UC1);
+    for (uchar& value : Mat_<uchar>(mask))
+        value = rng.uniform(0., 1.) < share ? 255 : 0;
+    return mask;
+}
+
+Mat refine(const Layer& layer, const Mat& disparity, int scale, const Mat& stable, double gamma)
+{
+    hdp::AggregationBuffers buffers;
+    Mat refined;
+    hdp::refineNonLocal(layer.forest, disparity, scale, stable, gamma, buffers, refined);
+    return refined;
+}
+
+struct Votes // of the stable pixels of a tree for one pixel
+{
+    std::vector<std::pair<int, double>> disparities; // with their similarities, ascending
+    double total;
+
+    Votes(const Layer& layer, int pixel, const Mat& disparity, const Mat& stable, double gamma) : total(0)
+    {
+        for (const auto& other : oracle::similarities(layer.expectedForest.neighbours, pixel, gamma))
+            if (stable.ptr()[other.first])
+            {
+                disparities.push_back(std::make_pair((int)disparity.ptr<ushort>()[other.first], other.second));
+                total += other.second;
+            }
+        std::sort(disparities.begin(), disparities.end());
+    }
+
+    //! The sum of S |x - d_stable|, x a whole disparity
+    double cost(int x, int scale) const
+    {
+        double sum = 0;
+        for (const auto& d : disparities)
+            sum += d.second * std::abs(x - d.first / (double)scale);
+        return sum;
+    }
+};
+
+// Of the library's sums, in float
+const double sumError = 4e-6;
+
+//! Whether a refined disparity is that of a whole winner, or of one that is as good but for rounding.
+bool isWinner(const Votes& votes, int scale, int own, bool isStable, int refined)
+{
+    std::vector<double> costs; // of -1, 0, ..., numDisparities
+    for (int x = -1; x <= numDisparities; ++x)
+        costs.push_back(votes.cost(x, scale));
+    const double lowest = *std::min_element(costs.begin(), costs.end());
+    for (int x = 0; x < numDisparities; ++x)
+    {
+        const double middle = costs[x + 1], before = costs[x] - middle, after = costs[x + 2] - middle;
+        if (middle > lowest + sumError * (lowest + votes.total))
+            continue;
+        if (isStable && (own + scale / 2) / scale == x)
+        {
+            if (refined == own)
+                return true;
+            continue;
+        }
+        const double steeper = std::max(before, after), error = sumError * (middle + votes.total);
+        // Where costs are equal any slope may come out.
+        const double offset = steeper > 2 * error ? (before - after) / steeper * (scale / 2) : 0;
+        const double offsetError = steeper > 2 * error ? 2 * error / steeper * scale : scale / 2;
+        if (refined >= x * scale + cvRound(offset - offsetError) &&
+            refined <= x * scale + cvRound(offset + offsetError))
+            return true;
+    }
+    return false;
+}
+
+//! Every n-th pixel against the explicit sums
+void expectWinners(const Layer& layer, const Mat& disparity, int scale, const Mat& stable, double gamma, int step = 1)
+{
+    SCOPED_TRACE(testing::Message() << disparity.size() << ", trees " << layer.forest.trees.size() << ", scale "
+                                    << scale << ", gamma " << gamma << ", stable " << cv::countNonZero(stable));
+    const Mat refined = refine(layer, disparity, scale, stable, gamma);
+    ASSERT_EQ(CV_16UC1, refined.type());
+    ASSERT_EQ(disparity.size(), refined.size());
+    for (int p = 0; p < (int)disparity.total(); p += step)
+    {
+        const int own = disparity.ptr<ushort>()[p], actual = refined.ptr<ushort>()[p];
+        const Votes votes(layer, p, disparity, stable, gamma);
+        if (votes.total < 1e-48) // 0 in float
+        {
+            ASSERT_EQ(own, actual) << "pixel " << p;
+        }
+        else if (votes.total > 1e-36) // else it has lost its digits
+        {
+            ASSERT_TRUE(isWinner(votes, scale, own, stable.ptr()[p] != 0, actual))
+                << "pixel " << p << " of disparity " << own << ", refined " << actual;
+        }
+    }
+}
+
+TEST(HDPStereo_NonLocalRefinement, winner_of_explicit_sums)
+{
+    RNG rng(31);
+    for (const Size& size : { Size(1, 1), Size(1, 30), Size(30, 1), Size(22, 25) })
+        for (const Ptr<TreeStrategy>& strategy :
+             { createMinimumSpanningTree(), createSegmentTree(20), createRandomTree(3) })
+            for (const Mat& pixelIntv : { Mat(size, CV_16UC2, Scalar(0, numDisparities - 1)), stripedIntervals(size) })
+            {
+                const Layer layer(patchyImage(rng, size, CV_8UC3), *strategy, pixelIntv);
+                for (int scale : { 1, 16 })
+                {
+                    const Mat disparity = randomImage(rng, size, CV_16UC1, (numDisparities - 1) * scale + 1);
+                    for (double share : { 0., 0.05, 0.7, 1. })
+                        for (double gamma : { 5., 25.5 })
+                            expectWinners(layer, disparity, scale, randomMask(rng, size, share), gamma);
+                }
+            }
+}
+
+//! Each number of candidates goes its own way through the groups of 4 and 8.
+TEST(HDPStereo_NonLocalRefinement, winner_among_any_number_of_candidates)
+{
+    RNG rng(32);
+    const Size size(14, 11);
+    const Layer layer = oneTree(patchyImage(rng, size, CV_8UC1));
+    for (int scale : { 1, 16 })
+        for (int first : { 0, 2 })
+            for (int count = 1; first + count <= numDisparities; ++count)
+            {
+                const Mat disparity = randomImage(rng, size, CV_16UC1, (count - 1) * scale + 1) + first * scale;
+                for (double gamma : { 2., 25.5 })
+                    expectWinners(layer, disparity, scale, randomMask(rng, size, 0.8), gamma);
+            }
+}
+
+//! A large tree's groups of candidates go side by side.
+TEST(HDPStereo_NonLocalRefinement, winner_in_a_large_tree)
+{
+    RNG rng(33);
+    const Size size(210, 160);
+    const Layer layer = oneTree(patchyImage(rng, size, CV_8UC3));
+    ASSERT_EQ(1u, layer.forest.trees.size());
+    for (int scale : { 1, 16 })
+    {
+        const Mat disparity = randomImage(rng, size, CV_16UC1, (numDisparities - 1) * scale + 1);
+        expectWinners(layer, disparity, scale, randomMask(rng, size, 0.5), 5, 997);
+        expectWinners(layer, disparity, scale, Mat(size, CV_8UC1, Scalar(0)), 5, 997);
+    }
+}
+
+//! The sum of S |x - d_stable| is smallest at the median of the d_stable, weighted by S.
+TEST(HDPStereo_NonLocalRefinement, weighted_median)
+{
+    RNG rng(34);
+    const Size size(25, 20);
+    const Layer layer = oneTree(patchyImage(rng, size, CV_8UC3));
+    const Mat disparity = randomImage(rng, size, CV_16UC1, numDisparities), stable = randomMask(rng, size, 0.6);
+    const Mat refined = refine(layer, disparity, 1, stable, 10);
+    int ambiguous = 0;
+    for (int p = 0; p < size.area(); ++p)
+    {
+        const Votes votes(layer, p, disparity, stable, 10);
+        double below = 0;
+        size_t i = 0;
+        while (2 * (below + votes.disparities[i].second) < votes.total)
+            below += votes.disparities[i++].second;
+        const bool isTie = std::abs(2 * (below + votes.disparities[i].second) - votes.total) < 1e-4 * votes.total;
+        if (isTie)
+            ++ambiguous;
+        else
+            EXPECT_EQ(votes.disparities[i].first, refined.ptr<ushort>()[p]) << "pixel " << p;
+    }
+    EXPECT_LE(ambiguous, size.area() / 20);
+}
+
+//! Whatever the unstable pixels say; with a fraction, which is not lost, below 1 neither.
+TEST(HDPStereo_NonLocalRefinement, one_stable_disparity)
+{
+    RNG rng(35);
+    const Size size(30, 20);
+    const Layer layer = oneTree(patchyImage(rng, size, CV_8UC3));
+    for (int scale : { 1, 16 })
+        for (int value : { 0, 3, 5, 8, 13, 16, 160, 167, 168, 169, 367 })
+        {
+            SCOPED_TRACE(testing::Message() << value << " / " << scale);
+            const Mat constant(size, CV_16UC1, Scalar(value));
+            for (double share : { 1., 0.5, 0. })
+                expectIdentical(constant, refine(layer, constant, scale, randomMask(rng, size, share), 25.5));
+
+            const Mat stable = randomMask(rng, size, 0.1);
+            Mat disparity = randomImage(rng, size, CV_16UC1, 400);
+            disparity.setTo(Scalar(value), stable);
+            ASSERT_GT(countDifferent(constant, disparity), 0);
+            expectIdentical(constant, refine(layer, disparity, scale, stable, 25.5));
+        }
+}
+
+TEST(HDPStereo_NonLocalRefinement, outliers_in_a_flat_region)
+{
+    const Size size(30, 20);
+    const Layer layer = oneTree(Mat(size, CV_8UC3, Scalar(90, 100, 110)));
+    const Mat constant(size, CV_16UC1, Scalar(167)), stable(size, CV_8UC1, Scalar(255));
+    Mat disparity = constant.clone();
+    for (int i = 0; i < 20; ++i)
+        disparity.at<ushort>(i, (7 * i) % size.width) = (ushort)(37 * i);
+    expectIdentical(constant, refine(layer, disparity, 16, stable, 25.5));
+}
+
+//! Two surfaces of one color and disparity each: unstable pixels take the disparity of their color, which wins over
+//! that of nearer pixels.
+TEST(HDPStereo_NonLocalRefinement, unstable_pixels_take_the_disparity_of_similar_ones)
+{
+    RNG rng(36);
+    const Size size(40, 24);
+    Mat image(size, CV_8UC3), truth(size, CV_16UC1);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+        {
+            const bool isFront = x > 15 + y / 4;
+            image.at<Vec3b>(y, x) = isFront ? Vec3b(200, 60, 30) : Vec3b(40, 50, 60);
+            truth.at<ushort>(y, x) = isFront ? 301 : 85;
+        }
+    const Layer layer = oneTree(image);
+    Mat stable = randomMask(rng, size, 0.3);
+    stable.colRange(10, 30).setTo(Scalar(0)); // on both sides of the edge
+    Mat disparity = randomImage(rng, size, CV_16UC1, 16 * numDisparities);
+    truth.copyTo(disparity, stable);
+    expectIdentical(truth, refine(layer, disparity, 16, stable, 10));
+}
+
+//! S underflows: no stable pixel says anything, as if there were none.
+TEST(HDPStereo_NonLocalRefinement, pixels_similar_to_no_stable_one)
+{
+    RNG rng(37);
+    const Size size(20, 10);
+    for (int scale : { 1, 16 })
+        for (int levels : { 1, numDisparities }) // one or several runs of candidates
+        {
+            Mat image(size, CV_8UC1, Scalar(0)), stable(size, CV_8UC1, Scalar(255));
+            image.colRange(12, 20).setTo(Scalar(255));
+            stable.colRange(12, 20).setTo(Scalar(0));
+            const Layer layer = oneTree(image);
+            ASSERT_EQ(1u, layer.forest.trees.size());
+            Mat disparity = randomImage(rng, size, CV_16UC1, levels * scale);
+            disparity.colRange(12, 20) = 23 * scale;
+            const Mat refined = refine(layer, disparity, scale, stable, 1);
+            expectIdentical(disparity.colRange(12, 20), refined.colRange(12, 20));
+        }
+}
+
+TEST(HDPStereo_NonLocalRefinement, any_number_of_threads)
+{
+    RNG rng(38);
+    const int threads = cv::getNumThreads();
+    const Size size(230, 170);
+    for (const Mat& pixelIntv : { Mat(size, CV_16UC2, Scalar(0, numDisparities - 1)), stripedIntervals(size) })
+    {
+        const Layer layer(patchyImage(rng, size, CV_8UC3), *createMinimumSpanningTree(), pixelIntv);
+        const Mat disparity = randomImage(rng, size, CV_16UC1, 16 * numDisparities);
+        std::vector<Mat> refined;
+        for (int n : { 1, 2, 8 })
+        {
+            cv::setNumThreads(n);
+            Mat stable;
+            hdp::findStable(disparity, 16, 1, stable);
+            refined.push_back(refine(layer, disparity, 16, stable, 10));
+        }
+        cv::setNumThreads(threads);
+        expectIdentical(refined[0], refined[1]);
+        expectIdentical(refined[0], refined[2]);
+    }
+}
+
+TEST(HDPStereo_NonLocalRefinement, bad_arguments)
+{
+    const Size size(6, 5);
+    const Layer layer = oneTree(Mat(size, CV_8UC1, Scalar(1)));
+    const Mat disparity(size, CV_16UC1, Scalar(7)), stable(size, CV_8UC1, Scalar(255));
+    hdp::AggregationBuffers buffers;
+    Mat refined, same = disparity;
+    EXPECT_THROW(refine(layer, disparity.colRange(0, 5), 16, stable, 10), cv::Exception);
+    EXPECT_THROW(refine(layer, Mat(size, CV_16SC1, Scalar(7)), 16, stable, 10), cv::Exception);
+    EXPECT_THROW(refine(layer, disparity, 16, stable.rowRange(0, 4), 10), cv::Exception);
+    EXPECT_THROW(refine(layer, disparity, 16, disparity, 10), cv::Exception);
+    EXPECT_THROW(refine(layer, disparity, 3, stable, 10), cv::Exception);
+    EXPECT_THROW(hdp::refineNonLocal(layer.forest, disparity, 16, stable, 10, buffers, same), cv::Exception);
+}
+
+//! Stable: maps to a column of the right image, to which no disparity maps that is larger by more than maxDiff.
+TEST(HDPStereo_NonLocalRefinement, stable_pixels_by_comparing_all_pairs)
+{
+    RNG rng(39);
+    const Size size(50, 20);
+    for (int scale : { 1, 16 })
+        for (int maxDiff : { 0, 1, 3, INT_MAX })
+        {
+            const Mat disparity = randomImage(rng, size, CV_16UC1, 20 * scale);
+            Mat expected(size, CV_8UC1), stable;
+            for (int y = 0; y < size.height; ++y)
+                for (int x = 0; x < size.width; ++x)
+                {
+                    const int own = disparity.at<ushort>(y, x), column = x - cvRound(own / (double)scale);
+                    bool isStable = column >= 0;
+                    for (int other = 0; other < size.width; ++other)
+                    {
+                        const int theirs = disparity.at<ushort>(y, other);
+                        if (other - cvRound(theirs / (double)scale) == column &&
+                            (theirs - own) / (double)scale > maxDiff)
+                            isStable = false;
+                    }
+                    expected.at<uchar>(y, x) = isStable ? 255 : 0;
+                }
+            hdp::findStable(disparity, scale, maxDiff, stable);
+            expectIdentical(expected, stable);
+            EXPECT_GT(cv::countNonZero(stable == 0), 0);
+        }
+}
+
+} // namespace
+} // namespace opencv_test
