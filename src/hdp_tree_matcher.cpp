@@ -10,6 +10,7 @@
 #include "forest_aggregation.hpp"
 #include "image_pyramid.hpp"
 #include "matching_cost.hpp"
+#include "nonlocal_refinement.hpp"
 #include "scanline_aggregation.hpp"
 #include "support_points.hpp"
 #include "tree_strategy.hpp"
@@ -28,6 +29,11 @@ const int maxBlockSize = 31;
 const int maxMedianSize = 31;
 const int maxLayers = 16;
 const int mostTopDisparities = 64;
+
+// Of the non-local refinement: a stable disparity's largest difference in the left-right check, and gamma, relative to
+// that of the cost; with the same gamma the refinement blurs slanted surfaces.
+const int stableMaxDiff = 1;
+const double refinementGamma = 0.25;
 
 //! A value in a range, or an exception that names the argument and the range.
 template <typename T> T checked(T value, bool isValid, const char* name, const char* expected)
@@ -73,6 +79,7 @@ struct Parameters
     int smallPenalty = 12;
     int largePenalty = 50;
     int finestLayer = 0;
+    bool useNonLocalRefinement = false;
 
     void setMinDisparity(int value) { minDisparity = value; }
     void setNumDisparities(int value) { numDisparities = checked(value, value > 0, "numDisparities", "> 0"); }
@@ -292,6 +299,8 @@ public:
     void setLargePenalty(int value) CV_OVERRIDE { p_.setLargePenalty(value); }
     int getFinestLayer() const CV_OVERRIDE { return p_.finestLayer; }
     void setFinestLayer(int value) CV_OVERRIDE { p_.setFinestLayer(value); }
+    bool getUseNonLocalRefinement() const CV_OVERRIDE { return p_.useNonLocalRefinement; }
+    void setUseNonLocalRefinement(bool value) CV_OVERRIDE { p_.useNonLocalRefinement = value; }
 
     void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE { ratios = searchRatios_; }
 
@@ -332,7 +341,8 @@ public:
            << "aggregation" << p_.aggregation
            << "smallPenalty" << p_.smallPenalty
            << "largePenalty" << p_.largePenalty
-           << "finestLayer" << p_.finestLayer;
+           << "finestLayer" << p_.finestLayer
+           << "useNonLocalRefinement" << (int)p_.useNonLocalRefinement;
         // clang-format on
         fs << "treeStrategy"
            << "{"
@@ -378,6 +388,7 @@ public:
         readNumber<int>(fn, "smallPenalty", [&](int value) { p.setSmallPenalty(value); });
         readNumber<int>(fn, "largePenalty", [&](int value) { p.setLargePenalty(value); });
         readNumber<int>(fn, "finestLayer", [&](int value) { p.setFinestLayer(value); });
+        readNumber<int>(fn, "useNonLocalRefinement", [&](int value) { p.useNonLocalRefinement = value != 0; });
         p.treeStrategy = readStrategy(fn["treeStrategy"]);
         if (!fn["predictionModel"].empty())
         {
@@ -511,6 +522,8 @@ private:
             aggregateTrees(layer, images, settings);
         else
             aggregateScanlines(layer, images, settings);
+        if (p_.useNonLocalRefinement)
+            clock_.run("non-local refinement", [&] { refine(images, settings); });
         clock_.run("disparity median", [&] {
             swap(winner_, disparity_);
             for (int pass = 0; settings.medianSize > 0 && pass < p_.disparityMedianPasses; ++pass)
@@ -529,7 +542,7 @@ private:
         if (layer == settings.layers - 1)
             clock_.run("disparity prediction", [&] {
                 pixelIntv_.create(size, CV_16UC2);
-                pixelIntv_.setTo(Scalar(0, disparities - 1));
+                pixelIntv_.setTo(Scalar(0, disparities - 1)); // the full range
             });
         else
         {
@@ -554,14 +567,34 @@ private:
             });
         }
         clock_.run("disparity forest", [&] {
-            if (p_.useMedianPrefilter)
-                medianBlur(images.guide, guide_, 3);
-            buildForest(p_.useMedianPrefilter ? guide_ : images.guide, pixelIntv_, *p_.treeStrategy, settings.beta,
-                        !p_.usePrediction, forestBuffers_, forest_);
+            buildLayerForest(images, settings);
             searchRatios_[layer] = searchRatio(forest_, disparities);
         });
         clock_.run("cost aggregation",
                    [&] { aggregateForest(forest_, cost_, p_.gamma, settings.scale > 1, aggregation_, winner_); });
+    }
+
+    //! Section 3.2: forest_, from pixelIntv_
+    void buildLayerForest(const LayerImages& images, const LayerSettings& settings)
+    {
+        if (p_.useMedianPrefilter)
+            medianBlur(images.guide, guide_, 3);
+        buildForest(p_.useMedianPrefilter ? guide_ : images.guide, pixelIntv_, *p_.treeStrategy, settings.beta,
+                    !p_.usePrediction, forestBuffers_, forest_);
+    }
+
+    //! Refines winner_ over forest_.
+    void refine(const LayerImages& images, const LayerSettings& settings)
+    {
+        if (forest_.links.size() != winner_.size()) // the layer has no trees of its own
+        {
+            pixelIntv_.create(winner_.size(), CV_16UC2);
+            pixelIntv_.setTo(Scalar::all(0)); // one tree
+            buildLayerForest(images, settings);
+        }
+        swap(winner_, disparity_);
+        findStable(disparity_, settings.scale, stableMaxDiff, stable_);
+        refineNonLocal(forest_, disparity_, settings.scale, stable_, p_.gamma * refinementGamma, aggregation_, winner_);
     }
 
     //! Predicted windows instead of trees
@@ -634,7 +667,7 @@ private:
     MatchingCost cost_;
     AggregationBuffers aggregation_;
     ScanlineBuffers scanlines_;
-    Mat winner_, disparity_, speckles_;
+    Mat winner_, disparity_, stable_, speckles_;
 };
 
 } // namespace

@@ -228,6 +228,18 @@ public:
     /** @copybrief setFinestLayer @sa setFinestLayer */
     CV_WRAP virtual int getFinestLayer() const = 0;
 
+    /** @brief Whether each layer's winners are refined over trees @cite Yang2012MST, before the median (true), or not
+    (false, default).
+
+    A disparity is stable if the largest one that maps to its column of the right image is larger by one pixel at most.
+    Every pixel takes the disparity x with the smallest \f$\sum_q S(p, q) |x - D(q)|\f$, the sum over the stable pixels
+    of its tree: a weighted median. S is as in setGamma(), but with a quarter of \f$\gamma\f$. A pixel of a tree without
+    stable ones keeps its disparity. The trees are those of the layer; a layer aggregated along scanlines gets one tree
+    over all of its pixels, which takes several times as long as the layer itself. */
+    CV_WRAP virtual void setUseNonLocalRefinement(bool useNonLocalRefinement) = 0;
+    /** @copybrief setUseNonLocalRefinement @sa setUseNonLocalRefinement */
+    CV_WRAP virtual bool getUseNonLocalRefinement() const = 0;
+
     /** @brief Share of the disparity range that the last compute() searched, \f$R_l\f$ of the paper's Table 1.
     @param ratios Receives a number in [0, 1] per layer, the finest first; empty before the first compute().
      */
