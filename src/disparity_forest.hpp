@@ -42,9 +42,23 @@ struct ForestBuffers
         int parent;                 // of a root: minus the tree's size
         DisparityInterval interval; // TreeIntv of a root
     };
+    struct SortedEdges
+    {
+        std::vector<int> edges; // by weight, those of the same weight by number
+        int ends[256];          // where those of each weight end
+    };
+    struct Stripe // Rows whose trees are grown apart from the others
+    {
+        std::vector<int> selected; // edges by number
+        SortedEdges sorted, undecided;
+        std::vector<int> frozen;                // roots
+        std::vector<uint64> restored, rejected; // edges by weight and number; the first are a heap
+        std::vector<int> everRestored;          // by number
+    };
     std::vector<Node> nodes;
     std::vector<uchar> maxWeights; // of roots
-    std::vector<int> edges;
+    std::vector<Stripe> stripes;   // and at last all of the image
+    std::vector<int> edges;        // in the order of other strategies
 };
 
 /** Builds the forest of a layer.
@@ -67,7 +81,7 @@ struct TreeWalk
     struct Step
     {
         int pixel, parent;
-        uchar weight, from;
+        int from; // the link to the parent
     };
     std::vector<Step> pending;
 };

@@ -142,6 +142,76 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_over_the_full_range)
             }
 }
 
+//! Lends a number of threads.
+class ScopedThreads
+{
+public:
+    explicit ScopedThreads(int threads) : before_(getNumThreads()) { setNumThreads(threads); }
+    ~ScopedThreads() { setNumThreads(before_); }
+
+private:
+    int before_;
+};
+
+//! Trees grow across stripes, whose number depends on that of threads, and edges are rejected inside areas of equal
+//! intervals, as the trees on both sides have united theirs with different ones.
+TEST(HDPStereo_DisparityForest, plain_kruskal_in_any_number_of_stripes)
+{
+    RNG rng(18);
+    hdp::ForestBuffers buffers;
+    DisparityForest forest;
+    const Ptr<TreeStrategy> strategies[] = { createMinimumSpanningTree(), createSegmentTree(40) };
+    for (int threads = 1; threads <= 5; ++threads)
+    {
+        ScopedThreads scope(threads);
+        for (int i = 0; i < 400; ++i)
+        {
+            const Size size(i % 20 == 0 ? 1 : rng.uniform(1, 36), i % 20 == 1 ? 1 : rng.uniform(1, 36));
+            const Mat image = randomImage(rng, size, i % 2 == 0 ? CV_8UC1 : CV_8UC3, i % 3 == 0 ? 4 : 20);
+            Mat pixelIntv(size, CV_16UC2);
+            const int side = rng.uniform(1, 9), shifts = rng.uniform(1, 5), length = rng.uniform(1, 10);
+            for (int y = 0; y < size.height; y += side)
+                for (int x = 0; x < size.width; x += side)
+                {
+                    const bool isEmpty = rng.uniform(0, 30) == 0;
+                    const int first = isEmpty ? 1 : rng.uniform(0, shifts);
+                    const int last = isEmpty ? 0 : first + length - 1 + rng.uniform(0, 3);
+                    pixelIntv(Rect(x, y, side, side) & Rect(Point(), size)).setTo(Scalar(first, last));
+                }
+            const bool isSegments = i % 5 == 4; // linked without prediction only, when all intervals are equal
+            testForest(image, pixelIntv, *strategies[isSegments], rng.uniform(0., 1.), !isSegments && i % 7 == 0,
+                       buffers, forest);
+            if (HasFatalFailure())
+                return;
+        }
+    }
+}
+
+//! The order in which trees are walked depends on the roots.
+TEST(HDPStereo_DisparityForest, roots_do_not_depend_on_the_number_of_threads)
+{
+    RNG rng(19);
+    const Mat image = patchyImage(rng, Size(61, 83), CV_8UC3), pixelIntv = randomIntervals(rng, image.size());
+    for (const Ptr<TreeStrategy>& strategy : allStrategies())
+    {
+        hdp::ForestBuffers buffers;
+        DisparityForest expected, forest;
+        {
+            ScopedThreads one(1);
+            hdp::buildForest(image, pixelIntv, *strategy, 0.6, false, buffers, expected);
+        }
+        for (int threads = 2; threads <= 5; ++threads)
+        {
+            ScopedThreads scope(threads);
+            hdp::buildForest(image, pixelIntv, *strategy, 0.6, false, buffers, forest);
+            ASSERT_EQ(expected.trees.size(), forest.trees.size());
+            for (size_t t = 0; t < expected.trees.size(); ++t)
+                ASSERT_EQ(expected.trees[t].root, forest.trees[t].root) << threads << " threads";
+            expectIdentical(expected.links, forest.links);
+        }
+    }
+}
+
 TEST(HDPStereo_DisparityForest, regions_of_interest)
 {
     RNG rng(14);
