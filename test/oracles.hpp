@@ -39,8 +39,8 @@ inline Mat_<double> exactGrey(const Mat& image)
     return result;
 }
 
-//! Section 2.1: the mean of 2 x 2 pixels, truncated; floor(size / 2).
-inline Mat halve(const Mat& image)
+//! Section 2.1: the mean of 2 x 2 pixels, truncated (8 bit) or rounded (16 bit); floor(size / 2).
+template <typename T> Mat halve(const Mat& image, double rounding)
 {
     const int channels = image.channels();
     Mat half(image.rows / 2, image.cols / 2, image.type());
@@ -48,13 +48,29 @@ inline Mat halve(const Mat& image)
         for (int x = 0; x < half.cols; ++x)
             for (int c = 0; c < channels; ++c)
             {
-                int sum = 0;
+                double sum = 0;
                 for (int dy = 0; dy < 2; ++dy)
                     for (int dx = 0; dx < 2; ++dx)
-                        sum += image.ptr(2 * y + dy)[(2 * x + dx) * channels + c];
-                half.ptr(y)[x * channels + c] = (uchar)(sum / 4);
+                        sum += image.ptr<T>(2 * y + dy)[(2 * x + dx) * channels + c];
+                half.ptr<T>(y)[x * channels + c] = (T)std::floor(sum / 4 + rounding);
             }
     return half;
+}
+
+inline Mat halve(const Mat& image)
+{
+    return image.depth() == CV_16U ? halve<ushort>(image, 0.5) : halve<uchar>(image, 0);
+}
+
+//! Grey levels in quarters of a level, rounded
+inline Mat greyLevels(const Mat& image)
+{
+    const Mat_<double> exact = exactGrey(image);
+    Mat result(image.size(), CV_16U);
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+            result.at<ushort>(y, x) = (ushort)std::floor(4 * exact(y, x) + 0.5);
+    return result;
 }
 
 //! Section 3.3: M(p, x), averaged over a window; rows and columns clamped to the images.
@@ -110,17 +126,14 @@ private:
     hdp::MatchingCostParams params_;
 };
 
-//! The census cost: the pixels of the window's checkerboard that are darker than its centre in one of the images only;
-//! rows and columns clamped to the images.
+//! The census cost of images of grey levels, CV_16UC1: the pixels of the window's checkerboard that are darker than its
+//! centre in one of the images only; rows and columns clamped to the images.
 class CensusCost
 {
 public:
-    CensusCost(const Mat& left, const Mat& right, int blockSize)
-        : left_(grey(left)), right_(grey(right)), radius_(blockSize / 2)
-    {
-    }
+    CensusCost(const Mat& left, const Mat& right, int blockSize) : left_(left), right_(right), radius_(blockSize / 2) {}
 
-    double operator()(int y, int x, int disparity) const
+    int operator()(int y, int x, int disparity) const
     {
         const int matched = clamped(x - disparity, left_.cols);
         int count = 0;
@@ -137,7 +150,7 @@ public:
 private:
     static bool isDarker(const Mat& image, int y, int x, int dy, int dx)
     {
-        return image.at<uchar>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) < image.at<uchar>(y, x);
+        return image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) < image.at<ushort>(y, x);
     }
 
     Mat left_, right_;
