@@ -29,6 +29,7 @@ const int maxBlockSize = 31;
 const int maxMedianSize = 31;
 const int maxLayers = 16;
 const int mostTopDisparities = 64;
+const int secondPassMedian = 5;
 
 // Of the non-local refinement: a stable disparity's largest difference in the left-right check, and gamma, relative to
 // that of the cost; with the same gamma the refinement blurs slanted surfaces.
@@ -79,6 +80,7 @@ struct Parameters
     int smallPenalty = 12;
     int largePenalty = 50;
     int finestLayer = 0;
+    int scanlinePasses = 1;
     bool useNonLocalRefinement = false;
 
     void setMinDisparity(int value) { minDisparity = value; }
@@ -170,6 +172,11 @@ struct Parameters
     void setFinestLayer(int value)
     {
         finestLayer = checked(value, value >= 0 && value < maxLayers, "finestLayer", "in 0..15");
+    }
+
+    void setScanlinePasses(int value)
+    {
+        scanlinePasses = checked(value, value >= 1 && value <= 4, "scanlinePasses", "in 1..4");
     }
 
     static int checkedPenalty(int value, const char* name)
@@ -299,6 +306,8 @@ public:
     void setLargePenalty(int value) CV_OVERRIDE { p_.setLargePenalty(value); }
     int getFinestLayer() const CV_OVERRIDE { return p_.finestLayer; }
     void setFinestLayer(int value) CV_OVERRIDE { p_.setFinestLayer(value); }
+    int getScanlinePasses() const CV_OVERRIDE { return p_.scanlinePasses; }
+    void setScanlinePasses(int value) CV_OVERRIDE { p_.setScanlinePasses(value); }
     bool getUseNonLocalRefinement() const CV_OVERRIDE { return p_.useNonLocalRefinement; }
     void setUseNonLocalRefinement(bool value) CV_OVERRIDE { p_.useNonLocalRefinement = value; }
 
@@ -342,6 +351,7 @@ public:
            << "smallPenalty" << p_.smallPenalty
            << "largePenalty" << p_.largePenalty
            << "finestLayer" << p_.finestLayer
+           << "scanlinePasses" << p_.scanlinePasses
            << "useNonLocalRefinement" << (int)p_.useNonLocalRefinement;
         // clang-format on
         fs << "treeStrategy"
@@ -388,6 +398,7 @@ public:
         readNumber<int>(fn, "smallPenalty", [&](int value) { p.setSmallPenalty(value); });
         readNumber<int>(fn, "largePenalty", [&](int value) { p.setLargePenalty(value); });
         readNumber<int>(fn, "finestLayer", [&](int value) { p.setFinestLayer(value); });
+        readNumber<int>(fn, "scanlinePasses", [&](int value) { p.setScanlinePasses(value); });
         readNumber<int>(fn, "useNonLocalRefinement", [&](int value) { p.useNonLocalRefinement = value != 0; });
         p.treeStrategy = readStrategy(fn["treeStrategy"]);
         if (!fn["predictionModel"].empty())
@@ -549,10 +560,10 @@ private:
             if (p_.disparityPrior == PRIOR_SUPPORT_POINTS)
                 clock_.run("support points", [&] {
                     Mat left = images.left, right = images.right;
-                    if (left.depth() != CV_8U) // grey levels in quarters
+                    if (left.depth() != CV_8U) // greyLevels()
                     {
-                        left.convertTo(left, CV_8U, 0.25);
-                        right.convertTo(right, CV_8U, 0.25);
+                        left.convertTo(left, CV_8U, 1. / greyScale);
+                        right.convertTo(right, CV_8U, 1. / greyScale);
                     }
                     findSupportPoints(left, right, disparities, supportPoints_, points_);
                     disparityHistogram(points_, disparities, prior_);
@@ -597,18 +608,27 @@ private:
         refineNonLocal(forest_, disparity_, settings.scale, stable_, p_.gamma * refinementGamma, aggregation_, winner_);
     }
 
-    //! Predicted windows instead of trees
+    //! Predicted windows instead of trees. Each pass but the first takes its windows from the disparities of the one
+    //! before, and trusts them more than those of the layer above.
     void aggregateScanlines(int layer, const LayerImages& images, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
-        clock_.run("disparity prediction", [&] {
-            predictWindows(disparity_, settings.scale, disparities, smallest_, largest_, windows_);
-            searchRatios_[layer] = std::min<double>(CandidateWindow::candidates, disparities) / disparities;
-        });
-        clock_.run("cost aggregation", [&] {
-            const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty };
-            hdp::aggregateScanlines(cost_, images.left.size(), disparities, windows_, penalties, scanlines_, winner_);
-        });
+        searchRatios_[layer] = std::min<double>(CandidateWindow::candidates, disparities) / disparities;
+        for (int pass = 0; pass < p_.scanlinePasses; ++pass)
+        {
+            if (pass > 0)
+                clock_.run("disparity median", [&] {
+                    medianDisparity(winner_, secondPassMedian, filtered_);
+                    halveDisparity(filtered_, disparity_);
+                });
+            clock_.run("disparity prediction",
+                       [&] { predictWindows(disparity_, settings.scale, disparities, smallest_, largest_, windows_); });
+            clock_.run("cost aggregation", [&] {
+                const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty, pass == 0 ? 1 : 2 };
+                hdp::aggregateScanlines(cost_, images.left.size(), disparities, windows_, penalties, scanlines_,
+                                        winner_);
+            });
+        }
     }
 
     //! From candidates of the finest layer to what cv::StereoMatcher promises.
@@ -667,7 +687,7 @@ private:
     MatchingCost cost_;
     AggregationBuffers aggregation_;
     ScanlineBuffers scanlines_;
-    Mat winner_, disparity_, stable_, speckles_;
+    Mat winner_, filtered_, disparity_, stable_, speckles_;
 };
 
 } // namespace
@@ -703,6 +723,7 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities,
     case PRESET_QUALITY:
         parameters.setAggregation(AGGREGATION_SCANLINES);
         parameters.setNumLayers(HDPTreeMatcher::AUTO);
+        parameters.setScanlinePasses(2);
         parameters.setDisparityMedianPasses(2);
         break;
     }

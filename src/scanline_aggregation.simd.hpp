@@ -97,7 +97,8 @@ private:
         for (int distance = -priorRange; distance < priorRange; ++distance)
             for (int i = 0; i < Window::runLength; ++i)
                 priorTable_[distance + priorRange][i] =
-                    (uchar)(std::abs(distance + i * ScanlineProblem::scale) / (2 * ScanlineProblem::scale));
+                    (uchar)(p_.penalties.prior * std::abs(distance + i * ScanlineProblem::scale) /
+                            (2 * ScanlineProblem::scale));
     }
 
     //! For runs that begin `shift` disparities after another one: which of its candidates are the same ones
@@ -164,7 +165,7 @@ private:
             entersUpperRow_ = above != 0;
         }
         for (int r = 0; r < groups; ++r)
-            for (int plane = 0; plane < p_.cost->planes(); ++plane)
+            for (int plane = 0; plane <= p_.cost->planes(); ++plane)
             {
                 left_[plane][r] = p_.cost->leftPlane(plane, std::min(y + r, p_.size.height - 1));
                 right_[plane][r] = p_.cost->rightPlane(plane, std::min(y + r, p_.size.height - 1)) + width_ - 1;
@@ -174,34 +175,38 @@ private:
     int column(int step, int group) const { return std::min(std::max(step - 2 * group, 0), width_ - 1); }
     int upperColumn(int column) const { return std::min(column / 2, upperWidth_ - 1); }
 
-    //! The candidates' costs C(p, d): bits that differ, and the prior.
+    //! The candidates' costs C(p, d)
     template <int planes> ByteLanes costs(int step) const
     {
-        const uchar *left[3][groups], *low[3][groups], *high[3][groups], *priors[groups];
+        const uchar *left[planes + 1][groups], *low[planes + 1][groups], *high[planes + 1][groups], *priors[groups];
         for (int r = 0; r < groups; ++r)
         {
             const int x = column(step, r), upperX = upperColumn(x);
             const Window& window = windows_[upperX];
             priors[r] = &s_.priors[(size_t)upperX * Window::candidates];
-            for (int plane = 0; plane < planes; ++plane)
+            for (int plane = 0; plane <= planes; ++plane)
             {
                 left[plane][r] = left_[plane][r] + x;
                 low[plane][r] = right_[plane][r] - x + window.first[0];
                 high[plane][r] = right_[plane][r] - x + window.first[1];
             }
         }
-        ByteLanes bits[3];
+        const ByteLanes grey = ByteLanes::repeat(left[planes]);
+        const ByteLanes candidates = ByteLanes::loadHalves(low[planes], high[planes]);
+        const ByteLanes contrast = ((grey - candidates) | (candidates - grey)).min(ByteLanes::repeat(31));
+        const ByteLanes cost = ByteLanes::load(priors) + contrast.quarter();
+
+        ByteLanes bits[planes];
         for (int plane = 0; plane < planes; ++plane)
             bits[plane] = ByteLanes::loadHalves(low[plane], high[plane]) ^ ByteLanes::repeat(left[plane]);
-        const ByteLanes prior = ByteLanes::load(priors);
         if (planes == 1)
-            return prior + bits[0].countBits();
+            return cost + bits[0].countBits();
         if (planes == 2)
-            return prior + bits[0].countBits() + bits[1].countBits();
+            return cost + bits[0].countBits() + bits[planes - 1].countBits();
         // Sum and carry of three bits: two counts instead of three
-        const ByteLanes difference = bits[0] ^ bits[1];
-        const ByteLanes carries = ((bits[0] & bits[1]) | (difference & bits[2])).countBits();
-        return prior + (difference ^ bits[2]).countBits() + (carries + carries);
+        const ByteLanes second = bits[planes > 1 ? 1 : 0], third = bits[planes - 1], difference = bits[0] ^ second;
+        const ByteLanes carries = ((bits[0] & second) | (difference & third)).countBits();
+        return cost + (difference ^ third).countBits() + (carries + carries);
     }
 
     //! L(p, d) - m of a direction; h: H of the pixel before, which becomes that of this one.
@@ -386,7 +391,7 @@ private:
     const Window* windows_; // of the block's row of the upper layer
     int upperRow_;          // that row
     bool entersUpperRow_;   // whether it is not that of the block before
-    const uchar *left_[3][groups], *right_[3][groups];
+    const uchar *left_[4][groups], *right_[4][groups];
     uchar priorTable_[2 * priorRange][Window::runLength];
     uchar orderTable_[Window::runs][2 * Window::runLength + 1][Window::runLength];
 };

@@ -222,6 +222,12 @@ public:
     /** @copybrief setLargePenalty @sa setLargePenalty */
     CV_WRAP virtual int getLargePenalty() const = 0;
 
+    /** @brief How often a layer is aggregated along scanlines: 1 (default) to 4. Each pass but the first searches around
+    the disparities of the one before instead of those of the layer above. */
+    CV_WRAP virtual void setScanlinePasses(int passes) = 0;
+    /** @copybrief setScanlinePasses @sa setScanlinePasses */
+    CV_WRAP virtual int getScanlinePasses() const = 0;
+
     /** @brief The layer the search ends at: 0 (default), the image itself, to 15. The map of a coarser layer is enlarged
     to the image's size. More than there are layers: the top one. Without effect if prediction is off. */
     CV_WRAP virtual void setFinestLayer(int layer) = 0;
