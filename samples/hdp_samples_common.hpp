@@ -139,11 +139,10 @@ inline void writeImage(const String& path, const Mat& image)
         fail("cannot write '" + path + "'");
 }
 
-//! Reads a disparity map: 8-bit image (disparity * 1), 16-bit image (disparity * 256), both with 0 where there is no
-//! disparity, or PFM (not finite where there is none). A scale other than 0 takes the place of 1 and 256.
-inline Mat readDisparity(const String& path, double scale = 0)
+//! The disparity map of an image read from the path: 8 bit (disparity * 1), 16 bit (disparity * 256), both with 0 where
+//! there is no disparity, or PFM (not finite where there is none). A scale other than 0 takes the place of 1 and 256.
+inline Mat toDisparity(const Mat& image, const String& path, double scale = 0)
 {
-    const Mat image = readImage(path, cv::IMREAD_UNCHANGED);
     if (image.channels() != 1)
         fail("'" + path + "' is a color image, not a disparity map");
     const bool isFloat = image.depth() == CV_32F;
@@ -156,6 +155,11 @@ inline Mat readDisparity(const String& path, double scale = 0)
     const Mat known = isFloat ? Mat(cv::abs(image) <= std::numeric_limits<float>::max()) : Mat(image != 0);
     disparity.setTo(NO_DISPARITY, ~known);
     return disparity;
+}
+
+inline Mat readDisparity(const String& path, double scale = 0)
+{
+    return toDisparity(readImage(path, cv::IMREAD_UNCHANGED), path, scale);
 }
 
 //! Writes FILE.pfm (NO_DISPARITY is infinity) or a 16-bit FILE.png: disparity * 256, where 0 means no disparity, so
@@ -223,10 +227,14 @@ inline Mat toPixels(const Mat& disparity16, int minDisparity)
     return disparity;
 }
 
+//! How many disparities to search in a pair that nothing is known of
+inline int defaultNumDisparities(int width) { return std::max(int(cv::alignSize(width / 5, 16)), 16); }
+
 // ---- Errors
 
-//! Pixels of known truth that the right image shows too: those where the right truth, at x - floor(d), is equal.
-inline Mat nonOccludedPixels(const Mat& truth, const Mat& rightTruth)
+//! Pixels of known truth that the right image shows too: those where the right truth, at x - floor(d), is equal, or
+//! differs by no more than the tolerance.
+inline Mat nonOccludedPixels(const Mat& truth, const Mat& rightTruth, double tolerance = 0)
 {
     Mat mask = Mat::zeros(truth.size(), CV_8U);
     for (int y = 0; y < truth.rows; y++)
@@ -235,7 +243,7 @@ inline Mat nonOccludedPixels(const Mat& truth, const Mat& rightTruth)
         {
             const float d = truth.at<float>(y, x);
             const float xr = d < NO_DISPARITY ? float(x) - std::floor(d) : -1.f;
-            if (xr >= 0 && xr < float(truth.cols) && rightTruth.at<float>(y, int(xr)) == d)
+            if (xr >= 0 && xr < float(truth.cols) && std::abs(rightTruth.at<float>(y, int(xr)) - d) <= tolerance)
                 mask.at<uchar>(y, x) = 255;
         }
     }
