@@ -59,7 +59,7 @@ struct SceneResult
     Pair::Protocol protocol;
     Size size;
     std::vector<Result> results; // by method
-    String figures;              // of the report
+    String maps, predictions;    // figures of the report
     bool isRead;
 };
 
@@ -144,7 +144,7 @@ static std::vector<String> splitList(const String& text)
 //! The methods of these names and groups, in their own order.
 static std::vector<Method> selectMethods(const String& list, const std::vector<Method>& all)
 {
-    if (list.empty())
+    if (list.empty() || lowerCase(list) == "all")
         return all;
     std::vector<bool> isSelected(all.size(), false);
     for (const String& item : splitList(list))
@@ -234,10 +234,10 @@ static void evaluate(const Method& method, const Pair& pair, const Settings& set
     }
     if (settings.hasReport)
     {
-        scene.figures += figure(resultPicture(match.disparity, pair),
-                                method.name + ": " + printScore(result.score) + format(", %.2f s", match.seconds));
+        scene.maps += figure(resultPicture(match.disparity, pair),
+                             method.name + ": " + printScore(result.score) + format(", %.2f s", match.seconds));
         if (hdp && !method.fullRange.empty())
-            scene.figures += predictionFigures(method.name, *hdp, pair);
+            scene.predictions += predictionFigures(method.name, *hdp, pair);
     }
     result.done = true;
 }
@@ -264,9 +264,9 @@ static bool evaluateScene(const Settings& settings, SceneResult& result, Progres
     result.size = pair.left.size();
     if (settings.hasReport)
     {
-        result.figures = figure(pair.left, "left image");
+        result.maps = figure(pair.left, "left image");
         if (pair.protocol != Pair::NO_TRUTH)
-            result.figures += figure(resultPicture(pair.truth, pair), "truth");
+            result.maps += figure(resultPicture(pair.truth, pair), "truth");
     }
 
     bool isGood = true;
@@ -364,8 +364,6 @@ static int fullRangeOf(const std::vector<Method>& methods, size_t method)
     return -1;
 }
 
-static String meanName(size_t count) { return count == 1 ? String("mean of 1") : format("mean of %d", int(count)); }
-
 static std::vector<String> headerOf(const String& first, const std::vector<Method>& methods)
 {
     std::vector<String> header(1, first);
@@ -373,6 +371,8 @@ static std::vector<String> headerOf(const String& first, const std::vector<Metho
         header.push_back(method.name);
     return header;
 }
+
+static bool narrowsRange(const Method& method) { return !method.fullRange.empty() || method.group == "presets"; }
 
 //! R_l per layer, set and method; the paper's Table 1
 static Table searchTable(const std::vector<String>& sets, const std::vector<Method>& methods,
@@ -384,14 +384,14 @@ static Table searchTable(const std::vector<String>& sets, const std::vector<Meth
     size_t layers = 0;
     for (const SceneResult& result : results)
         for (size_t m = 0; m < methods.size(); m++)
-            if (methods[m].fullRange.empty() == false || methods[m].group == "presets")
+            if (narrowsRange(methods[m]))
                 layers = std::max(layers, result.results[m].ratios.size());
     for (size_t l = 0; l < layers; l++)
         table.header.push_back(format("layer %d", int(l)));
     for (const String& set : sets)
         for (size_t m = 0; m < methods.size(); m++)
         {
-            if (methods[m].fullRange.empty() && methods[m].group != "presets")
+            if (!narrowsRange(methods[m]))
                 continue;
             std::vector<std::vector<double>> ratios(layers);
             for (const SceneResult& result : results)
@@ -422,7 +422,7 @@ static Table sceneTable(const String& title, const std::vector<const SceneResult
         table.addNumbers(values);
     }
     const std::vector<const SceneResult*> complete = completeOnes(results);
-    table.addRow(meanName(complete.size()));
+    table.addRow(format("mean of %d", int(complete.size())));
     std::vector<double> means;
     for (size_t m = 0; m < methods.size(); m++)
         means.push_back(meanOf(figuresOf(complete, m, figure)));
@@ -614,12 +614,20 @@ static String reportPage(const std::vector<Table>& tables, const std::vector<Str
         }
     body << "<p>Maps: blue is far, orange near. Wrong pixels (Middlebury: errors of 2 pixels and more; KITTI: above 3 "
             "pixels and 5 %) are red. Of Middlebury's pairs, pixels that are occluded or of unknown truth are black, "
-            "and so is everywhere what has no disparity.</p>\n";
+            "and so is everywhere what has no disparity. P(D_l | D_{l+1}): a row for every disparity of the layer "
+            "above, "
+            "from the top, a column for every disparity of the layer; the largest element of a row is the "
+            "brightest.</p>\n";
     for (const SceneResult& result : results)
-        if (result.isRead)
-            body << "<h2>" << htmlText(result.scene.set + "/" + result.scene.name)
-                 << format(" (%d x %d)", result.size.width, result.size.height) << "</h2>\n<div class=\"figures\">\n"
-                 << result.figures << "</div>\n";
+    {
+        if (!result.isRead)
+            continue;
+        body << "<h2>" << htmlText(result.scene.set + "/" + result.scene.name)
+             << format(" (%d x %d)", result.size.width, result.size.height) << "</h2>\n<div class=\"figures\">\n"
+             << result.maps << "</div>\n";
+        if (!result.predictions.empty())
+            body << "<h3>Prediction</h3>\n<div class=\"figures\">\n" << result.predictions << "</div>\n";
+    }
     return htmlPage("Hierarchical disparity prediction: evaluation", body.str());
 }
 

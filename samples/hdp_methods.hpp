@@ -77,10 +77,8 @@ inline Method paperMethod(const String& prefix, const String& tree, const Ptr<Di
     return method;
 }
 
-//! A number that nothing exceeds: StereoSGBM takes 0 and -1 for 1.
-const int NO_LEFT_RIGHT_CHECK = 1 << 20;
-
-//! OpenCV's matchers, with nothing filtered out: what they leave without a disparity counts as wrong.
+//! OpenCV's matchers leave out what fails their checks, which counts as wrong. StereoSGBM checks left against right
+//! (it takes disp12MaxDiff = 0 for 1); StereoBM texture and uniqueness, as it does by default.
 inline Method sgbmMethod(const String& name, int mode)
 {
     Method method;
@@ -89,8 +87,8 @@ inline Method sgbmMethod(const String& name, int mode)
     method.isBlind = true;
     method.isGray = false;
     method.create = [=](int numDisparities) -> Ptr<cv::StereoMatcher> {
-        return cv::StereoSGBM::create(0, int(cv::alignSize(numDisparities, 16)), 3, 8 * 27, 32 * 27,
-                                      NO_LEFT_RIGHT_CHECK, 0, 0, 0, 0, mode);
+        return cv::StereoSGBM::create(0, int(cv::alignSize(numDisparities, 16)), 3, 8 * 27, 32 * 27, 0, 0, 0, 0, 0,
+                                      mode);
     };
     return method;
 }
@@ -102,10 +100,7 @@ inline Method blockMatchingMethod()
     method.group = "opencv";
     method.isBlind = method.isGray = true;
     method.create = [](int numDisparities) -> Ptr<cv::StereoMatcher> {
-        const Ptr<cv::StereoBM> matcher = cv::StereoBM::create(int(cv::alignSize(numDisparities, 16)), 15);
-        matcher->setTextureThreshold(0);
-        matcher->setUniquenessRatio(0);
-        return matcher;
+        return cv::StereoBM::create(int(cv::alignSize(numDisparities, 16)), 15);
     };
     return method;
 }
@@ -152,7 +147,7 @@ inline Match runMethod(const Method& method, cv::StereoMatcher& matcher, const M
         else
             pair[i] = image;
         if (border > 0)
-            cv::copyMakeBorder(pair[i], pair[i], 0, 0, border, 0, cv::BORDER_REPLICATE);
+            cv::copyMakeBorder(pair[i], pair[i], 0, 0, border, 0, cv::BORDER_CONSTANT);
     }
     Match match;
     match.seconds = std::numeric_limits<double>::max();

@@ -53,9 +53,9 @@ inline String figure(const Mat& picture, const String& caption, const String& ex
 //! A map in colors; wrong pixels (err>=2, or KITTI's D1) red, pixels that are not judged black.
 inline Mat resultPicture(const Mat& disparity, const Pair& pair)
 {
-    Mat picture = colorPicture(disparity);
     if (pair.protocol == Pair::NO_TRUTH)
-        return picture;
+        return colorPicture(disparity);
+    Mat picture = colorPicture(disparity, colorRange(pair.truth));
     Mat error, wrong;
     cv::absdiff(disparity, pair.truth, error);
     if (pair.protocol == Pair::KITTI)
@@ -81,7 +81,7 @@ inline Mat forestPicture(const Mat& trees)
     return picture;
 }
 
-//! Number of candidates of each pixel: black for 1 to white for all, in equal steps of the logarithm
+//! Number of candidates of each pixel: violet for 1 to yellow for all, in equal steps of the logarithm
 inline Mat widthPicture(const Mat& intervals, int numDisparities)
 {
     Mat picture(intervals.size(), CV_8U);
@@ -93,6 +93,7 @@ inline Mat widthPicture(const Mat& intervals, int numDisparities)
             picture.at<uchar>(y, x) =
                 cv::saturate_cast<uchar>(255 * std::log(width) / std::log(std::max(numDisparities, 2)));
         }
+    cv::applyColorMap(picture, picture, cv::COLORMAP_VIRIDIS);
     return picture;
 }
 
@@ -156,8 +157,8 @@ inline String predictionFigures(const String& name, const HDPTreeMatcher& matche
     out << figure(forestPicture(trees), cv::format("%s: %d disparity trees", name.c_str(), int(last) + 1), ".jpg",
                   cv::INTER_NEAREST);
     out << figure(widthPicture(intervals, matcher.getNumDisparities()),
-                  cv::format("%s: candidates of each pixel, black 1 to white %d (logarithmic), mean %.2f", name.c_str(),
-                             matcher.getNumDisparities(), ratios[0] * matcher.getNumDisparities()));
+                  cv::format("%s: candidates of each pixel, violet 1 to yellow %d (logarithmic), mean %.2f",
+                             name.c_str(), matcher.getNumDisparities(), ratios[0] * matcher.getNumDisparities()));
     matcher.getLayerPrior(prior);
     if (pair.protocol == Pair::NO_TRUTH || prior.empty())
         return out.str();
@@ -206,7 +207,8 @@ inline String runtimeChart(const String& title, const std::vector<RuntimePair>& 
     if (!(high > 0))
         return String();
     const double bottom = std::floor(std::log10(low)), top = std::max(std::ceil(std::log10(high)), bottom + 1);
-    const int left = 60, height = 220, above = 50, step = 54, width = left + step * int(pairs.size()) + 10;
+    const int left = 60, height = 220, above = 50, step = 54,
+              width = std::max(left + step * int(pairs.size()) + 10, 460);
     const auto level = [&](double seconds) { return above + height * (top - std::log10(seconds)) / (top - bottom); };
 
     std::ostringstream out;

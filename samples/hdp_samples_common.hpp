@@ -266,26 +266,32 @@ inline double percent(const Mat& pixels, const Mat& mask)
 
 // ---- Pictures
 
-//! The map in colors, from blue (far) by green to orange (near); black where there is no disparity.
-inline Mat colorPicture(const Mat& disparity)
+//! The disparities that a map's colors are to tell apart: all of them but a few outliers
+inline cv::Vec2f colorRange(const Mat& disparity)
 {
-    const Mat known = knownPixels(disparity);
     std::vector<float> values;
     for (int y = 0; y < disparity.rows; y++)
         std::copy_if(disparity.ptr<float>(y), disparity.ptr<float>(y) + disparity.cols, std::back_inserter(values),
                      [](float d) { return d < NO_DISPARITY; });
     std::sort(values.begin(), values.end());
-    // A few outliers shall not take all the colors.
     const float low = values.empty() ? 0.f : values[values.size() / 100];
     const float high = values.empty() ? 1.f : std::max(values[values.size() - 1 - values.size() / 100], low + 1.f);
+    return cv::Vec2f(low, high);
+}
 
+//! The map in colors, from blue (far) by green to orange (near); black where there is no disparity.
+inline Mat colorPicture(const Mat& disparity, const cv::Vec2f& range)
+{
     // Both ends of the color map are left out: they are near black and red, which mean something else here.
+    const float low = range[0], high = range[1];
     Mat levels = cv::max(cv::min(disparity, high), low), picture;
     levels.convertTo(levels, CV_8U, 150. / (high - low), 20 - 150. / (high - low) * low);
     cv::applyColorMap(levels, picture, cv::COLORMAP_TURBO);
-    picture.setTo(cv::Scalar::all(0), ~known);
+    picture.setTo(cv::Scalar::all(0), ~knownPixels(disparity));
     return picture;
 }
+
+inline Mat colorPicture(const Mat& disparity) { return colorPicture(disparity, colorRange(disparity)); }
 
 } // namespace hdp_samples
 
