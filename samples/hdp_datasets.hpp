@@ -17,9 +17,9 @@
 #ifndef OPENCV_HDPSTEREO_SAMPLES_DATASETS_HPP
 #define OPENCV_HDPSTEREO_SAMPLES_DATASETS_HPP
 
-#include "opencv2/core/utils/filesystem.hpp"
-
 #include "hdp_samples_common.hpp"
+
+#include "opencv2/core/utils/filesystem.hpp"
 
 namespace hdp_samples {
 
