@@ -26,7 +26,7 @@ inline Mat nextLayer(const Mat& image)
     return next;
 }
 
-//! D_l of the true disparities: those of layer 0, in pixels of the layer, at the pixels that it keeps
+//! D_l of the true disparities: those of layer 0, in pixels of the layer, at one of the four pixels that become one
 inline Mat truthOfLayer(const Mat& truth, int layer)
 {
     Mat result = truth;

@@ -136,7 +136,7 @@ inline cv::Mat_<double> sampledMatrix(const Mat& truth, const Mat& upper, int nu
             const float here = truth.at<float>(y, x);
             if (!(here < NO_DISPARITY && above < NO_DISPARITY))
                 continue;
-            const int j = cvRound(here), i = cvRound(above);
+            const int j = int(std::floor(here)), i = cvRound(above);
             if (i >= 0 && i < matrix.rows && j >= 0 && j < matrix.cols)
                 matrix(i, j)++;
         }

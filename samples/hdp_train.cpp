@@ -174,8 +174,8 @@ static Table modelTable(const DisparityPredictionModel& model)
     return table;
 }
 
-//! Sampled offsets as bars and the mixture as a line, over a logarithmic scale
-static Mat distributionPicture(const Offsets& sampled, const DisparityPredictionModel& model, int layer)
+//! Sampled offsets of a layer as bars and their mixture, a model's only one, as a line, over a logarithmic scale
+static Mat distributionPicture(const Offsets& sampled, const DisparityPredictionModel& mixture, int layer)
 {
     const int width = 900, height = 320, left = 60, right = 20, top = 40, bottom = 40, lowestPower = -6;
     const int reach = 60; // offsets
@@ -202,7 +202,7 @@ static Mat distributionPicture(const Offsets& sampled, const DisparityPrediction
     }
     std::vector<Point> curve;
     for (int step = -10 * reach; step <= 10 * reach; step++)
-        curve.push_back(Point(cvRound(column(0.1 * step)), cvRound(row(model.density(layer, 0.1 * step)))));
+        curve.push_back(Point(cvRound(column(0.1 * step)), cvRound(row(mixture.density(0, 0.1 * step)))));
     polylines(picture, curve, false, Scalar(0, 0, 200), 2, LINE_AA);
     for (int offset = -reach; offset <= reach; offset += 10)
         putText(picture, format("%d", offset), Point(cvRound(column(offset)) - 8, height - 20), FONT_HERSHEY_SIMPLEX,
@@ -306,7 +306,7 @@ static void run(const CommandLineParser& parser)
         else
             for (int i = 0; i < 3; i++)
                 likelihoods.addNumber(NO_SCORE);
-        pictures.insert(pictures.begin(), distributionPicture(sampled, *mixture, 0));
+        pictures.insert(pictures.begin(), distributionPicture(sampled, *mixture, layer));
     }
     std::cout << toMarkdown(modelTable(*model)) << "\n" << toMarkdown(likelihoods) << std::endl;
     model->save(output);

@@ -85,15 +85,15 @@ void checkMaps(const std::vector<Mat>& maps, const std::vector<Mat>& uppers)
     }
 }
 
-//! A whole disparity, or -1 if it is unknown.
-int wholeDisparity(float disparity)
+//! Whether a disparity is known; throws if it is not possible.
+bool isKnown(float disparity)
 {
     const float limit = 32767;
     if (!(disparity >= 0 && std::isfinite(disparity)))
-        return -1;
+        return false;
     if (disparity > limit)
         CV_Error(Error::StsOutOfRange, "disparities and upperDisparities must be at most 32767");
-    return cvRound(disparity);
+    return true;
 }
 
 //! Offsets of the pixels of a map that are known in both layers
@@ -103,11 +103,10 @@ Histogram histogramOf(const Mat& map, const Mat& upper)
     for (int y = 0; y < map.rows; ++y)
         for (int x = 0; x < map.cols; ++x)
         {
-            const int disparity = wholeDisparity(map.at<float>(y, x));
-            const int above =
-                wholeDisparity(upper.at<float>(std::min(y / 2, upper.rows - 1), std::min(x / 2, upper.cols - 1)));
-            if (disparity >= 0 && above >= 0)
-                ++histogram[above - disparity / 2];
+            const float disparity = map.at<float>(y, x);
+            const float above = upper.at<float>(std::min(y / 2, upper.rows - 1), std::min(x / 2, upper.cols - 1));
+            if (isKnown(disparity) && isKnown(above))
+                ++histogram[cvRound(above) - (int)disparity / 2];
         }
     return histogram;
 }
@@ -181,12 +180,14 @@ double meanLogLikelihood(const GaussianMixture& mixture, const Histogram& histog
     return sum / countPixels(histogram);
 }
 
-const int trainingSamples = 4000; // of the histogram, for cv::ml::EM, which knows no weights
-const int restarts = 4;
+const int trainingSamples = 1500; // of the histogram, for cv::ml::EM, which knows no weights
+const int restarts = 3;
 
 // Below half a pixel, the densities at whole offsets do not add up to about 1 any more; and offsets that are all the
-// same would make a singular component.
+// same would make a singular component. Gross errors are many by chance at one offset, where a textureless surface of a
+// single scene was matched wrongly: that is no rule for other scenes, so the wider off, the broader a component is.
 const double minSigma = 0.5;
+const double minRelativeSigma = 0.25; // of the mean
 
 //! Quantiles of the histogram, each offset spread evenly over the pixel around it: no two samples are the same.
 Mat_<double> quantiles(const Histogram& histogram)
@@ -241,8 +242,10 @@ bool runEM(const Mat_<double>& samples, int components, bool nested, RNG& rng, G
     const Ptr<ml::EM> em = ml::EM::create();
     em->setClustersNumber(components);
     em->setCovarianceMatrixType(ml::EM::COV_MAT_DIAGONAL);
-    em->setTermCriteria(TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-6));
-    if (!em->trainE(samples, initialMeans, initialVariances))
+    em->setTermCriteria(TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-6));
+    // All three are given, or it would begin with cv::kmeans, which changes cv::theRNG().
+    const Mat_<double> initialWeights(1, components, 1. / components);
+    if (!em->trainE(samples, initialMeans, initialVariances, initialWeights))
         return false;
     const Mat_<double> means = em->getMeans(), weights = em->getWeights();
     std::vector<Mat> variances;
@@ -264,7 +267,8 @@ bool runEM(const Mat_<double>& samples, int components, bool nested, RNG& rng, G
         // Spreading the samples over a pixel has added its variance of 1/12.
         const double variance = variances[k].at<double>(0, 0) - 1. / 12;
         mixture.means.push_back(means(k));
-        mixture.sigmas.push_back(std::sqrt(std::max(variance, minSigma * minSigma)));
+        const double smallest = std::max(minSigma, minRelativeSigma * std::abs(means(k)));
+        mixture.sigmas.push_back(std::sqrt(std::max(variance, smallest * smallest)));
         mixture.weights.push_back(weights(k) / total);
         if (!std::isfinite(means(k)) || !std::isfinite(variance))
             return false;
@@ -361,7 +365,7 @@ public:
 
     void write(FileStorage& fs) const CV_OVERRIDE
     {
-        fs << "name" << getDefaultName() << "version" << fileVersion << "layers"
+        fs << "name" << getDefaultName() << "version" << fileVersion << "layerCount" << getNumLayers() << "layers"
            << "[";
         for (size_t l = 0; l < layers_.size(); ++l)
             fs << "{"
@@ -379,6 +383,9 @@ public:
             CV_Error(Error::StsParseError, format("version must be %d", (int)fileVersion));
         if (!layers.isSeq() || layers.size() > maxLayers)
             CV_Error(Error::StsParseError, format("layers must be a sequence of at most %d mixtures", (int)maxLayers));
+        // A file that ends between two layers is well-formed.
+        if (!fn["layerCount"].isInt() || (int)fn["layerCount"] != (int)layers.size())
+            CV_Error(Error::StsParseError, "layerCount must be the number of layers");
         std::vector<GaussianMixture> read;
         for (FileNodeIterator it = layers.begin(); it != layers.end(); ++it)
         {
@@ -425,14 +432,6 @@ private:
     std::vector<GaussianMixture> layers_;
 };
 
-template <size_t K>
-void addPublishedLayer(DisparityPredictionModel& model, const double (&means)[K], const double (&sigmas)[K],
-                       const double (&weights)[K])
-{
-    model.addLayer(std::vector<double>(means, means + K), std::vector<double>(sigmas, sigmas + K),
-                   std::vector<double>(weights, weights + K));
-}
-
 } // namespace
 
 void DisparityPredictionModel::countOffsets(InputArrayOfArrays disparities, InputArrayOfArrays upperDisparities,
@@ -458,35 +457,44 @@ Ptr<DisparityPredictionModel> DisparityPredictionModel::create() { return makePt
 
 Ptr<DisparityPredictionModel> DisparityPredictionModel::createPublished(int which)
 {
-    Ptr<DisparityPredictionModel> model = create();
-    if (which == PUBLISHED_LARGE)
+    // The mixtures of each model from layer 0 on: means, sigmas, weights
+    const struct
     {
-        const double means0[] = { -38.335031, 0.383928, 22.106222, 0.383928 };
-        const double sigmas0[] = { 19.879390, 0.629609, 26.036771, 0.629609 };
-        const double weights0[] = { 0.131236, 0.310989, 0.133314, 0.424460 };
-        const double means1[] = { 0.452982, -21.247403, 11.133451, 10.101522 };
-        const double sigmas1[] = { 0.617757, 9.580585, 14.423702, 0.604170 };
-        const double weights1[] = { 0.747561, 0.100479, 0.126690, 0.025270 };
-        const double means2[] = { 4.580204, 10.864041, -8.720563, 0.476397 };
-        const double sigmas2[] = { 1.036329, 4.002217, 4.461282, 0.637942 };
-        const double weights2[] = { 0.076437, 0.048733, 0.060785, 0.814045 };
-        addPublishedLayer(*model, means0, sigmas0, weights0);
-        addPublishedLayer(*model, means1, sigmas1, weights1);
-        addPublishedLayer(*model, means2, sigmas2, weights2);
-    }
-    else if (which == PUBLISHED_SMALL)
-    {
-        const double means0[] = { 1.049875, 0.176738, -5.205266 };
-        const double sigmas0[] = { 2.700242, 0.594091, 10.932382 };
-        const double weights0[] = { 0.123876, 0.705882, 0.170241 };
-        const double means1[] = { -0.838225, 0.174887 };
-        const double sigmas1[] = { 5.652754, 0.543740 };
-        const double weights1[] = { 0.218403, 0.781597 };
-        addPublishedLayer(*model, means0, sigmas0, weights0);
-        addPublishedLayer(*model, means1, sigmas1, weights1);
-    }
-    else
-        CV_Error(Error::StsBadArg, "which must be PUBLISHED_LARGE or PUBLISHED_SMALL");
+        int which;
+        GaussianMixture mixture;
+    } layers[] = {
+        { PUBLISHED_LARGE,
+          { { -38.335031, 0.383928, 22.106222, 0.383928 },
+            { 19.879390, 0.629609, 26.036771, 0.629609 },
+            { 0.131236, 0.310989, 0.133314, 0.424460 } } },
+        { PUBLISHED_LARGE,
+          { { 0.452982, -21.247403, 11.133451, 10.101522 },
+            { 0.617757, 9.580585, 14.423702, 0.604170 },
+            { 0.747561, 0.100479, 0.126690, 0.025270 } } },
+        { PUBLISHED_LARGE,
+          { { 4.580204, 10.864041, -8.720563, 0.476397 },
+            { 1.036329, 4.002217, 4.461282, 0.637942 },
+            { 0.076437, 0.048733, 0.060785, 0.814045 } } },
+        { PUBLISHED_SMALL,
+          { { 1.049875, 0.176738, -5.205266 }, { 2.700242, 0.594091, 10.932382 }, { 0.123876, 0.705882, 0.170241 } } },
+        { PUBLISHED_SMALL, { { -0.838225, 0.174887 }, { 5.652754, 0.543740 }, { 0.218403, 0.781597 } } },
+        { TRAINED_LARGE,
+          { { 0.334017, -4.058993, -39.345783, 23.142523, 35.609444 },
+            { 0.558355, 9.832439, 9.836446, 8.640952, 21.070784 },
+            { 0.819675, 0.102071, 0.047936, 0.023717, 0.006601 } } },
+        { TRAINED_LARGE, { { 0.410079, -9.927217 }, { 0.551247, 16.134939 }, { 0.835932, 0.164068 } } },
+        { TRAINED_SMALL, { { 0.404371, -2.709562 }, { 0.548158, 9.538234 }, { 0.849257, 0.150743 } } },
+        { TRAINED_SMALL,
+          { { 0.062015, 1.051294, 0.035577, -0.035201, -13.583288 },
+            { 0.500000, 0.500000, 6.395279, 1.618202, 3.395822 },
+            { 0.505480, 0.343118, 0.076103, 0.044941, 0.030358 } } },
+    };
+    const Ptr<DisparityPredictionModel> model = create();
+    for (const auto& layer : layers)
+        if (layer.which == which)
+            model->addLayer(layer.mixture.means, layer.mixture.sigmas, layer.mixture.weights);
+    if (model->empty())
+        CV_Error(Error::StsBadArg, "which must be PUBLISHED_LARGE, PUBLISHED_SMALL, TRAINED_LARGE or TRAINED_SMALL");
     return model;
 }
 
