@@ -13,7 +13,7 @@
 
 namespace hdp_samples {
 
-const int PICTURE_WIDTH = 420;
+const int PICTURE_WIDTH = 360;
 
 inline String base64(const std::vector<uchar>& bytes)
 {
@@ -42,7 +42,7 @@ inline String figure(const Mat& picture, const String& caption, const String& ex
                    0, interpolation);
     std::vector<uchar> bytes;
     cv::imencode(extension, shown, bytes,
-                 extension == ".jpg" ? std::vector<int>{ cv::IMWRITE_JPEG_QUALITY, 88 } : std::vector<int>());
+                 extension == ".jpg" ? std::vector<int>{ cv::IMWRITE_JPEG_QUALITY, 85 } : std::vector<int>());
     std::ostringstream out;
     out << "<figure><img width=\"" << shown.cols << "\" height=\"" << shown.rows << "\" alt=\"" << htmlText(caption)
         << "\" src=\"data:image/" << (extension == ".jpg" ? "jpeg" : "png") << ";base64," << base64(bytes)
@@ -195,19 +195,21 @@ struct RuntimePair
     double fullRange, predicted; // seconds
 };
 
-//! The paper's runtime figure for one tree: two bars a scene, seconds on a logarithmic axis, and the speed-up above.
+//! The paper's runtime figure for one tree: two bars a scene, seconds on a logarithmic axis, and the speed-up as circles
+//! on a linear one, whose top is the largest.
 inline String runtimeChart(const String& title, const std::vector<RuntimePair>& pairs)
 {
-    double low = std::numeric_limits<double>::max(), high = 0;
+    double low = std::numeric_limits<double>::max(), high = 0, fastest = 0;
     for (const RuntimePair& p : pairs)
     {
+        fastest = std::max(fastest, p.fullRange / p.predicted);
         low = std::min(low, std::min(p.fullRange, p.predicted));
         high = std::max(high, std::max(p.fullRange, p.predicted));
     }
     if (!(high > 0))
         return String();
     const double bottom = std::floor(std::log10(low)), top = std::max(std::ceil(std::log10(high)), bottom + 1);
-    const int left = 60, height = 220, above = 50, step = 54,
+    const int left = 60, height = 220, above = 56, step = 54,
               width = std::max(left + step * int(pairs.size()) + 10, 460);
     const auto level = [&](double seconds) { return above + height * (top - std::log10(seconds)) / (top - bottom); };
 
@@ -230,9 +232,10 @@ inline String runtimeChart(const String& title, const std::vector<RuntimePair>& 
                               "</title></rect>\n",
                               x + 18 * bar, level(seconds[bar]), above + height - level(seconds[bar]),
                               bar ? "hdp" : "plain", seconds[bar]);
-        out << cv::format("<circle cx=\"%.1f\" cy=\"38\" r=\"4\"/><text x=\"%.1f\" y=\"32\" text-anchor=\"middle\">"
-                          "%.1fx</text>\n",
-                          x + 17, x + 17, p.fullRange / p.predicted);
+        const double speedUp = p.fullRange / p.predicted, y = above + height * (1 - speedUp / fastest);
+        out << cv::format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\"/><text x=\"%.1f\" y=\"%.1f\" "
+                          "text-anchor=\"middle\">%.1fx</text>\n",
+                          x + 17, y, x + 17, y - 8, speedUp);
         out << cv::format("<text transform=\"translate(%.1f,%d) rotate(-45)\" text-anchor=\"end\">%s</text>\n", x + 20,
                           above + height + 14, htmlText(p.scene).c_str());
     }
@@ -251,9 +254,9 @@ inline String htmlPage(const String& title, const String& body)
            "td.best { font-weight: bold; }\n"
            ".scroll { overflow-x: auto; }\n"
            ".figures { display: flex; flex-wrap: wrap; gap: 12px; align-items: flex-start; }\n"
-           "figure { margin: 0; max-width: 420px; }\n"
+           "figure { margin: 0; max-width: 360px; }\n"
            "figcaption { font-size: 12px; color: #555; }\n"
-           ".chart { display: block; font-size: 11px; margin: 12px 0; }\n"
+           ".chart { display: inline-block; font-size: 11px; margin: 12px 0; }\n"
            ".chart .title { font-size: 14px; font-weight: bold; }\n"
            ".chart .grid { stroke: #ddd; }\n"
            ".chart .plain { fill: #9db4c8; }\n"
