@@ -259,6 +259,8 @@ static void run(const CommandLineParser& parser)
     const int maxComponents = getInteger(parser, "max-components", 1, 64);
 
     std::vector<TrainingScene> scenes = readScenes(parser);
+    if (!std::ofstream(output.c_str(), std::ios::app)) // before the work, not after it
+        fail("cannot write '" + output + "'");
     const bool hasHeldOut = scenes.back().isHeldOut;
     std::cout << "trained on " << listNames(scenes, false) << "\nheld out   " << listNames(scenes, true) << "\n\n";
 
@@ -310,6 +312,7 @@ static void run(const CommandLineParser& parser)
     }
     std::cout << toMarkdown(modelTable(*model)) << "\n" << toMarkdown(likelihoods) << std::endl;
     model->save(output);
+    DisparityPredictionModel::load(output); // save() does not notice a full disk
     std::cout << "written " << output << std::endl;
     if (!picture.empty())
     {
