@@ -237,6 +237,8 @@ public:
         checkImages(left, right);
         const LayerSettings settings = resolve(left.size());
         clock_.restart();
+        forest_.trees.clear(); // what getForest() and getLayerPrior() give is of this pair, or nothing
+        prior_.clear();
         searchRatios_.assign(settings.layers, 0);
 
         std::vector<LayerImages> images;
@@ -312,6 +314,26 @@ public:
     void setUseNonLocalRefinement(bool value) CV_OVERRIDE { p_.useNonLocalRefinement = value; }
 
     void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE { ratios = searchRatios_; }
+
+    void getForest(OutputArray treesArray, OutputArray intervalsArray) const CV_OVERRIDE
+    {
+        Mat trees(forest_.links.size(), CV_32S, Scalar(-1)), intervals(trees.size(), CV_16UC2);
+        TreeWalk walk;
+        for (size_t t = 0; t < forest_.trees.size(); ++t)
+        {
+            const DisparityTree& tree = forest_.trees[t];
+            walkTree(forest_, tree, walk);
+            for (int i = 0; i < tree.size; ++i)
+            {
+                trees.ptr<int>()[walk.pixels[i]] = (int)t;
+                intervals.ptr<DisparityInterval>()[walk.pixels[i]] = tree.interval;
+            }
+        }
+        trees.copyTo(treesArray);
+        intervals.copyTo(intervalsArray);
+    }
+
+    void getLayerPrior(std::vector<double>& prior) const CV_OVERRIDE { prior = prior_; }
 
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
     {

@@ -251,6 +251,20 @@ public:
      */
     CV_WRAP virtual void getSearchRatios(CV_OUT std::vector<double>& ratios) const = 0;
 
+    /** @brief The disparity prediction forest of the last compute() (section 3.2), at the finest layer that has one.
+    @param trees Receives the number of each pixel's tree, from 0: CV_32SC1 of the layer's size. Empty before the first
+    compute().
+    @param intervals Receives the first and the last candidate that the pixel's tree searched, TreeIntv, in pixels of
+    the layer above the smallest disparity: CV_16UC2 of the same size.
+     */
+    CV_WRAP virtual void getForest(OutputArray trees, OutputArray intervals) const = 0;
+
+    /** @brief \f$P(D_l)\f$ that the intervals of the last compute() were predicted with (section 3.1), at the finest
+    layer.
+    @param prior Receives a number >= 0 per candidate, up to a factor; none if nothing was predicted.
+     */
+    CV_WRAP virtual void getLayerPrior(CV_OUT std::vector<double>& prior) const = 0;
+
     /** @brief Wall time of each stage in the last compute(), the layers together.
     @param stages Receives the names of the stages in the order in which they first ran.
     @param milliseconds Receives a time per stage.
