@@ -488,7 +488,7 @@ private:
         if (!settings.model)
             settings.model = DisparityPredictionModel::createPublished(
                 isLarge ? DisparityPredictionModel::PUBLISHED_LARGE : DisparityPredictionModel::PUBLISHED_SMALL);
-        if (settings.model->getNumLayers() < settings.layers - 1)
+        if (p_.aggregation == AGGREGATION_TREES && settings.model->getNumLayers() < settings.layers - 1)
             CV_Error(Error::StsOutOfRange, format("predictionModel must have numLayers - 1 = %d layers, not %d",
                                                   settings.layers - 1, settings.model->getNumLayers()));
         settings.delta0 = p_.delta0 != AUTO ? p_.delta0 : isLarge ? 0.064 : 0.004;
