@@ -561,7 +561,7 @@ private:
             swap(winner_, disparity_);
             for (int pass = 0; settings.medianSize > 0 && pass < p_.disparityMedianPasses; ++pass)
             {
-                medianDisparity(disparity_, settings.medianSize, winner_);
+                medianDisparity(disparity_, settings.medianSize, medianStripes_, winner_);
                 swap(winner_, disparity_);
             }
         });
@@ -640,7 +640,7 @@ private:
         {
             if (pass > 0)
                 clock_.run("disparity median", [&] {
-                    medianDisparity(winner_, secondPassMedian, filtered_);
+                    medianDisparity(winner_, secondPassMedian, medianStripes_, filtered_);
                     halveDisparity(filtered_, disparity_);
                 });
             clock_.run("disparity prediction",
@@ -709,7 +709,7 @@ private:
     MatchingCost cost_;
     AggregationBuffers aggregation_;
     ScanlineBuffers scanlines_;
-    Mat winner_, filtered_, disparity_, stable_, speckles_;
+    Mat winner_, filtered_, medianStripes_, disparity_, stable_, speckles_;
 };
 
 } // namespace

@@ -41,8 +41,9 @@ struct ScanlineProblem
 //! Memory of one stripe
 struct ScanlineScratch
 {
-    std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel
-    std::vector<uchar> priors, intoRight, intoLeft, intoBelow;
+    std::vector<uchar> costs, fromRight, fromAbove;            // CandidateWindow::candidates per pixel
+    std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // per pixel of the layer above
+    std::vector<short> rises, slopes;                          // of the winners of some rows
 };
 
 struct ScanlineBuffers

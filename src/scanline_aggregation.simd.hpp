@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "scanline_aggregation.hpp"
+#include "vectorized.hpp"
 #include <cstring>
 
 namespace cv {
@@ -50,6 +51,8 @@ public:
         s_.intoRight.resize((size_t)upperWidth_ * Window::candidates);
         s_.intoLeft.resize((size_t)upperWidth_ * Window::candidates);
         s_.intoBelow.resize((size_t)upperWidth_ * Window::candidates);
+        s_.rises.resize((size_t)groups * width_);
+        s_.slopes.resize((size_t)groups * width_);
         preparePriorTable();
         prepareOrderTable();
     }
@@ -339,14 +342,41 @@ private:
 
             unsigned lowest[groups];
             sum.findEqual(sum.minimum(), lowest);
-            uchar sums[lanes];
-            sum.store(sums);
+            uchar sums[lanes + 2]; // one more on each side to read
+            sum.store(sums + 1);
             for (int r = 0; r < groups; ++r)
             {
                 const int x = t - 2 * r;
                 if (x >= 0 && x < width_ && rows[r])
-                    rows[r][x] = winner(windows_[upperColumn(x)], sums + r * 16, firstBit(lowest[r]));
+                    takeWinner(windows_[upperColumn(x)], sums + 1 + r * 16, firstBit(lowest[r]), rows[r][x],
+                               s_.rises[r * width_ + x], s_.slopes[r * width_ + x]);
             }
+        }
+        for (int r = 0; r < groups; ++r)
+            if (rows[r])
+                addSubpixel(&s_.rises[r * width_], &s_.slopes[r * width_], rows[r]);
+    }
+
+    //! The winner in whole pixels, and the two lines of opposite slope through its sum and those beside it: their slope
+    //! and how much the sum before is above the one after.
+    static void takeWinner(const Window& window, const uchar* sums, int lane, ushort& disparity, short& rise,
+                           short& slope)
+    {
+        disparity =
+            (ushort)((window.first[lane / Window::runLength] + lane % Window::runLength) * ScanlineProblem::scale);
+        const int inner = window.isContiguous() ? 0x7ffe : 0x7e7e; // lanes with a candidate on each side
+        const int before = sums[lane - 1], after = sums[lane + 1];
+        rise = (short)((before - after) * (inner >> lane & 1));
+        slope = (short)std::max(std::max(before, after) - sums[lane], 1);
+    }
+
+    void addSubpixel(const short* rises, const short* slopes, ushort* disparity) const
+    {
+        const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers, rounded to the nearest
+        HDP_VECTORIZED for (int x = 0; x < width_; ++x)
+        {
+            const float offset = (float)rises[x] * (ScanlineProblem::scale / 2) / (float)slopes[x];
+            disparity[x] = (ushort)(disparity[x] + (int)((offset + wholes) - wholes));
         }
     }
 
@@ -360,23 +390,6 @@ private:
             ++bit;
         return bit;
 #endif
-    }
-
-    static ushort winner(const Window& window, const uchar* sums, int lane)
-    {
-        const int run = lane / Window::runLength;
-        int value = (window.first[run] + lane % Window::runLength) * ScanlineProblem::scale;
-        const bool isEnd = lane == 0 || lane == Window::candidates - 1 ||
-                           (!window.isContiguous() && (lane == Window::runLength - 1 || lane == Window::runLength));
-        if (!isEnd)
-        {
-            // Two lines of opposite slope through the three sums
-            const int before = sums[lane - 1], after = sums[lane + 1];
-            const int slope = std::max(before, after) - sums[lane];
-            if (slope > 0)
-                value += cvRound((float)((before - after) * (ScanlineProblem::scale / 2)) / (float)slope);
-        }
-        return (ushort)value;
     }
 
     enum
