@@ -521,17 +521,22 @@ private:
                        std::vector<LayerImages>& images)
     {
         const bool census = p_.matchingCost == COST_CENSUS;
-        shiftColumns(right, p_.minDisparity, shiftedRight_);
+        Mat shifted = right;
+        if (p_.minDisparity != 0)
+        {
+            shiftColumns(right, p_.minDisparity, shiftedRight_);
+            shifted = shiftedRight_;
+        }
         buildPyramid(left, settings.layers, leftPyramid_);
         if (census)
         {
             greyLevels(left, leftGrey_);
-            greyLevels(shiftedRight_, rightGrey_);
+            greyLevels(shifted, rightGrey_);
             buildPyramid(leftGrey_, settings.layers, leftGreyPyramid_);
             buildPyramid(rightGrey_, settings.layers, rightPyramid_);
         }
         else
-            buildPyramid(shiftedRight_, settings.layers, rightPyramid_);
+            buildPyramid(shifted, settings.layers, rightPyramid_);
         images.resize(settings.layers);
         for (int layer = 0; layer < settings.layers; ++layer)
         {
@@ -539,7 +544,8 @@ private:
             images[layer].left = census ? leftGreyPyramid_[layer] : leftPyramid_[layer];
             images[layer].right = rightPyramid_[layer];
         }
-        leftPyramid_[0].release(); // of the caller
+        leftPyramid_[0].release(); // the caller's
+        rightPyramid_[0].release();
     }
 
     //! Section 3: disparity_, that of the layer above, becomes that of this layer.
