@@ -104,7 +104,8 @@ Ptr<TreeStrategy> createTree(int tree)
     return tree == MST ? createMinimumSpanningTree() : tree == ST ? createSegmentTree() : createRandomTree();
 }
 
-CV_ENUM(Preset, HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE)
+CV_ENUM(Preset, HDPTreeMatcher::PRESET_ULTRAFAST, HDPTreeMatcher::PRESET_FAST, HDPTreeMatcher::PRESET_QUALITY,
+        HDPTreeMatcher::PRESET_TREE, HDPTreeMatcher::PRESET_PAPER)
 
 typedef tuple<Size, Preset> PresetParams;
 typedef TestBaseWithParam<PresetParams> Perf_HDPTreeMatcher_Preset;

@@ -109,8 +109,11 @@ struct Preset
     const char* name;
     int value;
 };
-const Preset PRESETS[] = { { "paper", cv::stereo::HDPTreeMatcher::PRESET_PAPER },
-                           { "tree", cv::stereo::HDPTreeMatcher::PRESET_TREE } };
+const Preset PRESETS[] = { { "ultrafast", cv::stereo::HDPTreeMatcher::PRESET_ULTRAFAST },
+                           { "fast", cv::stereo::HDPTreeMatcher::PRESET_FAST },
+                           { "quality", cv::stereo::HDPTreeMatcher::PRESET_QUALITY },
+                           { "tree", cv::stereo::HDPTreeMatcher::PRESET_TREE },
+                           { "paper", cv::stereo::HDPTreeMatcher::PRESET_PAPER } };
 
 inline int getPreset(const cv::CommandLineParser& parser, const String& option)
 {
@@ -202,11 +205,10 @@ inline void writeImage(const String& path, const Mat& image)
         fail("cannot write '" + path + "'");
 }
 
-//! Reads a disparity map: 8-bit image (disparity * 1), 16-bit image (disparity * 256), both with 0 where there is no
-//! disparity, or PFM (not finite where there is none). A scale other than 0 takes the place of 1 and 256.
-inline Mat readDisparity(const String& path, double scale = 0)
+//! The disparity map of an image read from the path: 8 bit (disparity * 1), 16 bit (disparity * 256), both with 0 where
+//! there is no disparity, or PFM (not finite where there is none). A scale other than 0 takes the place of 1 and 256.
+inline Mat toDisparity(const Mat& image, const String& path, double scale = 0)
 {
-    const Mat image = readImage(path, cv::IMREAD_UNCHANGED);
     if (image.channels() != 1)
         fail("'" + path + "' is a color image, not a disparity map");
     const bool isFloat = image.depth() == CV_32F;
@@ -219,6 +221,11 @@ inline Mat readDisparity(const String& path, double scale = 0)
     const Mat known = isFloat ? Mat(cv::abs(image) <= std::numeric_limits<float>::max()) : Mat(image != 0);
     disparity.setTo(NO_DISPARITY, ~known);
     return disparity;
+}
+
+inline Mat readDisparity(const String& path, double scale = 0)
+{
+    return toDisparity(readImage(path, cv::IMREAD_UNCHANGED), path, scale);
 }
 
 //! The rectified pair given as @left and @right, CV_8UC3.
@@ -298,10 +305,14 @@ inline Mat toPixels(const Mat& disparity16, int minDisparity)
     return disparity;
 }
 
+//! How many disparities to search in a pair that nothing is known of
+inline int defaultNumDisparities(int width) { return std::max(int(cv::alignSize(width / 5, 16)), 16); }
+
 // ---- Errors
 
-//! Pixels of known truth that the right image shows too: those where the right truth, at x - floor(d), is equal.
-inline Mat nonOccludedPixels(const Mat& truth, const Mat& rightTruth)
+//! Pixels of known truth that the right image shows too: those where the right truth, at x - floor(d), is equal, or
+//! differs by no more than the tolerance.
+inline Mat nonOccludedPixels(const Mat& truth, const Mat& rightTruth, double tolerance = 0)
 {
     Mat mask = Mat::zeros(truth.size(), CV_8U);
     for (int y = 0; y < truth.rows; y++)
@@ -310,7 +321,7 @@ inline Mat nonOccludedPixels(const Mat& truth, const Mat& rightTruth)
         {
             const float d = truth.at<float>(y, x);
             const float xr = d < NO_DISPARITY ? float(x) - std::floor(d) : -1.f;
-            if (xr >= 0 && xr < float(truth.cols) && rightTruth.at<float>(y, int(xr)) == d)
+            if (xr >= 0 && xr < float(truth.cols) && std::abs(rightTruth.at<float>(y, int(xr)) - d) <= tolerance)
                 mask.at<uchar>(y, x) = 255;
         }
     }
@@ -368,26 +379,32 @@ inline Truth readTruth(const cv::CommandLineParser& parser, cv::Size size)
 
 // ---- Pictures
 
-//! The map in colors, from blue (far) by green to orange (near); black where there is no disparity.
-inline Mat colorPicture(const Mat& disparity)
+//! The disparities that a map's colors are to tell apart: all of them but a few outliers
+inline cv::Vec2f colorRange(const Mat& disparity)
 {
-    const Mat known = knownPixels(disparity);
     std::vector<float> values;
     for (int y = 0; y < disparity.rows; y++)
         std::copy_if(disparity.ptr<float>(y), disparity.ptr<float>(y) + disparity.cols, std::back_inserter(values),
                      [](float d) { return d < NO_DISPARITY; });
     std::sort(values.begin(), values.end());
-    // A few outliers shall not take all the colors.
     const float low = values.empty() ? 0.f : values[values.size() / 100];
     const float high = values.empty() ? 1.f : std::max(values[values.size() - 1 - values.size() / 100], low + 1.f);
+    return cv::Vec2f(low, high);
+}
 
+//! The map in colors, from blue (far) by green to orange (near); black where there is no disparity.
+inline Mat colorPicture(const Mat& disparity, const cv::Vec2f& range)
+{
     // Both ends of the color map are left out: they are near black and red, which mean something else here.
+    const float low = range[0], high = range[1];
     Mat levels = cv::max(cv::min(disparity, high), low), picture;
     levels.convertTo(levels, CV_8U, 150. / (high - low), 20 - 150. / (high - low) * low);
     cv::applyColorMap(levels, picture, cv::COLORMAP_TURBO);
-    picture.setTo(cv::Scalar::all(0), ~known);
+    picture.setTo(cv::Scalar::all(0), ~knownPixels(disparity));
     return picture;
 }
+
+inline Mat colorPicture(const Mat& disparity) { return colorPicture(disparity, colorRange(disparity)); }
 
 } // namespace hdp_samples
 

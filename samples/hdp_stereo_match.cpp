@@ -20,7 +20,7 @@ static const char* const KEYS =
     "{help h ?         |       | print this and exit }"
     "{@left            |       | left image of a rectified pair }"
     "{@right           |       | right image }"
-    "{preset           | paper | set of parameters: paper, or tree (more accurate and faster) }"
+    "{preset           | fast  | set of parameters: ultrafast, fast, quality, tree, or paper (the paper's tables) }"
     "{tree             | mst   | spanning tree: mst (minimum), st (segment) or rt (random) }"
     "{no-prediction    |       | the plain tree algorithm over the full range }"
     "{median-prefilter |       | edge weights from a 3 x 3 median of the image }"

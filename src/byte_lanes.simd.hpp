@@ -58,6 +58,8 @@ struct ByteLanes
     ByteLanes operator+(ByteLanes b) const { return of(_mm256_adds_epu8(v, b.v)); } // saturated
     ByteLanes operator-(ByteLanes b) const { return of(_mm256_subs_epu8(v, b.v)); } // saturated
     ByteLanes max(ByteLanes b) const { return of(_mm256_max_epu8(v, b.v)); }
+    ByteLanes min(ByteLanes b) const { return of(_mm256_min_epu8(v, b.v)); }
+    ByteLanes quarter() const { return of(_mm256_and_si256(_mm256_srli_epi16(v, 2), _mm256_set1_epi8(63))); }
     //! Lane i receives lane i - 1, the first one 0.
     ByteLanes toNext() const { return of(_mm256_slli_si256(v, 1)); }
     //! Lane i receives lane i + 1, the last one 0.
@@ -127,6 +129,8 @@ struct ByteLanes
     ByteLanes operator+(ByteLanes b) const { return of(_mm_adds_epu8(v, b.v)); }
     ByteLanes operator-(ByteLanes b) const { return of(_mm_subs_epu8(v, b.v)); }
     ByteLanes max(ByteLanes b) const { return of(_mm_max_epu8(v, b.v)); }
+    ByteLanes min(ByteLanes b) const { return of(_mm_min_epu8(v, b.v)); }
+    ByteLanes quarter() const { return of(_mm_and_si128(_mm_srli_epi16(v, 2), _mm_set1_epi8(63))); }
     ByteLanes toNext() const { return of(_mm_slli_si128(v, 1)); }
     ByteLanes toPrevious() const { return of(_mm_srli_si128(v, 1)); }
     ByteLanes permute(ByteLanes order) const
@@ -214,6 +218,14 @@ struct ByteLanes
     ByteLanes max(const ByteLanes& b) const
     {
         return each([&](int i) { return std::max(v[i], b.v[i]); });
+    }
+    ByteLanes min(const ByteLanes& b) const
+    {
+        return each([&](int i) { return std::min(v[i], b.v[i]); });
+    }
+    ByteLanes quarter() const
+    {
+        return each([&](int i) { return v[i] / 4; });
     }
     ByteLanes toNext() const
     {

@@ -73,6 +73,26 @@ void predictWindows(const Mat& upper, int scale, int numDisparities, Mat& smalle
     });
 }
 
+void halveDisparity(const Mat& disparity, Mat& upper)
+{
+    upper.create(disparity.rows / 2, disparity.cols / 2, CV_16U);
+    parallel_for_(Range(0, upper.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const ushort* above = disparity.ptr<ushort>(2 * y);
+            const ushort* below = disparity.ptr<ushort>(2 * y + 1);
+            ushort* middle = upper.ptr<ushort>(y);
+            for (int x = 0; x < upper.cols; ++x)
+            {
+                const int a = above[2 * x], b = above[2 * x + 1], c = below[2 * x], d = below[2 * x + 1];
+                const int least = std::min(std::min(a, b), std::min(c, d));
+                const int most = std::max(std::max(a, b), std::max(c, d));
+                middle[x] = (ushort)((a + b + c + d - least - most) / 4);
+            }
+        }
+    });
+}
+
 } // namespace hdp
 } // namespace stereo
 } // namespace cv

@@ -38,6 +38,10 @@ CandidateWindow::candidates.
 CV_EXPORTS void predictWindows(const Mat& upper, int scale, int numDisparities, Mat& smallest, Mat& largest,
                                Mat& windows);
 
+//! Disparities of a layer as the layer above would have them: half the mean of the middle two of 2 x 2 pixels. For a
+//! second pass over a layer, around the disparities of the first. disparity and upper: CV_16UC1, times the same scale.
+CV_EXPORTS void halveDisparity(const Mat& disparity, Mat& upper);
+
 } // namespace hdp
 } // namespace stereo
 } // namespace cv

@@ -11,16 +11,18 @@ namespace hdp {
 namespace {
 
 //! cv::medianBlur in horizontal stripes side by side; each stripe sees its neighbours' rows.
-void medianBlurStripes(const Mat& image, int size, Mat& filtered)
+void medianBlurStripes(const Mat& image, int size, Mat& stripesBuffer, Mat& filtered)
 {
     const int radius = size / 2, stripes = std::max(1, std::min(16, image.rows / (4 * size)));
     filtered.create(image.size(), image.type());
+    stripesBuffer.create(image.rows + 2 * radius * stripes, image.cols, image.type());
     parallel_for_(Range(0, stripes), [&](const Range& range) {
         for (int i = range.start; i < range.end; ++i)
         {
             const Range rows(image.rows * i / stripes, image.rows * (i + 1) / stripes);
             const Range seen(std::max(rows.start - radius, 0), std::min(rows.end + radius, image.rows));
-            Mat stripe;
+            const int begin = seen.start + 2 * radius * i;
+            Mat stripe = stripesBuffer.rowRange(begin, begin + seen.size());
             medianBlur(image.rowRange(seen), stripe, size);
             stripe.rowRange(rows.start - seen.start, rows.end - seen.start).copyTo(filtered.rowRange(rows));
         }
@@ -69,22 +71,22 @@ void checkLeftRight(const Mat& disparity, int scale, int maxDiff, int invalid, c
 
 } // namespace
 
-void medianDisparity(const Mat& disparity, int size, Mat& filtered)
+void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered)
 {
     if (size <= 5)
-        return medianBlurStripes(disparity, size, filtered);
+        return medianBlurStripes(disparity, size, stripes, filtered);
     // cv::medianBlur takes large windows in 8 bit only. A median commutes with monotone functions, and a value is the
     // sum of its slices min(max(value - 255 k, 0), 255), so it is the sum of the slices' medians.
     double largest;
     minMaxLoc(disparity, 0, &largest);
     Mat slice, median;
     disparity.convertTo(slice, CV_8U);
-    medianBlurStripes(slice, size, median);
+    medianBlurStripes(slice, size, stripes, median);
     median.convertTo(filtered, CV_16U);
     for (int below = 255; below < largest; below += 255)
     {
         disparity.convertTo(slice, CV_8U, 1, -below);
-        medianBlurStripes(slice, size, median);
+        medianBlurStripes(slice, size, stripes, median);
         add(filtered, median, filtered, noArray(), CV_16U);
     }
 }

@@ -10,8 +10,8 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
-//! Median of size x size pixels, borders replicated. disparity: CV_16UC1.
-CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& filtered);
+//! Median of size x size pixels, borders replicated. disparity: CV_16UC1; stripes: memory to work in.
+CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered);
 
 /** The disparities of a layer from those of the layer above: bilinear inside a surface, its pixel's own at its border.
 @param upper CV_16UC1, times scale.

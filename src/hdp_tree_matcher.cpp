@@ -29,6 +29,7 @@ const int maxBlockSize = 31;
 const int maxMedianSize = 31;
 const int maxLayers = 16;
 const int mostTopDisparities = 64;
+const int secondPassMedian = 5;
 
 // Of the non-local refinement: a stable disparity's largest difference in the left-right check, and gamma, relative to
 // that of the cost; with the same gamma the refinement blurs slanted surfaces.
@@ -79,6 +80,7 @@ struct Parameters
     int smallPenalty = 12;
     int largePenalty = 50;
     int finestLayer = 0;
+    int scanlinePasses = 1;
     bool useNonLocalRefinement = false;
 
     void setMinDisparity(int value) { minDisparity = value; }
@@ -172,6 +174,11 @@ struct Parameters
         finestLayer = checked(value, value >= 0 && value < maxLayers, "finestLayer", "in 0..15");
     }
 
+    void setScanlinePasses(int value)
+    {
+        scanlinePasses = checked(value, value >= 1 && value <= 4, "scanlinePasses", "in 1..4");
+    }
+
     static int checkedPenalty(int value, const char* name)
     {
         return checked(value, value >= 0 && value <= ScanlinePenalties::largest, name, "in 0..100");
@@ -230,6 +237,8 @@ public:
         checkImages(left, right);
         const LayerSettings settings = resolve(left.size());
         clock_.restart();
+        forest_.trees.clear(); // what getForest() and getLayerPrior() give is of this pair, or nothing
+        prior_.clear();
         searchRatios_.assign(settings.layers, 0);
 
         std::vector<LayerImages> images;
@@ -299,10 +308,32 @@ public:
     void setLargePenalty(int value) CV_OVERRIDE { p_.setLargePenalty(value); }
     int getFinestLayer() const CV_OVERRIDE { return p_.finestLayer; }
     void setFinestLayer(int value) CV_OVERRIDE { p_.setFinestLayer(value); }
+    int getScanlinePasses() const CV_OVERRIDE { return p_.scanlinePasses; }
+    void setScanlinePasses(int value) CV_OVERRIDE { p_.setScanlinePasses(value); }
     bool getUseNonLocalRefinement() const CV_OVERRIDE { return p_.useNonLocalRefinement; }
     void setUseNonLocalRefinement(bool value) CV_OVERRIDE { p_.useNonLocalRefinement = value; }
 
     void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE { ratios = searchRatios_; }
+
+    void getForest(OutputArray treesArray, OutputArray intervalsArray) const CV_OVERRIDE
+    {
+        Mat trees(forest_.links.size(), CV_32S, Scalar(-1)), intervals(trees.size(), CV_16UC2);
+        TreeWalk walk;
+        for (size_t t = 0; t < forest_.trees.size(); ++t)
+        {
+            const DisparityTree& tree = forest_.trees[t];
+            walkTree(forest_, tree, walk);
+            for (int i = 0; i < tree.size; ++i)
+            {
+                trees.ptr<int>()[walk.pixels[i]] = (int)t;
+                intervals.ptr<DisparityInterval>()[walk.pixels[i]] = tree.interval;
+            }
+        }
+        trees.copyTo(treesArray);
+        intervals.copyTo(intervalsArray);
+    }
+
+    void getLayerPrior(std::vector<double>& prior) const CV_OVERRIDE { prior = prior_; }
 
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
     {
@@ -342,6 +373,7 @@ public:
            << "smallPenalty" << p_.smallPenalty
            << "largePenalty" << p_.largePenalty
            << "finestLayer" << p_.finestLayer
+           << "scanlinePasses" << p_.scanlinePasses
            << "useNonLocalRefinement" << (int)p_.useNonLocalRefinement;
         // clang-format on
         fs << "treeStrategy"
@@ -388,6 +420,7 @@ public:
         readNumber<int>(fn, "smallPenalty", [&](int value) { p.setSmallPenalty(value); });
         readNumber<int>(fn, "largePenalty", [&](int value) { p.setLargePenalty(value); });
         readNumber<int>(fn, "finestLayer", [&](int value) { p.setFinestLayer(value); });
+        readNumber<int>(fn, "scanlinePasses", [&](int value) { p.setScanlinePasses(value); });
         readNumber<int>(fn, "useNonLocalRefinement", [&](int value) { p.useNonLocalRefinement = value != 0; });
         p.treeStrategy = readStrategy(fn["treeStrategy"]);
         if (!fn["predictionModel"].empty())
@@ -488,17 +521,22 @@ private:
                        std::vector<LayerImages>& images)
     {
         const bool census = p_.matchingCost == COST_CENSUS;
-        shiftColumns(right, p_.minDisparity, shiftedRight_);
+        Mat shifted = right;
+        if (p_.minDisparity != 0)
+        {
+            shiftColumns(right, p_.minDisparity, shiftedRight_);
+            shifted = shiftedRight_;
+        }
         buildPyramid(left, settings.layers, leftPyramid_);
         if (census)
         {
             greyLevels(left, leftGrey_);
-            greyLevels(shiftedRight_, rightGrey_);
+            greyLevels(shifted, rightGrey_);
             buildPyramid(leftGrey_, settings.layers, leftGreyPyramid_);
             buildPyramid(rightGrey_, settings.layers, rightPyramid_);
         }
         else
-            buildPyramid(shiftedRight_, settings.layers, rightPyramid_);
+            buildPyramid(shifted, settings.layers, rightPyramid_);
         images.resize(settings.layers);
         for (int layer = 0; layer < settings.layers; ++layer)
         {
@@ -506,7 +544,8 @@ private:
             images[layer].left = census ? leftGreyPyramid_[layer] : leftPyramid_[layer];
             images[layer].right = rightPyramid_[layer];
         }
-        leftPyramid_[0].release(); // of the caller
+        leftPyramid_[0].release(); // the caller's
+        rightPyramid_[0].release();
     }
 
     //! Section 3: disparity_, that of the layer above, becomes that of this layer.
@@ -528,7 +567,7 @@ private:
             swap(winner_, disparity_);
             for (int pass = 0; settings.medianSize > 0 && pass < p_.disparityMedianPasses; ++pass)
             {
-                medianDisparity(disparity_, settings.medianSize, winner_);
+                medianDisparity(disparity_, settings.medianSize, medianStripes_, winner_);
                 swap(winner_, disparity_);
             }
         });
@@ -549,10 +588,10 @@ private:
             if (p_.disparityPrior == PRIOR_SUPPORT_POINTS)
                 clock_.run("support points", [&] {
                     Mat left = images.left, right = images.right;
-                    if (left.depth() != CV_8U) // grey levels in quarters
+                    if (left.depth() != CV_8U) // greyLevels()
                     {
-                        left.convertTo(left, CV_8U, 0.25);
-                        right.convertTo(right, CV_8U, 0.25);
+                        left.convertTo(left, CV_8U, 1. / greyScale);
+                        right.convertTo(right, CV_8U, 1. / greyScale);
                     }
                     findSupportPoints(left, right, disparities, supportPoints_, points_);
                     disparityHistogram(points_, disparities, prior_);
@@ -597,18 +636,27 @@ private:
         refineNonLocal(forest_, disparity_, settings.scale, stable_, p_.gamma * refinementGamma, aggregation_, winner_);
     }
 
-    //! Predicted windows instead of trees
+    //! Predicted windows instead of trees. Each pass but the first takes its windows from the disparities of the one
+    //! before, and trusts them more than those of the layer above.
     void aggregateScanlines(int layer, const LayerImages& images, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
-        clock_.run("disparity prediction", [&] {
-            predictWindows(disparity_, settings.scale, disparities, smallest_, largest_, windows_);
-            searchRatios_[layer] = std::min<double>(CandidateWindow::candidates, disparities) / disparities;
-        });
-        clock_.run("cost aggregation", [&] {
-            const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty };
-            hdp::aggregateScanlines(cost_, images.left.size(), disparities, windows_, penalties, scanlines_, winner_);
-        });
+        searchRatios_[layer] = std::min<double>(CandidateWindow::candidates, disparities) / disparities;
+        for (int pass = 0; pass < p_.scanlinePasses; ++pass)
+        {
+            if (pass > 0)
+                clock_.run("disparity median", [&] {
+                    medianDisparity(winner_, secondPassMedian, medianStripes_, filtered_);
+                    halveDisparity(filtered_, disparity_);
+                });
+            clock_.run("disparity prediction",
+                       [&] { predictWindows(disparity_, settings.scale, disparities, smallest_, largest_, windows_); });
+            clock_.run("cost aggregation", [&] {
+                const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty, pass == 0 ? 1 : 2 };
+                hdp::aggregateScanlines(cost_, images.left.size(), disparities, windows_, penalties, scanlines_,
+                                        winner_);
+            });
+        }
     }
 
     //! From candidates of the finest layer to what cv::StereoMatcher promises.
@@ -667,7 +715,7 @@ private:
     MatchingCost cost_;
     AggregationBuffers aggregation_;
     ScanlineBuffers scanlines_;
-    Mat winner_, disparity_, stable_, speckles_;
+    Mat winner_, filtered_, medianStripes_, disparity_, stable_, speckles_;
 };
 
 } // namespace
@@ -703,6 +751,7 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities,
     case PRESET_QUALITY:
         parameters.setAggregation(AGGREGATION_SCANLINES);
         parameters.setNumLayers(HDPTreeMatcher::AUTO);
+        parameters.setScanlinePasses(2);
         parameters.setDisparityMedianPasses(2);
         break;
     }

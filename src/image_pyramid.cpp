@@ -57,10 +57,11 @@ void greyLevels(const Mat& image, Mat& grey)
             ushort* level = grey.ptr<ushort>(y);
             if (channels == 1)
                 for (int x = 0; x < image.cols; ++x)
-                    level[x] = (ushort)(pixel[x] * 4);
+                    level[x] = (ushort)(pixel[x] * greyScale);
             else
                 for (int x = 0; x < image.cols; ++x, pixel += 3)
-                    level[x] = (ushort)((7471 * pixel[0] + 38470 * pixel[1] + 19595 * pixel[2] + 8192) >> 14);
+                    level[x] = (ushort)((7471 * pixel[0] + 38470 * pixel[1] + 19595 * pixel[2] + 32768 / greyScale) /
+                                        (65536 / greyScale));
         }
     });
 }

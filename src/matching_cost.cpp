@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
+#include "image_pyramid.hpp"
 #include "matching_cost.hpp"
 #include "matching_cost.simd.hpp"
 #include "matching_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
@@ -129,8 +130,9 @@ void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities
     planes_.right = right_.ptr();
     planes_.leftStep = left_.step;
     planes_.rightStep = right_.step;
-    planes_.leftPlane = left_.step * (left_.rows / planes_.count);
-    planes_.rightPlane = right_.step * (right_.rows / planes_.count);
+    const size_t rows = left.rows + (params.census ? 0 : 2 * (blockSize_ / 2));
+    planes_.leftPlane = left_.step * rows;
+    planes_.rightPlane = right_.step * rows;
 }
 
 void MatchingCost::prepareColorAndGradient(const Mat& image, bool mirrored, int after)
@@ -154,13 +156,16 @@ void MatchingCost::prepareCensus(const Mat& image, bool mirrored, int after)
     grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16U);
     copyBordered<ushort>(image, 0, radius, radius, radius + cols - width, mirrored, grey_);
     Mat& census = mirrored ? right_ : left_;
-    census.create(planes * rows, std::max(width + after, cols), CV_8U);
+    census.create((planes + 1) * rows, std::max(width + after, cols), CV_8U);
     parallel_for_(Range(0, rows), [&](const Range& range) {
         for (int y = range.start; y < range.end; ++y)
         {
             computeCensusRow(grey_.ptr<ushort>(y + radius) + radius, (ptrdiff_t)grey_.step1(), radius, mirrored, cols,
                              census.ptr(y), census.step * rows);
-            for (int plane = 0; plane < planes; ++plane)
+            const ushort* grey = grey_.ptr<ushort>(y + radius) + radius;
+            uchar* intensity = census.ptr(planes * rows + y);
+            HDP_VECTORIZED for (int x = 0; x < width; ++x) intensity[x] = (uchar)(grey[x] / greyScale);
+            for (int plane = 0; plane <= planes; ++plane)
             {
                 uchar* row = census.ptr(plane * rows + y);
                 std::fill(row + width, row + census.cols, row[width - 1]);

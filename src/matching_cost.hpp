@@ -64,12 +64,12 @@ public:
 
     //! The number of planes of 8 bits that hold the census of a pixel; 0 for the cost of colour and gradient
     int planes() const { return planes_.census ? planes_.count : 0; }
-    //! A row of the left image's census: pixel x is at [x].
+    //! A row of the left image's census: pixel x is at [x]. Of the grey levels, in 8 bits, for plane = planes().
     const uchar* leftPlane(int plane, int y) const
     {
         return planes_.left + plane * planes_.leftPlane + y * planes_.leftStep;
     }
-    //! A row of the right image's census: candidate d of pixel x is at [width - 1 - x + d], and there are 32 more bytes
+    //! As leftPlane(), of the right image: candidate d of pixel x is at [width - 1 - x + d], and there are 32 more bytes
     //! to read behind the last candidate.
     const uchar* rightPlane(int plane, int y) const
     {
@@ -82,7 +82,7 @@ private:
 
     int blockSize_, channels_;
     CostPlanes planes_;
-    Mat left_;          // CV_8UC1 planes of the channels or of the census below one another, the former bordered
+    Mat left_; // CV_8UC1 planes below one another: of the channels, bordered, or of the census and the grey levels
     Mat leftGradient_;  // CV_16SC1, fixed point, bordered by half the window
     Mat right_;         // as left_, mirrored, with a border for all candidates
     Mat rightGradient_; // as leftGradient_, mirrored, with a border for all candidates

@@ -12,14 +12,15 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
-//! Penalties, in units of the census cost, for a step of one disparity and for a larger one between neighbours; their
-//! largest value.
+//! Penalties in units of the census cost
 struct ScanlinePenalties
 {
-    int small, large;
+    int small, large; // for a step of one disparity and for a larger one between neighbours, 0..largest
+    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..largestPrior
     enum
     {
-        largest = 100
+        largest = 100,
+        largestPrior = 4
     };
 };
 
@@ -40,8 +41,9 @@ struct ScanlineProblem
 //! Memory of one stripe
 struct ScanlineScratch
 {
-    std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel
-    std::vector<uchar> priors, intoRight, intoLeft, intoBelow;
+    std::vector<uchar> costs, fromRight, fromAbove;            // CandidateWindow::candidates per pixel
+    std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // per pixel of the layer above
+    std::vector<short> rises, slopes;                          // of the winners of some rows
 };
 
 struct ScanlineBuffers
@@ -51,7 +53,11 @@ struct ScanlineBuffers
 
 /** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching with the
 three directions that one sweep over the rows can do, from the left, from the right and from above. The cost of
-candidate d is the census cost plus half its distance, in pixels, from the disparity its run was predicted for.
+candidate d is
+
+C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 31) / 4) + floor(prior * |d - predicted| / 2),
+
+I being grey levels and predicted the disparity that the candidate's run was predicted for, all whole numbers.
 
 With L(p, d) of a direction and q the pixel before p,
 L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large) - m, m = min_k L(q, k),
@@ -65,7 +71,7 @@ above each of them.
 @param size Of the layer.
 @param numDisparities Of the layer.
 @param windows From predictWindows(), with disparities times subpixelScale.
-@param penalties In 0..ScanlinePenalties::largest.
+@param penalties The penalties.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1, times subpixelScale. */
 CV_EXPORTS void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,

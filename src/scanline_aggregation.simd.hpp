@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "scanline_aggregation.hpp"
+#include "vectorized.hpp"
 #include <cstring>
 
 namespace cv {
@@ -50,6 +51,8 @@ public:
         s_.intoRight.resize((size_t)upperWidth_ * Window::candidates);
         s_.intoLeft.resize((size_t)upperWidth_ * Window::candidates);
         s_.intoBelow.resize((size_t)upperWidth_ * Window::candidates);
+        s_.rises.resize((size_t)groups * width_);
+        s_.slopes.resize((size_t)groups * width_);
         preparePriorTable();
         prepareOrderTable();
     }
@@ -97,7 +100,8 @@ private:
         for (int distance = -priorRange; distance < priorRange; ++distance)
             for (int i = 0; i < Window::runLength; ++i)
                 priorTable_[distance + priorRange][i] =
-                    (uchar)(std::abs(distance + i * ScanlineProblem::scale) / (2 * ScanlineProblem::scale));
+                    (uchar)(p_.penalties.prior * std::abs(distance + i * ScanlineProblem::scale) /
+                            (2 * ScanlineProblem::scale));
     }
 
     //! For runs that begin `shift` disparities after another one: which of its candidates are the same ones
@@ -164,7 +168,7 @@ private:
             entersUpperRow_ = above != 0;
         }
         for (int r = 0; r < groups; ++r)
-            for (int plane = 0; plane < p_.cost->planes(); ++plane)
+            for (int plane = 0; plane <= p_.cost->planes(); ++plane)
             {
                 left_[plane][r] = p_.cost->leftPlane(plane, std::min(y + r, p_.size.height - 1));
                 right_[plane][r] = p_.cost->rightPlane(plane, std::min(y + r, p_.size.height - 1)) + width_ - 1;
@@ -174,34 +178,38 @@ private:
     int column(int step, int group) const { return std::min(std::max(step - 2 * group, 0), width_ - 1); }
     int upperColumn(int column) const { return std::min(column / 2, upperWidth_ - 1); }
 
-    //! The candidates' costs C(p, d): bits that differ, and the prior.
+    //! The candidates' costs C(p, d)
     template <int planes> ByteLanes costs(int step) const
     {
-        const uchar *left[3][groups], *low[3][groups], *high[3][groups], *priors[groups];
+        const uchar *left[planes + 1][groups], *low[planes + 1][groups], *high[planes + 1][groups], *priors[groups];
         for (int r = 0; r < groups; ++r)
         {
             const int x = column(step, r), upperX = upperColumn(x);
             const Window& window = windows_[upperX];
             priors[r] = &s_.priors[(size_t)upperX * Window::candidates];
-            for (int plane = 0; plane < planes; ++plane)
+            for (int plane = 0; plane <= planes; ++plane)
             {
                 left[plane][r] = left_[plane][r] + x;
                 low[plane][r] = right_[plane][r] - x + window.first[0];
                 high[plane][r] = right_[plane][r] - x + window.first[1];
             }
         }
-        ByteLanes bits[3];
+        const ByteLanes grey = ByteLanes::repeat(left[planes]);
+        const ByteLanes candidates = ByteLanes::loadHalves(low[planes], high[planes]);
+        const ByteLanes contrast = ((grey - candidates) | (candidates - grey)).min(ByteLanes::repeat(31));
+        const ByteLanes cost = ByteLanes::load(priors) + contrast.quarter();
+
+        ByteLanes bits[planes];
         for (int plane = 0; plane < planes; ++plane)
             bits[plane] = ByteLanes::loadHalves(low[plane], high[plane]) ^ ByteLanes::repeat(left[plane]);
-        const ByteLanes prior = ByteLanes::load(priors);
         if (planes == 1)
-            return prior + bits[0].countBits();
+            return cost + bits[0].countBits();
         if (planes == 2)
-            return prior + bits[0].countBits() + bits[1].countBits();
+            return cost + bits[0].countBits() + bits[planes - 1].countBits();
         // Sum and carry of three bits: two counts instead of three
-        const ByteLanes difference = bits[0] ^ bits[1];
-        const ByteLanes carries = ((bits[0] & bits[1]) | (difference & bits[2])).countBits();
-        return prior + (difference ^ bits[2]).countBits() + (carries + carries);
+        const ByteLanes second = bits[planes > 1 ? 1 : 0], third = bits[planes - 1], difference = bits[0] ^ second;
+        const ByteLanes carries = ((bits[0] & second) | (difference & third)).countBits();
+        return cost + (difference ^ third).countBits() + (carries + carries);
     }
 
     //! L(p, d) - m of a direction; h: H of the pixel before, which becomes that of this one.
@@ -334,14 +342,41 @@ private:
 
             unsigned lowest[groups];
             sum.findEqual(sum.minimum(), lowest);
-            uchar sums[lanes];
-            sum.store(sums);
+            uchar sums[lanes + 2]; // one more on each side to read
+            sum.store(sums + 1);
             for (int r = 0; r < groups; ++r)
             {
                 const int x = t - 2 * r;
                 if (x >= 0 && x < width_ && rows[r])
-                    rows[r][x] = winner(windows_[upperColumn(x)], sums + r * 16, firstBit(lowest[r]));
+                    takeWinner(windows_[upperColumn(x)], sums + 1 + r * 16, firstBit(lowest[r]), rows[r][x],
+                               s_.rises[r * width_ + x], s_.slopes[r * width_ + x]);
             }
+        }
+        for (int r = 0; r < groups; ++r)
+            if (rows[r])
+                addSubpixel(&s_.rises[r * width_], &s_.slopes[r * width_], rows[r]);
+    }
+
+    //! The winner in whole pixels, and the two lines of opposite slope through its sum and those beside it: their slope
+    //! and how much the sum before is above the one after.
+    static void takeWinner(const Window& window, const uchar* sums, int lane, ushort& disparity, short& rise,
+                           short& slope)
+    {
+        disparity =
+            (ushort)((window.first[lane / Window::runLength] + lane % Window::runLength) * ScanlineProblem::scale);
+        const int inner = window.isContiguous() ? 0x7ffe : 0x7e7e; // lanes with a candidate on each side
+        const int before = sums[lane - 1], after = sums[lane + 1];
+        rise = (short)((before - after) * (inner >> lane & 1));
+        slope = (short)std::max(std::max(before, after) - sums[lane], 1);
+    }
+
+    void addSubpixel(const short* rises, const short* slopes, ushort* disparity) const
+    {
+        const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers, rounded to the nearest
+        HDP_VECTORIZED for (int x = 0; x < width_; ++x)
+        {
+            const float offset = (float)rises[x] * (ScanlineProblem::scale / 2) / (float)slopes[x];
+            disparity[x] = (ushort)(disparity[x] + (int)((offset + wholes) - wholes));
         }
     }
 
@@ -357,23 +392,6 @@ private:
 #endif
     }
 
-    static ushort winner(const Window& window, const uchar* sums, int lane)
-    {
-        const int run = lane / Window::runLength;
-        int value = (window.first[run] + lane % Window::runLength) * ScanlineProblem::scale;
-        const bool isEnd = lane == 0 || lane == Window::candidates - 1 ||
-                           (!window.isContiguous() && (lane == Window::runLength - 1 || lane == Window::runLength));
-        if (!isEnd)
-        {
-            // Two lines of opposite slope through the three sums
-            const int before = sums[lane - 1], after = sums[lane + 1];
-            const int slope = std::max(before, after) - sums[lane];
-            if (slope > 0)
-                value += cvRound((float)((before - after) * (ScanlineProblem::scale / 2)) / (float)slope);
-        }
-        return (ushort)value;
-    }
-
     enum
     {
         priorRange = 3 * Window::candidates / 2 * ScanlineProblem::scale
@@ -386,7 +404,7 @@ private:
     const Window* windows_; // of the block's row of the upper layer
     int upperRow_;          // that row
     bool entersUpperRow_;   // whether it is not that of the block before
-    const uchar *left_[3][groups], *right_[3][groups];
+    const uchar *left_[4][groups], *right_[4][groups];
     uchar priorTable_[2 * priorRange][Window::runLength];
     uchar orderTable_[Window::runs][2 * Window::runLength + 1][Window::runLength];
 };

@@ -152,7 +152,7 @@ TEST(HDPStereo_PredictionModel, layer_out_of_range_is_rejected)
         expectRejected([&] { model->density(layer, 0); }, "layer");
         expectRejected([&] { getLayer(*model, layer); }, "layer");
     }
-    for (int which : { -1, 2 })
+    for (int which : { -1, 4 })
         expectRejected([&] { DisparityPredictionModel::createPublished(which); }, "which");
 }
 
@@ -218,7 +218,7 @@ TEST(HDPStereo_PredictionModel, malformed_file_is_rejected)
     deserialize(text, *model); // the unchanged text is fine
     expectNoModel(text.substr(0, text.find("sigmas")));
     expectNoModel(replaced(text, model->getDefaultName(), "my_object"));
-    for (const char* key : { "name", "layers", "means", "sigmas", "weights" })
+    for (const char* key : { "name", "layerCount", "layers", "means", "sigmas", "weights" })
         expectNoModel(replaced(text, key, "other"));
     const struct
     {

@@ -18,8 +18,8 @@ TEST(HDPStereo_DisparityRefinement, median_by_sorting)
             {
                 SCOPED_TRACE(testing::Message() << size << ", window " << window << ", levels " << levels);
                 const Mat disparity = randomImage(rng, size, CV_16UC1, levels);
-                Mat filtered;
-                hdp::medianDisparity(disparity, window, filtered);
+                Mat filtered, stripes;
+                hdp::medianDisparity(disparity, window, stripes, filtered);
                 expectIdentical(oracle::median(disparity, window), filtered);
             }
 }
@@ -31,8 +31,8 @@ TEST(HDPStereo_DisparityRefinement, median_of_many_rows)
         for (int levels : { 300, 65536 })
         {
             const Mat disparity = randomImage(rng, Size(20, 700), CV_16UC1, levels);
-            Mat filtered(20, 20, CV_16UC1); // a buffer of another size
-            hdp::medianDisparity(disparity, window, filtered);
+            Mat filtered(20, 20, CV_16UC1), stripes; // a buffer of another size
+            hdp::medianDisparity(disparity, window, stripes, filtered);
             expectIdentical(oracle::median(disparity, window), filtered);
         }
 }

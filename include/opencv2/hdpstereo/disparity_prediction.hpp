@@ -23,11 +23,13 @@ in whole pixels of layer l + 1.
 class CV_EXPORTS_W DisparityPredictionModel : public Algorithm
 {
 public:
-    //! Training set of the published models
+    //! The models that createPublished() knows: the paper's authors', and those of train() (samples/hdp_train.cpp)
     enum Published
     {
-        PUBLISHED_LARGE = 0, //!< Middlebury 2006 at full size (about 1390 x 1110); 3 layers
-        PUBLISHED_SMALL = 1  //!< Middlebury 2006 at half size (about 695 x 555); 2 layers
+        PUBLISHED_LARGE = 0, //!< the authors', Middlebury 2006 at full size (about 1390 x 1110); 3 layers
+        PUBLISHED_SMALL = 1, //!< the authors', Middlebury 2006 at half size (about 695 x 555); 2 layers
+        TRAINED_LARGE = 2,   //!< train()'s, on six scenes of Middlebury 2006 at full size; 2 layers
+        TRAINED_SMALL = 3    //!< train()'s, on the same scenes at half size; 2 layers
     };
 
     /** @brief Number of layers l the model has a mixture for. A matcher of L layers needs L - 1. */
@@ -55,10 +57,44 @@ public:
      */
     CV_WRAP virtual double density(int layer, double offset) const = 0;
 
+    /** @brief Appends the mixture of layer l = getNumLayers(), fitted to disparity maps by expectation maximisation.
+
+    A pixel of layer l and the pixel above it, at half its coordinates, give an offset
+    \f$D_{l+1} - \lfloor D_l / 2 \rfloor\f$, where \f$D_l\f$ is rounded down, as the paper's \f$d_l\f$ is, and
+    \f$D_{l+1}\f$ to the nearest whole number. The offsets of half of the maps are fitted
+    with 1 .. maxComponents Gaussians; the number that makes the other half most likely is fitted to all of them.
+    The result depends on nothing but the arguments. A standard deviation is at least 0.5 pixels: below that, the
+    densities at whole offsets would not add up to about 1, and offsets that are all the same would give a singular
+    Gaussian. It is at least a quarter of the mean, too: gross errors that a single scene has many of at one offset are
+    no rule for others.
+    @param disparities Maps of \f$D_l\f$ in pixels of layer l, usually the truth: one or more CV_32FC1 Mats. A value
+    that is negative or not finite is unknown, and left out.
+    @param upperDisparities As many maps of \f$D_{l+1}\f$ in pixels of layer l + 1, usually those that the matcher
+    finds there: CV_32FC1, of half the size, rounded up or down. Disparities of both are at most 32767.
+    @param maxComponents Largest number of Gaussians, 1..64.
+    @param seed Seed of the choice of halves and of the starts of the fit, >= 0.
+    @return Mean log-likelihood of an offset of the half that the number of Gaussians was chosen by.
+    @throws cv::Exception if the arguments are not so, if there are less than 100 offsets in one of the halves, if
+    \f$D_l\f$ or the offsets are all the same, or if the library was built without opencv_ml, which only this method
+    needs; the model is unchanged.
+     */
+    CV_WRAP virtual double train(InputArrayOfArrays disparities, InputArrayOfArrays upperDisparities,
+                                 int maxComponents = 6, int seed = 0) = 0;
+
+    /** @brief The histogram of offsets that train() fits a mixture to.
+    @param disparities, upperDisparities Maps as for train().
+    @param offsets Receives the offsets that there are, ascending.
+    @param counts Receives the number of pixels of each.
+     */
+    CV_WRAP static void countOffsets(InputArrayOfArrays disparities, InputArrayOfArrays upperDisparities,
+                                     CV_OUT std::vector<int>& offsets, CV_OUT std::vector<double>& counts);
+
     /** @brief Creates a model without layers. */
     CV_WRAP static Ptr<DisparityPredictionModel> create();
 
-    /** @brief Creates one of the two models that the paper's authors trained.
+    /** @brief Creates one of the models that come with the module.
+
+    The matcher takes the authors' by itself. testdata/cv/hdpstereo/models has all of them as files.
     @param which One of DisparityPredictionModel::Published.
      */
     CV_WRAP static Ptr<DisparityPredictionModel> createPublished(int which);

@@ -222,6 +222,12 @@ public:
     /** @copybrief setLargePenalty @sa setLargePenalty */
     CV_WRAP virtual int getLargePenalty() const = 0;
 
+    /** @brief How often a layer is aggregated along scanlines: 1 (default) to 4. Each pass but the first searches around
+    the disparities of the one before instead of those of the layer above. */
+    CV_WRAP virtual void setScanlinePasses(int passes) = 0;
+    /** @copybrief setScanlinePasses @sa setScanlinePasses */
+    CV_WRAP virtual int getScanlinePasses() const = 0;
+
     /** @brief The layer the search ends at: 0 (default), the image itself, to 15. The map of a coarser layer is enlarged
     to the image's size. More than there are layers: the top one. Without effect if prediction is off. */
     CV_WRAP virtual void setFinestLayer(int layer) = 0;
@@ -244,6 +250,20 @@ public:
     @param ratios Receives a number in [0, 1] per layer, the finest first; empty before the first compute().
      */
     CV_WRAP virtual void getSearchRatios(CV_OUT std::vector<double>& ratios) const = 0;
+
+    /** @brief The disparity prediction forest of the last compute() (section 3.2), at the finest layer that has one.
+    @param trees Receives the number of each pixel's tree, from 0: CV_32SC1 of the layer's size. Empty before the first
+    compute().
+    @param intervals Receives the first and the last candidate that the pixel's tree searched, TreeIntv, in pixels of
+    the layer above the smallest disparity: CV_16UC2 of the same size.
+     */
+    CV_WRAP virtual void getForest(OutputArray trees, OutputArray intervals) const = 0;
+
+    /** @brief \f$P(D_l)\f$ that the intervals of the last compute() were predicted with (section 3.1), at the finest
+    layer.
+    @param prior Receives a number >= 0 per candidate, up to a factor; none if nothing was predicted.
+     */
+    CV_WRAP virtual void getLayerPrior(CV_OUT std::vector<double>& prior) const = 0;
 
     /** @brief Wall time of each stage in the last compute(), the layers together.
     @param stages Receives the names of the stages in the order in which they first ran.

@@ -1,0 +1,84 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// The layers of HDPTreeMatcher's pyramid, one by one: what the matcher finds in layer l, and what is true there.
+
+#ifndef OPENCV_HDPSTEREO_SAMPLES_LAYERS_HPP
+#define OPENCV_HDPSTEREO_SAMPLES_LAYERS_HPP
+
+#include "hdp_datasets.hpp"
+
+namespace hdp_samples {
+
+using cv::Ptr;
+using cv::stereo::DisparityPredictionModel;
+using cv::stereo::HDPTreeMatcher;
+
+//! The image in layer + 1 of an image in layer: means of 2 x 2 pixels
+inline Mat nextLayer(const Mat& image)
+{
+    const cv::Size size(image.cols / 2, image.rows / 2);
+    if (size.empty())
+        fail(cv::format("an image of %d x %d pixels has no more layers", image.cols, image.rows));
+    Mat next;
+    cv::resize(image(cv::Rect(0, 0, size.width * 2, size.height * 2)), next, size, 0, 0, cv::INTER_AREA);
+    return next;
+}
+
+//! D_l of the true disparities: those of layer 0, in pixels of the layer, at one of the four pixels that become one
+inline Mat truthOfLayer(const Mat& truth, int layer)
+{
+    Mat result = truth;
+    for (int l = 0; l < layer; l++)
+    {
+        Mat next(result.rows / 2, result.cols / 2, CV_32F);
+        for (int y = 0; y < next.rows; y++)
+            for (int x = 0; x < next.cols; x++)
+                next.at<float>(y, x) = result.at<float>(2 * y, 2 * x) / 2; // NO_DISPARITY stays
+        result = next;
+    }
+    return result;
+}
+
+inline Ptr<DisparityPredictionModel> publishedModel(int width)
+{
+    return DisparityPredictionModel::createPublished(width >= 1000 ? DisparityPredictionModel::PUBLISHED_LARGE
+                                                                   : DisparityPredictionModel::PUBLISHED_SMALL);
+}
+
+//! The layers first .. of a model, as a model of its own
+inline Ptr<DisparityPredictionModel> upperPart(const DisparityPredictionModel& model, int first)
+{
+    const Ptr<DisparityPredictionModel> part = DisparityPredictionModel::create();
+    for (int layer = first; layer < model.getNumLayers(); layer++)
+    {
+        std::vector<double> means, sigmas, weights;
+        model.getLayer(layer, means, sigmas, weights);
+        part->addLayer(means, sigmas, weights);
+    }
+    return part;
+}
+
+//! How many candidates a layer has
+inline int disparitiesOfLayer(int numDisparities, int layer) { return ((numDisparities - 1) >> layer) + 1; }
+
+/** A matcher (PRESET_PAPER) for the images of a layer that does there what one of so many layers does in that layer
+and those above, when it matches images of this width.
+@param above The model of this layer and those above; empty at the top layer. */
+inline Ptr<HDPTreeMatcher> matcherOfLayer(int layer, int layers, int numDisparities, int width,
+                                          const Ptr<DisparityPredictionModel>& above)
+{
+    const bool isLarge = width >= 1000; // see HDPTreeMatcher::setDelta0() and setBeta()
+    const Ptr<HDPTreeMatcher> matcher =
+        HDPTreeMatcher::create(0, disparitiesOfLayer(numDisparities, layer), HDPTreeMatcher::PRESET_PAPER);
+    matcher->setNumLayers(layers - layer);
+    matcher->setPredictionModel(above);
+    matcher->setDelta0(std::min((isLarge ? 0.064 : 0.004) * (1 << layer), 0.999));
+    matcher->setBeta(isLarge ? 0.6 : 0.95);
+    return matcher;
+}
+
+} // namespace hdp_samples
+
+#endif

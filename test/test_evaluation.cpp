@@ -1,0 +1,203 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// The samples' scores and tables, against cases computed by hand, and the pictures' numbers.
+
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "synthetic_pair.hpp"
+
+#include "../samples/hdp_report.hpp"
+
+namespace opencv_test {
+namespace {
+
+using namespace hdp_samples;
+
+const float none = NO_DISPARITY;
+
+Pair makePair(Pair::Protocol protocol, const Mat& truth, const Mat& judged)
+{
+    Pair pair;
+    pair.protocol = protocol;
+    pair.truth = truth;
+    pair.judged = judged;
+    return pair;
+}
+
+TEST(HDPStereo_Evaluation, middlebury_by_hand)
+{
+    const Mat truth = (Mat_<float>(2, 5) << 10, 10, 10, 10, 10, 20, 20, 20, none, 20);
+    const Mat judged = (Mat_<uchar>(2, 5) << 255, 255, 255, 255, 255, 255, 255, 255, 0, 0);
+    // Errors: 0, 0.9375, 1, 1.9375, 2; none, 100, -0.5; not judged: 5 and none
+    const Mat map = (Mat_<float>(2, 5) << 10, 10.9375f, 9, 11.9375f, 12, none, 120, 19.5f, 5, none);
+    const Score score = scoreMap(map, makePair(Pair::MIDDLEBURY, truth, judged));
+    EXPECT_DOUBLE_EQ(100. * 5 / 8, score.error1);
+    EXPECT_DOUBLE_EQ(100. * 3 / 8, score.error2);
+    EXPECT_NEAR((0 + 0.9375 + 1 + 1.9375 + 2 + 64 + 64 + 0.5) / 8, score.average, 1e-6);
+    EXPECT_TRUE(std::isnan(score.d1));
+    EXPECT_TRUE(std::isnan(score.d1NonOccluded));
+}
+
+TEST(HDPStereo_Evaluation, kitti_by_hand)
+{
+    const Mat truth = (Mat_<float>(1, 7) << 100, 100, 100, 20, 20, none, 20);
+    // Errors: 4 (below 5 %), 5 (not above), 5.5, 3 (not above), 3.25, of unknown truth, none
+    const Mat map = (Mat_<float>(1, 7) << 104, 95, 105.5f, 23, 16.75f, 3, none);
+    Pair pair = makePair(Pair::KITTI, truth, knownPixels(truth));
+    pair.judgedNonOccluded = (Mat_<uchar>(1, 7) << 255, 255, 255, 255, 0, 0, 0);
+    const Score score = scoreMap(map, pair);
+    EXPECT_DOUBLE_EQ(100. * 3 / 6, score.d1);
+    EXPECT_DOUBLE_EQ(100. * 1 / 4, score.d1NonOccluded);
+    EXPECT_NEAR((4 + 5 + 5.5 + 3 + 3.25 + 64) / 6, score.average, 1e-6);
+    EXPECT_TRUE(std::isnan(score.error1));
+    pair.judgedNonOccluded.release();
+    EXPECT_TRUE(std::isnan(scoreMap(map, pair).d1NonOccluded));
+}
+
+TEST(HDPStereo_Evaluation, no_truth_no_score)
+{
+    const Score score = scoreMap(Mat(3, 3, CV_32F, Scalar(1)), makePair(Pair::NO_TRUTH, Mat(), Mat()));
+    EXPECT_TRUE(std::isnan(score.error1) && std::isnan(score.error2) && std::isnan(score.d1) &&
+                std::isnan(score.d1NonOccluded) && std::isnan(score.average));
+}
+
+TEST(HDPStereo_Evaluation, occlusion_by_hand)
+{
+    const Mat left = (Mat_<float>(1, 6) << 1, 2, 2, 2.5f, none, 3),
+              right = (Mat_<float>(1, 6) << 2, 2.5f, 4, none, 2, 1);
+    // x - floor(d): -1, -1, 0 (2 = 2), 1 (2.5 = 2.5), unknown, 2 (3, 4)
+    expectIdentical((Mat_<uchar>(1, 6) << 0, 0, 255, 255, 0, 0), nonOccludedPixels(left, right));
+    expectIdentical((Mat_<uchar>(1, 6) << 0, 0, 255, 255, 0, 255), nonOccludedPixels(left, right, 1));
+}
+
+TEST(HDPStereo_Evaluation, means_leave_out_what_is_missing)
+{
+    EXPECT_DOUBLE_EQ(2.5, meanOf({ 1, NO_SCORE, 4 }));
+    EXPECT_TRUE(std::isnan(meanOf({ NO_SCORE })));
+    EXPECT_TRUE(std::isnan(meanOf({})));
+}
+
+TEST(HDPStereo_Evaluation, tables)
+{
+    Table table;
+    table.title = "A, \"B\" & <C>";
+    table.header = { "scene", "one", "two", "three", "four" };
+    table.addRow("Aloe, Baby");
+    table.addNumbers({ 3.14159, NO_SCORE, 2.004, 2.0001 });
+    EXPECT_EQ("### A, \"B\" & <C>\n\n| scene | one | two | three | four |\n| --- | --- | --- | --- | --- |\n"
+              "| Aloe, Baby | 3.14 | - | **2.00** | **2.00** |\n",
+              toMarkdown(table));
+    EXPECT_EQ("\"A, \"\"B\"\" & <C>\"\nscene,one,two,three,four\n\"Aloe, Baby\",3.14,,2.00,2.00\n", toCsv(table));
+    const String html = toHtml(table);
+    EXPECT_NE(String::npos, html.find("A, &quot;B&quot; &amp; &lt;C&gt;"));
+    EXPECT_NE(String::npos, html.find("<td>3.14</td><td>-</td><td class=\"best\">2.00</td>"));
+}
+
+TEST(HDPStereo_Evaluation, base64_of_rfc_4648)
+{
+    const char* const vectors[][2] = { { "", "" },
+                                       { "f", "Zg==" },
+                                       { "fo", "Zm8=" },
+                                       { "foo", "Zm9v" },
+                                       { "foob", "Zm9vYg==" },
+                                       { "fooba", "Zm9vYmE=" },
+                                       { "foobar", "Zm9vYmFy" } };
+    for (const auto& vector : vectors)
+    {
+        const String text = vector[0];
+        EXPECT_EQ(vector[1], base64(std::vector<uchar>(text.begin(), text.end())));
+    }
+}
+
+TEST(HDPStereo_Evaluation, truth_of_a_layer)
+{
+    const Mat truth = (Mat_<float>(3, 5) << 8, 1, none, 3, 20, 1, 1, 1, 1, 1, 6, 1, 10, 1, 1);
+    const Mat first = truthOfLayer(truth, 1), second = truthOfLayer(truth, 2);
+    ASSERT_EQ(Size(2, 1), first.size());
+    EXPECT_EQ(4.f, first.at<float>(0, 0));
+    EXPECT_EQ(none, first.at<float>(0, 1));
+    EXPECT_TRUE(second.empty());
+    expectIdentical(truth, truthOfLayer(truth, 0));
+}
+
+TEST(HDPStereo_Evaluation, sampled_matrix_counts_pairs)
+{
+    const Mat truth = (Mat_<float>(2, 4) << 6, 6, 7, none, 5, 6, 20, 2), upper = (Mat_<float>(1, 2) << 3, 1);
+    const Mat_<double> matrix = sampledMatrix(truth, upper, 9);
+    ASSERT_EQ(Size(9, 5), matrix.size());
+    EXPECT_EQ(3, matrix(3, 6));
+    EXPECT_EQ(1, matrix(3, 5));
+    EXPECT_EQ(1, matrix(1, 7));
+    EXPECT_EQ(1, matrix(1, 2));
+    EXPECT_EQ(6, sum(matrix)[0]); // not those of unknown truth, and of 20 disparities
+}
+
+//! The matcher of a layer finds what the whole matcher has found there on its way: the search of the layer below is the
+//! same by either.
+TEST(HDPStereo_Evaluation, matcher_of_a_layer)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 11);
+    const Ptr<DisparityPredictionModel> model = publishedModel(160);
+    const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32);
+    expectIdentical(match(*whole, pair.left, pair.right),
+                    match(*matcherOfLayer(0, 3, 32, 160, model), pair.left, pair.right));
+    std::vector<double> wholeRatios, ratios;
+    whole->getSearchRatios(wholeRatios);
+
+    const Ptr<HDPTreeMatcher> upper = matcherOfLayer(1, 3, 32, 160, upperPart(*model, 1));
+    EXPECT_EQ(16, upper->getNumDisparities());
+    match(*upper, nextLayer(pair.left), nextLayer(pair.right));
+    upper->getSearchRatios(ratios);
+    ASSERT_EQ(2u, ratios.size());
+    EXPECT_NEAR(wholeRatios[1], ratios[0], 0.02); // the means of 2 x 2 pixels are rounded in another way
+    EXPECT_EQ(1, ratios[1]);
+}
+
+//! What getForest() gives agrees with the other results of the same compute().
+TEST(HDPStereo_Evaluation, forest_of_the_last_pair)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 12);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-2, 32);
+    Mat trees, intervals;
+    std::vector<double> prior, ratios;
+    matcher->getForest(trees, intervals);
+    matcher->getLayerPrior(prior);
+    EXPECT_TRUE(trees.empty() && intervals.empty() && prior.empty());
+
+    matcher->setDisparityMedianSize(0);
+    for (bool usePrediction : { true, false })
+    {
+        matcher->setUsePrediction(usePrediction);
+        const Mat disparity = match(*matcher, pair.left, pair.right);
+        matcher->getForest(trees, intervals);
+        matcher->getLayerPrior(prior);
+        matcher->getSearchRatios(ratios);
+        ASSERT_EQ(CV_32SC1, trees.type());
+        ASSERT_EQ(CV_16UC2, intervals.type());
+        ASSERT_EQ(pair.left.size(), trees.size());
+        ASSERT_EQ(pair.left.size(), intervals.size());
+        EXPECT_EQ(usePrediction ? 32u : 0u, prior.size());
+
+        std::map<int, Vec2w> ofTree;
+        double searched = 0;
+        for (int y = 0; y < trees.rows; ++y)
+            for (int x = 0; x < trees.cols; ++x)
+            {
+                const Vec2w interval = intervals.at<Vec2w>(y, x);
+                const int candidate = disparity.at<short>(y, x) / 16 + 2;
+                ASSERT_TRUE(candidate >= interval[0] && candidate <= interval[1]) << x << ", " << y;
+                searched += interval[1] - interval[0] + 1;
+                const auto known = ofTree.insert(std::make_pair(trees.at<int>(y, x), interval));
+                ASSERT_EQ(known.first->second, interval); // one for the whole tree
+            }
+        EXPECT_NEAR(ratios[0], searched / (32. * trees.total()), 1e-9);
+        EXPECT_EQ(0, ofTree.begin()->first);
+        EXPECT_EQ((int)ofTree.size() - 1, ofTree.rbegin()->first);
+        EXPECT_EQ(!usePrediction, ofTree.size() == 1);
+    }
+}
+
+} // namespace
+} // namespace opencv_test
