@@ -610,7 +610,7 @@ private:
 
     const hdp::CandidateWindow& window(Point p) const
     {
-        return windows_.at<hdp::CandidateWindow>(clamped(p.y / 2, windows_.rows), clamped(p.x / 2, windows_.cols));
+        return windows_.ptr<hdp::CandidateWindow>(clamped(p.y / 2, windows_.rows))[clamped(p.x / 2, windows_.cols)];
     }
 
     std::vector<int> candidates(Point p) const

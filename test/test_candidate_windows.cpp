@@ -70,7 +70,7 @@ void expectWindows(const Mat& upper, int numDisparities)
     for (int y = 0; y < upper.rows; ++y)
         for (int x = 0; x < upper.cols; ++x)
         {
-            const CandidateWindow& w = windows.at<CandidateWindow>(y, x);
+            const CandidateWindow& w = windows.ptr<CandidateWindow>(y)[x];
             const int own = 2 * upper.at<ushort>(y, x), other = beyond(upper, y, x);
             SCOPED_TRACE(testing::Message() << "y " << y << " x " << x << ": runs from " << w.first[0] << " and "
                                             << w.first[1] << ", own " << own / 16. << ", beyond " << other / 16.);
@@ -124,7 +124,7 @@ TEST(HDPStereo_CandidateWindows, a_step)
     const Mat windows = predict(upper, 100);
     for (int x = 0; x < upper.cols; ++x)
     {
-        const CandidateWindow& w = windows.at<CandidateWindow>(5, x);
+        const CandidateWindow& w = windows.ptr<CandidateWindow>(5)[x];
         const bool isNear = x >= 17 && x < 23;
         const int own = 2 * (x < 20 ? back : front), other = 2 * (x < 20 ? front : back);
         EXPECT_EQ(!isNear, w.isContiguous()) << x;
