@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
+#include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
 
 namespace cv {
@@ -89,6 +90,49 @@ void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered
         medianBlurStripes(slice, size, stripes, median);
         add(filtered, median, filtered, noArray(), CV_16U);
     }
+}
+
+void fillOccluded(Mat& disparity, const Mat& residual, int scale)
+{
+    const int width = disparity.cols;
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        // By column of the right image: residual and disparity of the pixel that is there
+        std::vector<unsigned> visible(width);
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            ushort* row = disparity.ptr<ushort>(y);
+            const uchar* cost = residual.ptr(y);
+            const auto rightColumn = [&](int x) { return x - wholeDisparity(row[x], scale); };
+            std::fill(visible.begin(), visible.end(), UINT_MAX);
+            for (int x = 0; x < width; ++x)
+            {
+                const int right = rightColumn(x);
+                if (right >= 0) // the nearer one of two with the same residual
+                    visible[right] = std::min(visible[right], ((unsigned)cost[x] << 16) + (0xffff - row[x]));
+            }
+            const auto isVisible = [&](int x) {
+                const int right = rightColumn(x);
+                return right >= 0 && std::abs((int)(0xffff - (visible[right] & 0xffff)) - row[x]) <= scale;
+            };
+            int before = -1; // the disparity of the last visible pixel
+            for (int x = 0; x < width;)
+            {
+                if (isVisible(x))
+                {
+                    before = row[x++];
+                    continue;
+                }
+                int end = x + 1;
+                while (end < width && !isVisible(end))
+                    ++end;
+                const int after = end < width ? row[end] : before;
+                const int farther = before < 0 ? after : std::min(before, after);
+                if (farther >= 0)
+                    std::fill(row + x, row + end, (ushort)farther);
+                x = end;
+            }
+        }
+    });
 }
 
 void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity)

@@ -81,6 +81,7 @@ struct Parameters
     int largePenalty = 50;
     int finestLayer = 0;
     int scanlinePasses = 1;
+    bool fillOcclusions = false;
     bool useNonLocalRefinement = false;
 
     void setMinDisparity(int value) { minDisparity = value; }
@@ -310,6 +311,8 @@ public:
     void setFinestLayer(int value) CV_OVERRIDE { p_.setFinestLayer(value); }
     int getScanlinePasses() const CV_OVERRIDE { return p_.scanlinePasses; }
     void setScanlinePasses(int value) CV_OVERRIDE { p_.setScanlinePasses(value); }
+    bool getFillOcclusions() const CV_OVERRIDE { return p_.fillOcclusions; }
+    void setFillOcclusions(bool value) CV_OVERRIDE { p_.fillOcclusions = value; }
     bool getUseNonLocalRefinement() const CV_OVERRIDE { return p_.useNonLocalRefinement; }
     void setUseNonLocalRefinement(bool value) CV_OVERRIDE { p_.useNonLocalRefinement = value; }
 
@@ -374,6 +377,7 @@ public:
            << "largePenalty" << p_.largePenalty
            << "finestLayer" << p_.finestLayer
            << "scanlinePasses" << p_.scanlinePasses
+           << "fillOcclusions" << (int)p_.fillOcclusions
            << "useNonLocalRefinement" << (int)p_.useNonLocalRefinement;
         // clang-format on
         fs << "treeStrategy"
@@ -421,6 +425,7 @@ public:
         readNumber<int>(fn, "largePenalty", [&](int value) { p.setLargePenalty(value); });
         readNumber<int>(fn, "finestLayer", [&](int value) { p.setFinestLayer(value); });
         readNumber<int>(fn, "scanlinePasses", [&](int value) { p.setScanlinePasses(value); });
+        readNumber<int>(fn, "fillOcclusions", [&](int value) { p.fillOcclusions = value != 0; });
         readNumber<int>(fn, "useNonLocalRefinement", [&](int value) { p.useNonLocalRefinement = value != 0; });
         p.treeStrategy = readStrategy(fn["treeStrategy"]);
         if (!fn["predictionModel"].empty())
@@ -478,6 +483,9 @@ private:
 
         if (p_.aggregation == AGGREGATION_SCANLINES && p_.matchingCost != COST_CENSUS)
             CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for AGGREGATION_SCANLINES");
+
+        if (p_.fillOcclusions && p_.matchingCost != COST_CENSUS)
+            CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for fillOcclusions");
 
         const bool isLarge = size.width >= largeImageWidth;
         LayerSettings settings;
@@ -611,6 +619,11 @@ private:
         });
         clock_.run("cost aggregation",
                    [&] { aggregateForest(forest_, cost_, p_.gamma, settings.scale > 1, aggregation_, winner_); });
+        if (p_.fillOcclusions)
+            clock_.run("occlusions", [&] {
+                cost_.censusCosts(winner_, settings.scale, residual_);
+                fillOccluded(winner_, residual_, settings.scale);
+            });
     }
 
     //! Section 3.2: forest_, from pixelIntv_
@@ -654,8 +667,10 @@ private:
             clock_.run("cost aggregation", [&] {
                 const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty, pass == 0 ? 1 : 2 };
                 hdp::aggregateScanlines(cost_, images.left.size(), disparities, windows_, penalties, scanlines_,
-                                        winner_);
+                                        winner_, residual_);
             });
+            if (p_.fillOcclusions)
+                clock_.run("occlusions", [&] { fillOccluded(winner_, residual_, settings.scale); });
         }
     }
 
@@ -715,7 +730,7 @@ private:
     MatchingCost cost_;
     AggregationBuffers aggregation_;
     ScanlineBuffers scanlines_;
-    Mat winner_, filtered_, medianStripes_, disparity_, stable_, speckles_;
+    Mat winner_, residual_, filtered_, medianStripes_, disparity_, stable_, speckles_;
 };
 
 } // namespace
@@ -731,6 +746,7 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities,
         parameters.setGamma(20);
         parameters.useSubpixel = true;
         parameters.setDisparityMedianSize(5);
+        parameters.fillOcclusions = true;
     }
     switch (preset)
     {

@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
+#include "disparity_prediction.hpp"
 #include "image_pyramid.hpp"
 #include "matching_cost.hpp"
 #include "matching_cost.simd.hpp"
@@ -177,6 +178,36 @@ void MatchingCost::prepareCensus(const Mat& image, bool mirrored, int after)
 void MatchingCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
 {
     CV_CPU_DISPATCH(evaluateCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void MatchingCost::censusCosts(const Mat& disparity, int scale, Mat& costs) const
+{
+    costs.create(disparity.size(), CV_8U);
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const ushort* candidate = disparity.ptr<ushort>(y);
+            uchar* cost = costs.ptr(y);
+            const uchar *left[3], *right[3];
+            for (int plane = 0; plane < 3; ++plane)
+            {
+                left[plane] = leftPlane(std::min(plane, planes() - 1), y);
+                right[plane] = rightPlane(std::min(plane, planes() - 1), y) + planes_.width - 1;
+            }
+            const unsigned mask = 0xffffff >> (8 * (3 - planes()));
+            for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int at = wholeDisparity(candidate[x], scale) - x;
+                unsigned bits = (unsigned)(left[0][x] ^ right[0][at]) | (unsigned)(left[1][x] ^ right[1][at]) << 8 |
+                                (unsigned)(left[2][x] ^ right[2][at]) << 16;
+                bits &= mask;
+                bits -= (bits >> 1) & 0x555555;
+                bits = (bits & 0x333333) + ((bits >> 2) & 0x333333);
+                bits = (bits + (bits >> 4)) & 0x0f0f0f;
+                cost[x] = (uchar)(bits + (bits >> 8) + (bits >> 16));
+            }
+        }
+    });
 }
 
 } // namespace hdp

@@ -73,9 +73,11 @@ above each of them.
 @param windows From predictWindows(), with disparities times subpixelScale.
 @param penalties The penalties.
 @param buffers Memory to work in.
-@param disparity Receives CV_16UC1, times subpixelScale. */
+@param disparity Receives CV_16UC1, times subpixelScale.
+@param residual Receives the winners' own C(p, d), CV_8UC1. */
 CV_EXPORTS void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,
-                                   const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity);
+                                   const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity,
+                                   Mat& residual);
 
 } // namespace hdp
 } // namespace stereo

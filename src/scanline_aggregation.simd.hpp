@@ -17,9 +17,10 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param above First row of the direction from above, even.
 @param rows Rows of the result, from an even one on.
 @param scratch Memory to work in.
-@param disparity As in aggregateScanlines(). */
+@param disparity As in aggregateScanlines().
+@param residual As in aggregateScanlines(). */
 void aggregateStripe(const ScanlineProblem& problem, int above, const Range& rows, ScanlineScratch& scratch,
-                     Mat& disparity);
+                     Mat& disparity, Mat& residual);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -67,13 +68,13 @@ public:
     }
 
     //! All directions and the winners of a block of rows, y to end - 1 at most.
-    void run(int y, int end, Mat& disparity)
+    void run(int y, int end, Mat& disparity, Mat& residual)
     {
         enterRows(y);
         dispatchPlanes([&](std::integral_constant<int, 1>) { fromRight<1>(); },
                        [&](std::integral_constant<int, 2>) { fromRight<2>(); },
                        [&](std::integral_constant<int, 3>) { fromRight<3>(); });
-        fromLeftAndAbove(y, end, disparity);
+        fromLeftAndAbove(y, end, disparity, residual);
     }
 
 private:
@@ -323,11 +324,15 @@ private:
             fromAbove(costs<planes>(t), t, before);
     }
 
-    void fromLeftAndAbove(int y, int end, Mat& disparity)
+    void fromLeftAndAbove(int y, int end, Mat& disparity, Mat& residual)
     {
         ushort* rows[groups];
+        uchar* residuals[groups];
         for (int r = 0; r < groups; ++r)
+        {
             rows[r] = y + r < end ? disparity.ptr<ushort>(y + r) : 0;
+            residuals[r] = y + r < end ? residual.ptr(y + r) : 0;
+        }
         ByteLanes h = zero_, before[2] = { zero_, zero_ };
         for (int t = 0; t < steps_; ++t)
         {
@@ -347,9 +352,12 @@ private:
             for (int r = 0; r < groups; ++r)
             {
                 const int x = t - 2 * r;
-                if (x >= 0 && x < width_ && rows[r])
-                    takeWinner(windows_[upperColumn(x)], sums + 1 + r * 16, firstBit(lowest[r]), rows[r][x],
-                               s_.rises[r * width_ + x], s_.slopes[r * width_ + x]);
+                if (x < 0 || x >= width_ || !rows[r])
+                    continue;
+                const int lane = firstBit(lowest[r]);
+                takeWinner(windows_[upperColumn(x)], sums + 1 + r * 16, lane, rows[r][x], s_.rises[r * width_ + x],
+                           s_.slopes[r * width_ + x]);
+                residuals[r][x] = s_.costs[(size_t)t * lanes + r * 16 + lane];
             }
         }
         for (int r = 0; r < groups; ++r)
@@ -412,13 +420,13 @@ private:
 } // namespace
 
 void aggregateStripe(const ScanlineProblem& problem, int above, const Range& rows, ScanlineScratch& scratch,
-                     Mat& disparity)
+                     Mat& disparity, Mat& residual)
 {
     Sweep sweep(problem, scratch);
     for (int y = above; y < rows.start; y += ByteLanes::groups)
         sweep.warmUp(y);
     for (int y = rows.start; y < rows.end; y += ByteLanes::groups)
-        sweep.run(y, rows.end, disparity);
+        sweep.run(y, rows.end, disparity, residual);
 }
 
 #endif

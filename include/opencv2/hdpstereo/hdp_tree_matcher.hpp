@@ -228,6 +228,13 @@ public:
     /** @copybrief setScanlinePasses @sa setScanlinePasses */
     CV_WRAP virtual int getScanlinePasses() const = 0;
 
+    /** @brief Whether pixels that the right image does not show take, in each layer, the disparity of the farther of the
+    pixels beside them (true), or keep what they matched best (false, default). Needs HDPTreeMatcher::COST_CENSUS: of the
+    pixels that map to one column of the right image the one with the lowest cost is there, the others are not. */
+    CV_WRAP virtual void setFillOcclusions(bool fillOcclusions) = 0;
+    /** @copybrief setFillOcclusions @sa setFillOcclusions */
+    CV_WRAP virtual bool getFillOcclusions() const = 0;
+
     /** @brief The layer the search ends at: 0 (default), the image itself, to 15. The map of a coarser layer is enlarged
     to the image's size. More than there are layers: the top one. Without effect if prediction is off. */
     CV_WRAP virtual void setFinestLayer(int layer) = 0;
