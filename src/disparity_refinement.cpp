@@ -148,7 +148,7 @@ void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity)
             for (int x = 0; x < size.width; ++x)
             {
                 const int column = std::min(x / 2, upper.cols - 1), d = own[column];
-                const int next = std::min(std::max(x % 2 ? column + 1 : column - 1, 0), upper.cols - 1);
+                const int next = std::min(std::max(x % 2 ? x / 2 + 1 : x / 2 - 1, 0), upper.cols - 1);
                 const auto sameSurface = [&](int other) { return std::abs(other - d) <= scale ? other : d; };
                 row[x] = (ushort)((9 * d + 3 * sameSurface(own[next]) + 3 * sameSurface(beside[column]) +
                                    sameSurface(beside[next]) + 4) /

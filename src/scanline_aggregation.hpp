@@ -61,9 +61,11 @@ I being grey levels and predicted the disparity that the candidate's run was pre
 
 With L(p, d) of a direction and q the pixel before p,
 L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large) - m, m = min_k L(q, k),
-where candidates that q does not have count m + large. The winner has the lowest sum of the directions, each less its
-own minimum, the first of them if there are several; the tip of the V through its sum and those of the candidates beside
-it gives the sub-pixel part.
+where candidates that q does not have count m + large. d - 1 and d + 1 stand for the candidates before and after d in the
+window of p: those that p does not have are left out, and the last one of its first run and the first one of the second
+count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less its own
+minimum, at most 255, the first of them if there are several; the tip of the V through its sum and those of the
+candidates beside it, if p has disparities d - 1 and d + 1, gives the sub-pixel part.
 
 The image is cut into stripes that do not depend on the number of threads; the direction from above starts anew some rows
 above each of them.

@@ -41,9 +41,10 @@ class Sweep
 public:
     Sweep(const ScanlineProblem& problem, ScanlineScratch& scratch)
         : p_(problem), s_(scratch), width_(problem.size.width), upperWidth_(problem.windows->cols),
-          steps_(width_ + 2 * (groups - 1)), small_(ByteLanes::repeat(problem.penalties.small)),
-          large_(ByteLanes::repeat(problem.penalties.large)), zero_(ByteLanes::repeat(0)), windows_(0), upperRow_(-1),
-          entersUpperRow_(false)
+          steps_(width_ + 2 * (groups - 1)),
+          beforeLast_((1 << (std::min<int>(Window::candidates, problem.numDisparities) - 1)) - 1),
+          small_(ByteLanes::repeat(problem.penalties.small)), large_(ByteLanes::repeat(problem.penalties.large)),
+          zero_(ByteLanes::repeat(0)), windows_(0), upperRow_(-1), entersUpperRow_(false)
     {
         s_.costs.resize((size_t)steps_ * lanes);
         s_.fromRight.resize((size_t)steps_ * lanes);
@@ -367,12 +368,13 @@ private:
 
     //! The winner in whole pixels, and the two lines of opposite slope through its sum and those beside it: their slope
     //! and how much the sum before is above the one after.
-    static void takeWinner(const Window& window, const uchar* sums, int lane, ushort& disparity, short& rise,
-                           short& slope)
+    void takeWinner(const Window& window, const uchar* sums, int lane, ushort& disparity, short& rise,
+                    short& slope) const
     {
         disparity =
             (ushort)((window.first[lane / Window::runLength] + lane % Window::runLength) * ScanlineProblem::scale);
-        const int inner = window.isContiguous() ? 0x7ffe : 0x7e7e; // lanes with a candidate on each side
+        // Lanes with a candidate on each side
+        const int inner = (window.isContiguous() ? 0x7ffe : 0x7e7e) & beforeLast_;
         const int before = sums[lane - 1], after = sums[lane + 1];
         rise = (short)((before - after) * (inner >> lane & 1));
         slope = (short)std::max(std::max(before, after) - sums[lane], 1);
@@ -408,6 +410,7 @@ private:
     const ScanlineProblem& p_;
     ScanlineScratch& s_;
     const int width_, upperWidth_, steps_;
+    const int beforeLast_; // bits of the lanes before that of the last candidate there is
     const ByteLanes small_, large_, zero_;
     const Window* windows_; // of the block's row of the upper layer
     int upperRow_;          // that row

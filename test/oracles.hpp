@@ -8,6 +8,7 @@
 // Nothing here calls the library, except for the strategies' Rule 1 and 2 and the parameters of the prediction model.
 
 #include "test_precomp.hpp"
+#include "../src/candidate_windows.hpp"
 #include "../src/disparity_forest.hpp"
 #include "../src/disparity_prediction.hpp"
 #include "../src/matching_cost.hpp"
@@ -39,8 +40,8 @@ inline Mat_<double> exactGrey(const Mat& image)
     return result;
 }
 
-//! Section 2.1: the mean of 2 x 2 pixels, truncated; floor(size / 2).
-inline Mat halve(const Mat& image)
+//! Section 2.1: the mean of 2 x 2 pixels, truncated (8 bit) or rounded (16 bit); floor(size / 2).
+template <typename T> Mat halve(const Mat& image, double rounding)
 {
     const int channels = image.channels();
     Mat half(image.rows / 2, image.cols / 2, image.type());
@@ -48,13 +49,29 @@ inline Mat halve(const Mat& image)
         for (int x = 0; x < half.cols; ++x)
             for (int c = 0; c < channels; ++c)
             {
-                int sum = 0;
+                double sum = 0;
                 for (int dy = 0; dy < 2; ++dy)
                     for (int dx = 0; dx < 2; ++dx)
-                        sum += image.ptr(2 * y + dy)[(2 * x + dx) * channels + c];
-                half.ptr(y)[x * channels + c] = (uchar)(sum / 4);
+                        sum += image.ptr<T>(2 * y + dy)[(2 * x + dx) * channels + c];
+                half.ptr<T>(y)[x * channels + c] = (T)std::floor(sum / 4 + rounding);
             }
     return half;
+}
+
+inline Mat halve(const Mat& image)
+{
+    return image.depth() == CV_16U ? halve<ushort>(image, 0.5) : halve<uchar>(image, 0);
+}
+
+//! Grey levels in quarters of a level, rounded
+inline Mat greyLevels(const Mat& image)
+{
+    const Mat_<double> exact = exactGrey(image);
+    Mat result(image.size(), CV_16U);
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+            result.at<ushort>(y, x) = (ushort)std::floor(4 * exact(y, x) + 0.5);
+    return result;
 }
 
 //! Section 3.3: M(p, x), averaged over a window; rows and columns clamped to the images.
@@ -110,17 +127,14 @@ private:
     hdp::MatchingCostParams params_;
 };
 
-//! The census cost: the pixels of the window's checkerboard that are darker than its centre in one of the images only;
-//! rows and columns clamped to the images.
+//! The census cost of images of grey levels, CV_16UC1: the pixels of the window's checkerboard that are darker than its
+//! centre in one of the images only; rows and columns clamped to the images.
 class CensusCost
 {
 public:
-    CensusCost(const Mat& left, const Mat& right, int blockSize)
-        : left_(grey(left)), right_(grey(right)), radius_(blockSize / 2)
-    {
-    }
+    CensusCost(const Mat& left, const Mat& right, int blockSize) : left_(left), right_(right), radius_(blockSize / 2) {}
 
-    double operator()(int y, int x, int disparity) const
+    int operator()(int y, int x, int disparity) const
     {
         const int matched = clamped(x - disparity, left_.cols);
         int count = 0;
@@ -137,7 +151,7 @@ public:
 private:
     static bool isDarker(const Mat& image, int y, int x, int dy, int dx)
     {
-        return image.at<uchar>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) < image.at<uchar>(y, x);
+        return image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) < image.at<ushort>(y, x);
     }
 
     Mat left_, right_;
@@ -545,6 +559,153 @@ inline Mat median(const Mat& image, int size)
                     window.push_back(image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)));
             std::sort(window.begin(), window.end());
             result.at<ushort>(y, x) = window[window.size() / 2];
+        }
+    return result;
+}
+
+//! Semi-global matching of a layer from the left, the right and above, over the candidates of windows alone: see
+//! aggregateScanlines(). Disparities are in 1/16 pixel.
+class Scanlines
+{
+public:
+    //! windows: CandidateWindow, one for every 2 x 2 pixels
+    Scanlines(const CensusCost& cost, Size size, int numDisparities, const Mat& windows, int smallPenalty,
+              int largePenalty)
+        : cost_(cost), size_(size), numDisparities_(numDisparities), windows_(windows), small_(smallPenalty),
+          large_(largePenalty)
+    {
+    }
+
+    //! CV_16UC1. In stripes of at least 128 rows; from above each path begins 16 rows above its stripe.
+    Mat match() const
+    {
+        Mat disparity(size_, CV_16UC1);
+        const int stripes = std::max(1, size_.height / 128);
+        for (int i = 0; i < stripes; ++i)
+        {
+            const int first = firstRow(i, stripes), end = i + 1 < stripes ? firstRow(i + 1, stripes) : size_.height;
+            std::vector<Costs> above(size_.width);
+            for (int y = std::max(first - 16, 0); y < end; ++y)
+            {
+                std::vector<Costs> left(size_.width), right(size_.width);
+                for (int x = 0; x < size_.width; ++x)
+                {
+                    above[x] = follow(Point(x, y), Point(x, y - 1), above[x]);
+                    left[x] = follow(Point(x, y), Point(x - 1, y), x > 0 ? left[x - 1] : Costs());
+                }
+                for (int x = size_.width - 1; x >= 0; --x)
+                    right[x] = follow(Point(x, y), Point(x + 1, y), x + 1 < size_.width ? right[x + 1] : Costs());
+                for (int x = 0; y >= first && x < size_.width; ++x)
+                    disparity.at<ushort>(y, x) = winner(Point(x, y), left[x], right[x], above[x]);
+            }
+        }
+        return disparity;
+    }
+
+private:
+    typedef std::vector<int> Costs; // L(p, d) of the candidates; of no pixel: empty
+
+    int firstRow(int stripe, int stripes) const { return size_.height * stripe / stripes / 2 * 2; }
+
+    const hdp::CandidateWindow& window(Point p) const
+    {
+        return windows_.at<hdp::CandidateWindow>(clamped(p.y / 2, windows_.rows), clamped(p.x / 2, windows_.cols));
+    }
+
+    std::vector<int> candidates(Point p) const
+    {
+        std::vector<int> result;
+        for (int run = 0; run < 2; ++run)
+            for (int i = 0; i < 8; ++i)
+                if (window(p).first[run] + i < numDisparities_)
+                    result.push_back(window(p).first[run] + i);
+        return result;
+    }
+
+    int pixelCost(Point p, int d) const
+    {
+        const hdp::CandidateWindow& w = window(p);
+        const int run = d >= w.first[0] && d < w.first[0] + 8 ? 0 : 1;
+        return cost_(p.y, p.x, d) + (int)(std::abs(d - w.predicted[run] / 16.) / 2);
+    }
+
+    //! L(p, d), from that of the pixel before
+    Costs follow(Point p, Point q, const Costs& before) const
+    {
+        const std::vector<int> own = candidates(p);
+        Costs result;
+        for (size_t i = 0; i < own.size(); ++i)
+            result.push_back(pixelCost(p, own[i]));
+        if (before.empty())
+            return result;
+        const std::vector<int> theirs = candidates(q);
+        const int m = *std::min_element(before.begin(), before.end());
+        const auto costBefore = [&](int d) {
+            const size_t i = (size_t)(std::find(theirs.begin(), theirs.end(), d) - theirs.begin());
+            return i < theirs.size() ? before[i] : m + large_;
+        };
+        for (size_t i = 0; i < own.size(); ++i)
+        {
+            int best = std::min(m + large_, costBefore(own[i]));
+            if (i > 0)
+                best = std::min(best, costBefore(own[i - 1]) + small_);
+            if (i + 1 < own.size())
+                best = std::min(best, costBefore(own[i + 1]) + small_);
+            result[i] += best - m;
+        }
+        return result;
+    }
+
+    ushort winner(Point p, const Costs& left, const Costs& right, const Costs& above) const
+    {
+        const std::vector<int> d = candidates(p);
+        std::vector<int> sums(d.size(), 0);
+        for (const Costs* costs : { &left, &right, &above })
+            for (size_t i = 0; i < d.size(); ++i)
+                sums[i] += (*costs)[i] - *std::min_element(costs->begin(), costs->end());
+        for (int& sum : sums)
+            sum = std::min(sum, 255);
+        const size_t i = (size_t)(std::min_element(sums.begin(), sums.end()) - sums.begin());
+        double offset = 0;
+        if (i > 0 && i + 1 < d.size() && d[i - 1] == d[i] - 1 && d[i + 1] == d[i] + 1)
+        {
+            // The steeper side of the V has its slope, the other one the opposite.
+            const double slope = std::max(sums[i - 1], sums[i + 1]) - sums[i];
+            if (slope > 0)
+                offset = (sums[i - 1] - sums[i + 1]) / (2 * slope);
+        }
+        return (ushort)(16 * d[i] + cvRound(16 * offset));
+    }
+
+    CensusCost cost_;
+    Size size_;
+    int numDisparities_;
+    Mat windows_;
+    int small_, large_;
+};
+
+//! The disparities of a layer from those above: bilinear over the four pixels above that are nearest, those outside of
+//! the image being the nearest inside. Where one of them is off by more than a pixel, the nearest one stands for it.
+inline Mat upsampled(const Mat& upper, int scale, Size size)
+{
+    Mat result(size, CV_16UC1);
+    const auto at = [&](int y, int x) {
+        return (double)upper.at<ushort>(clamped(y, upper.rows), clamped(x, upper.cols));
+    };
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+        {
+            const double own = at(y / 2, x / 2);
+            double sum = 0;
+            for (int dy = 0; dy <= 1; ++dy)
+                for (int dx = 0; dx <= 1; ++dx)
+                {
+                    // The centre of a pixel is a quarter from that of the pixel above, towards the next one.
+                    const double other = at(y % 2 ? y / 2 + dy : y / 2 - dy, x % 2 ? x / 2 + dx : x / 2 - dx);
+                    const double weight = (dy ? 0.25 : 0.75) * (dx ? 0.25 : 0.75);
+                    sum += weight * (std::abs(other - own) <= scale ? other : own);
+                }
+            result.at<ushort>(y, x) = (ushort)std::floor(2 * sum + 0.5);
         }
     return result;
 }

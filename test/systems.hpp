@@ -38,13 +38,23 @@ const System paperSystems[] = {
     { "M+RT", "m_rt", createPaperRT, false, true, HDPTreeMatcher::PRESET_PAPER },
 };
 
+const System presetPaper = paperSystems[0];
+const System presetFast = { "PRESET_FAST", "fast", createPaperMST, true, false, HDPTreeMatcher::PRESET_FAST };
+const System presetUltrafast = {
+    "PRESET_ULTRAFAST", "ultrafast", createPaperMST, true, false, HDPTreeMatcher::PRESET_ULTRAFAST
+};
+const System presetQuality = {
+    "PRESET_QUALITY", "quality", createPaperMST, true, false, HDPTreeMatcher::PRESET_QUALITY
+};
 const System presetTree = { "PRESET_TREE", "tree", createPaperMST, true, false, HDPTreeMatcher::PRESET_TREE };
+
+const System presets[] = { presetPaper, presetFast, presetUltrafast, presetQuality, presetTree };
 
 //! What the contract of the matcher is tested with: the systems of the paper and the presets
 inline std::vector<System> allSystems()
 {
-    std::vector<System> systems(paperSystems, paperSystems + sizeof(paperSystems) / sizeof(paperSystems[0]));
-    systems.push_back(presetTree);
+    std::vector<System> systems(std::begin(paperSystems), std::end(paperSystems));
+    systems.insert(systems.end(), std::begin(presets) + 1, std::end(presets)); // the first is one of the paper's
     return systems;
 }
 
@@ -55,43 +65,33 @@ inline void setSystem(HDPTreeMatcher& matcher, const System& system)
     matcher.setUseMedianPrefilter(system.useMedianPrefilter);
 }
 
-//! The values of PRESET_TREE
-inline void setPresetTree(HDPTreeMatcher& matcher)
+//! The values of a preset, whatever was set before
+inline void setPreset(HDPTreeMatcher& matcher, int preset)
 {
-    matcher.setMatchingCost(HDPTreeMatcher::COST_CENSUS);
-    matcher.setBlockSize(7);
-    matcher.setDisparityPrior(HDPTreeMatcher::PRIOR_UPPER_LAYER);
-    matcher.setIntervalMargin(1);
-    matcher.setDelta0(0.02);
-    matcher.setBeta(0.9);
-    matcher.setGamma(20);
-    matcher.setUseSubpixel(true);
-    matcher.setDisparityMedianSize(5);
-    matcher.setDisparityMedianPasses(2);
-}
-
-//! The values of PRESET_PAPER that other presets change
-inline void setPresetPaper(HDPTreeMatcher& matcher)
-{
-    matcher.setMatchingCost(HDPTreeMatcher::COST_COLOR_GRADIENT);
-    matcher.setBlockSize(1);
-    matcher.setDisparityPrior(HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
-    matcher.setIntervalMargin(0);
-    matcher.setDelta0(HDPTreeMatcher::AUTO);
-    matcher.setBeta(HDPTreeMatcher::AUTO);
-    matcher.setGamma(25.5);
-    matcher.setUseSubpixel(false);
-    matcher.setDisparityMedianSize(HDPTreeMatcher::AUTO);
-    matcher.setDisparityMedianPasses(1);
+    const bool isPaper = preset == HDPTreeMatcher::PRESET_PAPER, isTree = preset == HDPTreeMatcher::PRESET_TREE;
+    const bool hasScanlines = !isPaper && !isTree;
+    matcher.setMatchingCost(isPaper ? HDPTreeMatcher::COST_COLOR_GRADIENT : HDPTreeMatcher::COST_CENSUS);
+    matcher.setBlockSize(isPaper ? 1 : 7);
+    matcher.setGamma(isPaper ? 25.5 : 20);
+    matcher.setUseSubpixel(!isPaper);
+    matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : 5);
+    matcher.setDisparityMedianPasses(isTree || preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
+    matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
+    matcher.setNumLayers(hasScanlines ? (int)HDPTreeMatcher::AUTO : 3);
+    matcher.setFinestLayer(preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 1 : 0);
+    matcher.setDisparityPrior(isTree ? HDPTreeMatcher::PRIOR_UPPER_LAYER : HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
+    matcher.setIntervalMargin(isTree ? 1 : 0);
+    matcher.setDelta0(isTree ? 0.02 : (double)HDPTreeMatcher::AUTO);
+    matcher.setBeta(isTree ? 0.9 : (double)HDPTreeMatcher::AUTO);
+    matcher.setSmallPenalty(12);
+    matcher.setLargePenalty(50);
+    matcher.setUseNonLocalRefinement(false);
 }
 
 //! By setters alone, whatever was set before
 inline void configure(HDPTreeMatcher& matcher, const System& system)
 {
-    if (system.preset == HDPTreeMatcher::PRESET_TREE)
-        setPresetTree(matcher);
-    else
-        setPresetPaper(matcher);
+    setPreset(matcher, system.preset);
     setSystem(matcher, system);
 }
 

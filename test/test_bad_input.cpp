@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 #include "helpers.hpp"
+#include "systems.hpp"
 
 namespace opencv_test {
 namespace {
@@ -15,13 +16,17 @@ void expectBadPair(const Mat& left, const Mat& right, const std::string& argumen
     // Not size(): a Mat of three dimensions has none.
     SCOPED_TRACE(testing::Message() << "left " << left.cols << " x " << left.rows << " type " << left.type()
                                     << ", right " << right.cols << " x " << right.rows << " type " << right.type());
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 8);
-    Mat disparity;
-    expectRejected([&] { matcher->compute(left, right, disparity); }, argument);
-    EXPECT_TRUE(disparity.empty());
+    for (const System& preset : presets)
+    {
+        SCOPED_TRACE(preset.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 8);
+        Mat disparity;
+        expectRejected([&] { matcher->compute(left, right, disparity); }, argument);
+        EXPECT_TRUE(disparity.empty());
 
-    const Mat good(12, 16, CV_8UC3, Scalar::all(7));
-    EXPECT_NO_THROW(matcher->compute(good, good, disparity)) << "not usable afterwards";
+        const Mat good(12, 16, CV_8UC3, Scalar::all(7));
+        EXPECT_NO_THROW(matcher->compute(good, good, disparity)) << "not usable afterwards";
+    }
 }
 
 TEST(HDPStereo_BadInput, empty_images)
@@ -88,8 +93,15 @@ TEST(HDPStereo_BadInput, setters)
         expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleWindowSize(bad); }, "speckleWindowSize");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleRange(bad); }, "speckleRange");
     }
-    for (int bad : { 0, -1, 17, INT_MAX, INT_MIN })
+    for (int bad : { 0, -2, 17, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setNumLayers(bad); }, "numLayers");
+    for (int bad : { -1, 16, INT_MAX, INT_MIN })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setFinestLayer(bad); }, "finestLayer");
+    for (int bad : { -1, 101, INT_MAX, INT_MIN })
+    {
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setSmallPenalty(bad); }, "smallPenalty");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setLargePenalty(bad); }, "largePenalty");
+    }
     for (int bad : { 1, 2, 4, 30, 33, -2, -3, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityMedianSize(bad); }, "disparityMedianSize");
     for (int bad : { 0, -1, 9, INT_MAX, INT_MIN })
@@ -98,6 +110,7 @@ TEST(HDPStereo_BadInput, setters)
     {
         expectBadValue([bad](HDPTreeMatcher& m) { m.setMatchingCost(bad); }, "matchingCost");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityPrior(bad); }, "disparityPrior");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setAggregation(bad); }, "aggregation");
     }
     for (int bad : { -1, 65, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setIntervalMargin(bad); }, "intervalMargin");
@@ -121,7 +134,7 @@ TEST(HDPStereo_BadInput, create)
 {
     for (int bad : { 0, -1, INT_MIN })
         expectRejected([bad] { HDPTreeMatcher::create(0, bad); }, "numDisparities");
-    for (int bad : { -1, 1, 2, 3, 5, 1000, INT_MAX })
+    for (int bad : { -1, 5, 1000, INT_MAX, INT_MIN })
         expectRejected([bad] { HDPTreeMatcher::create(0, 64, bad); }, "preset");
 }
 
@@ -130,10 +143,10 @@ TEST(HDPStereo_BadInput, disparities_that_do_not_fit_into_16_bit)
     const Mat image(12, 16, CV_8UC1, Scalar(7));
     const int good[][2] = { { 0, 2048 }, { -2047, 4095 }, { 2047, 1 }, { -2047, 1 } };
     for (const int* range : good)
-        for (int preset : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE })
+        for (const System& preset : presets)
         {
-            SCOPED_TRACE(testing::Message() << range[1] << " from " << range[0] << ", preset " << preset);
-            const Mat disparity = match(*HDPTreeMatcher::create(range[0], range[1], preset), image, image);
+            SCOPED_TRACE(testing::Message() << range[1] << " from " << range[0] << ", " << preset.name);
+            const Mat disparity = match(*createSystem(preset, range[1], range[0]), image, image);
             EXPECT_EQ(16 * range[0], disparity.at<short>(6, 8)); // a tie of all: the lowest
         }
     const int bad[][2] = { { 0, 2049 },    { 1, 2048 },     { -2048, 1 },    { 2048, 1 },
@@ -141,14 +154,15 @@ TEST(HDPStereo_BadInput, disparities_that_do_not_fit_into_16_bit)
     for (const int* range : bad)
     {
         SCOPED_TRACE(testing::Message() << range[1] << " from " << range[0]);
-        expectRejected([&] { match(*HDPTreeMatcher::create(range[0], range[1]), image, image); }, "isparit");
+        for (const System& preset : presets)
+            expectRejected([&] { match(*createSystem(preset, range[1], range[0]), image, image); }, "isparit");
     }
 }
 
 TEST(HDPStereo_BadInput, census_of_other_windows)
 {
     const Mat image(12, 16, CV_8UC1, Scalar(7));
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 8);
+    const Ptr<HDPTreeMatcher> matcher = createSystem(presetPaper, 8);
     matcher->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
     for (int bad : { 1, 9, 31 })
     {
@@ -165,10 +179,20 @@ TEST(HDPStereo_BadInput, census_of_other_windows)
     EXPECT_NO_THROW(match(*matcher, image, image));
 }
 
+TEST(HDPStereo_BadInput, scanlines_without_census)
+{
+    const Mat image(12, 16, CV_8UC1, Scalar(7));
+    const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, 8);
+    matcher->setMatchingCost(HDPTreeMatcher::COST_COLOR_GRADIENT);
+    expectRejected([&] { match(*matcher, image, image); }, "matchingCost");
+    matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREES);
+    EXPECT_NO_THROW(match(*matcher, image, image));
+}
+
 TEST(HDPStereo_BadInput, model_with_too_few_layers)
 {
     const Mat image(24, 32, CV_8UC3, Scalar::all(7));
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 8);
+    const Ptr<HDPTreeMatcher> matcher = createSystem(presetPaper, 8);
     matcher->setPredictionModel(DisparityPredictionModel::create());
     expectRejected([&] { match(*matcher, image, image); }, "predictionModel");
     matcher->setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL));

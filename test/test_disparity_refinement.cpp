@@ -37,6 +37,42 @@ TEST(HDPStereo_DisparityRefinement, median_of_many_rows)
         }
 }
 
+TEST(HDPStereo_DisparityRefinement, upsampled_bilinearly_inside_surfaces)
+{
+    RNG rng(45);
+    for (const Size& size : { Size(2, 2), Size(3, 2), Size(2, 9), Size(3, 3), Size(64, 40), Size(65, 41) })
+        for (int scale : { 1, 16 })
+            for (int levels : { 1, 3, 40, 1024 * scale }) // within a pixel, and anything
+            {
+                SCOPED_TRACE(testing::Message() << size << ", scale " << scale << ", levels " << levels);
+                const Mat upper = randomImage(rng, size / 2, CV_16UC1, levels);
+                Mat disparity(5, 5, CV_16UC1);
+                hdp::upsampleDisparity(upper, scale, size, disparity);
+                expectIdentical(oracle::upsampled(upper, scale, size), disparity);
+            }
+}
+
+//! A slanted plane stays one, at twice the size; a step stays sharp.
+TEST(HDPStereo_DisparityRefinement, upsampled_planes_and_steps)
+{
+    const int scale = 16;
+    Mat upper(20, 30, CV_16UC1), disparity;
+    for (int y = 0; y < upper.rows; ++y)
+        for (int x = 0; x < upper.cols; ++x)
+            upper.at<ushort>(y, x) = (ushort)((x < 15 ? 100 : 400) + 8 * x + 4 * y);
+    hdp::upsampleDisparity(upper, scale, Size(60, 40), disparity);
+    for (int y = 1; y < 39; ++y)
+        for (int x = 1; x < 59; ++x)
+            if (std::abs(x - 29.5) > 1) // beside the step the slope has but one side
+            {
+                // The pixel's centre in the upper layer is at (x - 0.5) / 2.
+                const double exact = 2 * ((x < 30 ? 100 : 400) + 8 * (x - 0.5) / 2 + 4 * (y - 0.5) / 2);
+                EXPECT_NEAR(exact, disparity.at<ushort>(y, x), 0.5) << "y " << y << " x " << x;
+            }
+            else
+                EXPECT_NEAR(2 * (x < 30 ? 100 : 400) + 8 * x + 4 * y, disparity.at<ushort>(y, x), 16);
+}
+
 //! A left pixel is kept if no other one that maps to its column of the right image is nearer by more than maxDiff.
 Mat rejectOccludedByPairs(const Mat& disparity, int maxDiff, short invalid)
 {

@@ -3,15 +3,16 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 #include "helpers.hpp"
+#include "systems.hpp"
 #include "synthetic_pair.hpp"
 
 namespace opencv_test {
 namespace {
 
-//! A matcher without a single default value
+//! A matcher without a single value of any preset or a default one
 Ptr<HDPTreeMatcher> createUnusualMatcher()
 {
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-3, 21);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-3, 21, HDPTreeMatcher::PRESET_PAPER);
     matcher->setBlockSize(3);
     matcher->setSpeckleWindowSize(9);
     matcher->setSpeckleRange(2);
@@ -35,6 +36,11 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setDisparityPrior(HDPTreeMatcher::PRIOR_UPPER_LAYER);
     matcher->setIntervalMargin(2);
     matcher->setUseSubpixel(true);
+    matcher->setAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
+    matcher->setSmallPenalty(9);
+    matcher->setLargePenalty(44);
+    matcher->setFinestLayer(2);
+    matcher->setUseNonLocalRefinement(true);
     return matcher;
 }
 
@@ -79,16 +85,26 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ((int)HDPTreeMatcher::PRIOR_UPPER_LAYER, read->getDisparityPrior());
             EXPECT_EQ(2, read->getIntervalMargin());
             EXPECT_TRUE(read->getUseSubpixel());
+            EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_SCANLINES, read->getAggregation());
+            EXPECT_EQ(9, read->getSmallPenalty());
+            EXPECT_EQ(44, read->getLargePenalty());
+            EXPECT_EQ(2, read->getFinestLayer());
+            EXPECT_TRUE(read->getUseNonLocalRefinement());
             expectIdentical(matchTestPair(*written), matchTestPair(*read));
         }
 }
 
-TEST(HDPStereo_MatcherStorage, defaults_and_no_model)
+TEST(HDPStereo_MatcherStorage, presets_without_model)
 {
-    const Ptr<HDPTreeMatcher> written = HDPTreeMatcher::create(), read = createUnusualMatcher();
-    deserialize(serialized(*written), *read);
-    EXPECT_EQ(serialized(*written), serialized(*read));
-    EXPECT_TRUE(read->getPredictionModel().empty());
+    for (const System& preset : presets)
+    {
+        SCOPED_TRACE(preset.name);
+        const Ptr<HDPTreeMatcher> written = createSystem(preset, 16), read = createUnusualMatcher();
+        deserialize(serialized(*written), *read);
+        EXPECT_EQ(serialized(*written), serialized(*read));
+        EXPECT_TRUE(read->getPredictionModel().empty());
+        expectIdentical(matchTestPair(*written), matchTestPair(*read));
+    }
 }
 
 TEST(HDPStereo_MatcherStorage, save_and_load)
@@ -209,13 +225,18 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "disp12MaxDiff", { "0.5", 0 } },
         { "usePrediction", { "0.5", 0 } },
         { "useMedianPrefilter", { "0.5", 0 } },
-        { "numLayers", { "0", "-1", "17", "2147483647", "1.5", 0 } },
+        { "numLayers", { "0", "-2", "17", "2147483647", "1.5", 0 } },
         { "disparityMedianSize", { "1", "2", "-2", "33", "2147483647", 0 } },
         { "disparityMedianPasses", { "0", "-1", "9", "2147483647", "1.5", 0 } },
         { "matchingCost", { "-1", "2", "2147483647", "0.5", 0 } },
         { "disparityPrior", { "-1", "2", "2147483647", "0.5", 0 } },
         { "intervalMargin", { "-1", "65", "2147483647", "0.5", 0 } },
         { "useSubpixel", { "0.5", 0 } },
+        { "aggregation", { "-1", "2", "2147483647", "0.5", 0 } },
+        { "smallPenalty", { "-1", "101", "2147483647", "0.5", 0 } },
+        { "largePenalty", { "-1", "101", "2147483647", "0.5", 0 } },
+        { "finestLayer", { "-1", "16", "2147483647", "0.5", 0 } },
+        { "useNonLocalRefinement", { "0.5", 0 } },
         { "delta0", { "-0.5", "1.", "1e300", 0 } },
         { "beta", { "-0.5", "1.5", "-1e300", 0 } },
         { "gamma", { "0", "0.", "-19.5", 0 } },
@@ -249,8 +270,9 @@ TEST(HDPStereo_MatcherStorage, missing_keys)
     for (const char* key : { "name", "strategy", "k", "means", "sigmas", "weights" })
         expectUnreadable(withValue(text, key, ""));
 
-    // A number that a file does not have gets its default.
-    const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher(), defaults = HDPTreeMatcher::create();
+    // A number that a file does not have gets the paper's value.
+    const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
+    const Ptr<HDPTreeMatcher> defaults = HDPTreeMatcher::create(0, 64, HDPTreeMatcher::PRESET_PAPER);
     deserialize(withValue(text, "gamma", ""), *matcher);
     EXPECT_EQ(defaults->getGamma(), matcher->getGamma());
     deserialize(withValue(text, "numDisparities", ""), *matcher);
@@ -261,15 +283,19 @@ TEST(HDPStereo_MatcherStorage, missing_keys)
 //! A file that knows nothing of the parameters that later versions have means the paper's system.
 TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
 {
-    const char* const added[] = { "disparityMedianPasses", "matchingCost", "disparityPrior", "intervalMargin",
-                                  "useSubpixel" };
+    const char* const added[] = { "disparityMedianPasses", "matchingCost",         "disparityPrior", "intervalMargin",
+                                  "useSubpixel",           "aggregation",          "smallPenalty",   "largePenalty",
+                                  "finestLayer",           "useNonLocalRefinement" };
     const Ptr<HDPTreeMatcher> paper = HDPTreeMatcher::create(3, 19, HDPTreeMatcher::PRESET_PAPER);
     std::string text = serialized(*paper);
     for (const char* key : added)
         text = withValue(text, key, "");
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, HDPTreeMatcher::PRESET_TREE);
-    deserialize(text, *matcher);
-    EXPECT_EQ(serialized(*paper), serialized(*matcher));
+    for (const System& preset : presets)
+    {
+        const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 64);
+        deserialize(text, *matcher);
+        EXPECT_EQ(serialized(*paper), serialized(*matcher)) << "read by " << preset.name;
+    }
 }
 
 TEST(HDPStereo_MatcherStorage, unknown_strategy)

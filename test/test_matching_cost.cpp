@@ -120,10 +120,12 @@ MatchingCostParams censusParams(int blockSize)
     return params;
 }
 
+//! Images of grey levels, see hdp::greyLevels()
+Mat randomLevels(RNG& rng, Size size, int levels = 1021) { return randomImage(rng, size, CV_16UC1, levels); }
+
 void testCensus(const Mat& left, const Mat& right, int candidates, int blockSize)
 {
-    SCOPED_TRACE(testing::Message() << left.size() << ", channels " << left.channels() << ", candidates " << candidates
-                                    << ", block " << blockSize);
+    SCOPED_TRACE(testing::Message() << left.size() << ", candidates " << candidates << ", block " << blockSize);
     MatchingCost cost;
     cost.prepare(left, right, candidates, censusParams(blockSize));
     const oracle::CensusCost formula(left, right, blockSize);
@@ -133,35 +135,41 @@ void testCensus(const Mat& left, const Mat& right, int candidates, int blockSize
     expectFormula<32>(cost, formula, left.size(), candidates, 0);
 }
 
-// channels, blockSize
-typedef testing::TestWithParam<tuple<int, int>> HDPStereo_CensusCost;
+typedef testing::TestWithParam<int> HDPStereo_CensusCost; // blockSize
 
 TEST_P(HDPStereo_CensusCost, definition_per_pixel)
 {
-    const int type = CV_8UC(get<0>(GetParam())), blockSize = get<1>(GetParam());
     RNG rng(30);
     for (const Size& size : { Size(1, 1), Size(1, 5), Size(5, 1), Size(2, 2), Size(3, 4), Size(23, 9) })
-        for (int levels : { 2, 5, 256 }) // with few levels many pixels are as dark as the centre
+        for (int levels : { 2, 5, 1021 }) // with few levels many pixels are as dark as the centre
             for (int candidates : { 1, 6, size.width + 10 })
-                testCensus(randomImage(rng, size, type, levels), randomImage(rng, size, type, levels), candidates,
-                           blockSize);
+                testCensus(randomLevels(rng, size, levels), randomLevels(rng, size, levels), candidates, GetParam());
+}
+
+//! Levels that differ in a quarter, of any brightness
+TEST_P(HDPStereo_CensusCost, faint_texture)
+{
+    const Size size(20, 9);
+    RNG rng(36);
+    for (int brightness : { 0, 254, 510, 1018 })
+        testCensus(randomLevels(rng, size, 3) + brightness, randomLevels(rng, size, 3) + 1018 - brightness, 12,
+                   GetParam());
 }
 
 TEST_P(HDPStereo_CensusCost, regions_of_interest)
 {
-    const int type = CV_8UC(get<0>(GetParam())), blockSize = get<1>(GetParam());
     RNG rng(31);
-    const Mat left = randomImage(rng, Size(30, 20), type), right = randomImage(rng, Size(30, 20), type);
-    testCensus(left(Rect(3, 2, 17, 8)), right(Rect(6, 5, 17, 8)), 9, blockSize);
+    const Mat left = randomLevels(rng, Size(30, 20)), right = randomLevels(rng, Size(30, 20));
+    testCensus(left(Rect(3, 2, 17, 8)), right(Rect(6, 5, 17, 8)), 9, GetParam());
 }
 
 //! Every compared pixel differs: the most that the cost can be.
 TEST_P(HDPStereo_CensusCost, largest_cost)
 {
-    const int type = CV_8UC(get<0>(GetParam())), blockSize = get<1>(GetParam());
-    Mat left(9, 9, type, Scalar::all(100)), right(9, 9, type, Scalar::all(100));
-    left(Rect(4, 4, 1, 1)).setTo(Scalar::all(200)); // brighter than all around, in the right image darker
-    right(Rect(4, 4, 1, 1)).setTo(Scalar::all(50));
+    const int blockSize = GetParam();
+    Mat left(9, 9, CV_16UC1, Scalar::all(400)), right(9, 9, CV_16UC1, Scalar::all(400));
+    left.at<ushort>(4, 4) = 800; // brighter than all around, in the right image darker
+    right.at<ushort>(4, 4) = 200;
     MatchingCost cost;
     cost.prepare(left, right, 4, censusParams(blockSize));
     float costs[4];
@@ -171,17 +179,15 @@ TEST_P(HDPStereo_CensusCost, largest_cost)
     testCensus(left, right, 4, blockSize);
 }
 
-INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_CensusCost, testing::Combine(testing::Values(1, 3), testing::Values(3, 5, 7)));
-
 //! The rows of bytes for those that compare them themselves: as many bits differ as the cost tells. There are 32 bytes
 //! more than candidates.
 TEST_P(HDPStereo_CensusCost, planes)
 {
-    const int type = CV_8UC(get<0>(GetParam())), blockSize = get<1>(GetParam()), candidates = 13, behind = 32;
+    const int blockSize = GetParam(), candidates = 13, behind = 32;
     RNG rng(34);
     for (const Size& size : { Size(1, 1), Size(5, 3), Size(70, 4) })
     {
-        const Mat left = randomImage(rng, size, type), right = randomImage(rng, size, type);
+        const Mat left = randomLevels(rng, size), right = randomLevels(rng, size);
         MatchingCost cost;
         cost.prepare(left, right, candidates, censusParams(blockSize));
         ASSERT_EQ(blockSize == 7 ? 3 : blockSize == 5 ? 2 : 1, cost.planes());
@@ -205,22 +211,26 @@ TEST_P(HDPStereo_CensusCost, planes)
                 }
     }
     MatchingCost color;
-    const Mat image(4, 4, type, Scalar::all(0));
+    const Mat image(4, 4, CV_8UC3, Scalar::all(0));
     color.prepare(image, image, candidates, paperParams);
     EXPECT_EQ(0, color.planes());
 }
 
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_CensusCost, testing::Values(3, 5, 7));
+
 //! A monotone change of one image's grey levels changes nothing.
 TEST(HDPStereo_MatchingCostInput, census_is_the_same_for_any_exposure)
 {
-    const int candidates = 11, count = 100; // of grey levels
+    const int candidates = 11, count = 400; // of grey levels
     RNG rng(32);
     const Size size(25, 14);
-    const Mat left = randomImage(rng, size, CV_8UC1, count), right = randomImage(rng, size, CV_8UC1, count);
-    Mat levels(1, 256, CV_8UC1, Scalar(255)), exposed;
+    const Mat left = randomLevels(rng, size, count), right = randomLevels(rng, size, count);
+    std::vector<ushort> levels;
     for (int i = 0, level = 0; i < count; ++i, level += rng.uniform(1, 3))
-        levels.at<uchar>(i) = (uchar)level;
-    cv::LUT(right, levels, exposed);
+        levels.push_back((ushort)level);
+    Mat exposed = right.clone();
+    for (ushort& level : Mat_<ushort>(exposed))
+        level = levels[level];
     ASSERT_GT(countDifferent(right, exposed), 0);
     for (int blockSize : { 3, 5, 7 })
     {
@@ -245,11 +255,11 @@ TEST(HDPStereo_MatchingCostInput, many_pixels_at_once)
 {
     RNG rng(35);
     const Size size(37, 11);
-    const Mat left = randomImage(rng, size, CV_8UC3), right = randomImage(rng, size, CV_8UC3);
     for (const MatchingCostParams& params : { paperParams, censusParams(3), censusParams(5), censusParams(7) })
     {
+        const int type = params.census ? CV_16UC1 : CV_8UC3;
         MatchingCost cost;
-        cost.prepare(left, right, 40, params);
+        cost.prepare(randomImage(rng, size, type), randomImage(rng, size, type), 40, params);
         std::vector<int> pixels(500);
         for (int& pixel : pixels)
             pixel = rng.uniform(0, size.area());
@@ -280,8 +290,9 @@ TEST(HDPStereo_MatchingCostInput, prepared_again_for_another_cost)
                 cost.prepare(left, right, size.width, paperParams);
                 expectFormula<8>(cost, oracle::Cost(left, right, paperParams), size, size.width,
                                  toleranceOf(left.channels(), paperParams));
-                cost.prepare(left, right, size.width, censusParams(5));
-                expectFormula<8>(cost, oracle::CensusCost(left, right, 5), size, size.width, 0);
+                const Mat leftGrey = oracle::greyLevels(left), rightGrey = oracle::greyLevels(right);
+                cost.prepare(leftGrey, rightGrey, size.width, censusParams(5));
+                expectFormula<8>(cost, oracle::CensusCost(leftGrey, rightGrey, 5), size, size.width, 0);
             }
 }
 

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The disparity maps of the paper's nine systems and of PRESET_TREE, compared with those in testdata/cv/hdpstereo,
+// The disparity maps of the paper's nine systems and of the presets, compared with those in testdata/cv/hdpstereo,
 // which are found through OPENCV_TEST_DATA_PATH=<checkout>/testdata: PAIR_SYSTEM.png, whole disparities in 8 bit or, of a
 // matcher with sub-pixel ones, disparities times 16 in 16 bit. The pairs are not stored:
 // "synthetic" is generated, and "aloe" is the Aloe pair of OpenCV's samples, reduced to a quarter of its width.

@@ -1,0 +1,155 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "oracles.hpp"
+#include "../src/scanline_aggregation.hpp"
+
+// The stage once more, with the lanes that are written without any instruction set
+#undef CV_AVX2
+#undef CV_SSE2
+#define CV_AVX2 0
+#define CV_SSE2 0
+#undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+#undef CV_CPU_OPTIMIZATION_NAMESPACE_END
+#define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_portable {
+#define CV_CPU_OPTIMIZATION_NAMESPACE_END }
+#include "../src/scanline_aggregation.simd.hpp"
+
+namespace opencv_test {
+namespace {
+
+const int scale = 16;
+
+//! A layer: grey levels, and windows for them
+struct Layer
+{
+    Mat left, right, windows;
+    int numDisparities, blockSize;
+
+    //! Patches of texture at several disparities; the windows are predicted from about these, with outliers.
+    Layer(RNG& rng, Size size, int numDisparities_, int blockSize_)
+        : numDisparities(numDisparities_), blockSize(blockSize_)
+    {
+        left = randomImage(rng, size, CV_16UC1, 1021);
+        right = randomImage(rng, size, CV_16UC1, 1021);
+        Mat upper(std::max(size.height / 2, 1), std::max(size.width / 2, 1), CV_16UC1);
+        const int largest = (numDisparities - 1) / 2;
+        for (int y0 = 0; y0 < upper.rows; y0 += 10)
+            for (int x0 = 0; x0 < upper.cols; x0 += 10)
+            {
+                const int d = rng.uniform(0, numDisparities);
+                for (int y = y0; y < std::min(y0 + 10, upper.rows); ++y)
+                    for (int x = x0; x < std::min(x0 + 10, upper.cols); ++x)
+                    {
+                        const int predicted = rng.uniform(0, 8) ? scale * d / 2 + rng.uniform(-12, 13)
+                                                                : rng.uniform(0, scale * largest + 1);
+                        upper.at<ushort>(y, x) = (ushort)std::min(std::max(predicted, 0), scale * largest);
+                    }
+                for (int y = 2 * y0; y < std::min(2 * y0 + 20, size.height); ++y)
+                    for (int x = std::max(2 * x0, d); x < std::min(2 * x0 + 20, size.width); ++x)
+                        if (rng.uniform(0, 10)) // noise
+                            right.at<ushort>(y, x - d) = left.at<ushort>(y, x);
+            }
+        Mat smallest, largestOf;
+        hdp::predictWindows(upper, scale, numDisparities, smallest, largestOf, windows);
+    }
+
+    Size size() const { return left.size(); }
+
+    hdp::MatchingCost cost() const
+    {
+        const hdp::MatchingCostParams params = { true, 0, 0, 0, blockSize };
+        hdp::MatchingCost result;
+        result.prepare(left, right, numDisparities, params);
+        return result;
+    }
+
+    Mat expected(const hdp::ScanlinePenalties& penalties) const
+    {
+        return oracle::Scanlines(oracle::CensusCost(left, right, blockSize), size(), numDisparities, windows,
+                                 penalties.small, penalties.large)
+            .match();
+    }
+};
+
+Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::ScanlineBuffers& buffers)
+{
+    Mat disparity;
+    hdp::aggregateScanlines(layer.cost(), layer.size(), layer.numDisparities, layer.windows, penalties, buffers,
+                            disparity);
+    return disparity;
+}
+
+const hdp::ScanlinePenalties usualPenalties = { 12, 50 };
+
+typedef testing::TestWithParam<int> HDPStereo_ScanlineAggregation; // blockSize
+
+TEST_P(HDPStereo_ScanlineAggregation, formula_in_small_images)
+{
+    RNG rng(41);
+    hdp::ScanlineBuffers buffers; // kept, as the matcher keeps them
+    for (const Size& size : { Size(1, 1), Size(2, 1), Size(1, 2), Size(2, 2), Size(3, 3), Size(1, 9), Size(2, 9),
+                              Size(3, 10), Size(50, 1), Size(51, 2), Size(50, 3), Size(44, 26), Size(45, 27) })
+        for (int numDisparities : { 1, 2, 7, 15, 16, 17, 29, 70 })
+        {
+            SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
+            const Layer layer(rng, size, numDisparities, GetParam());
+            expectIdentical(layer.expected(usualPenalties), aggregate(layer, usualPenalties, buffers));
+        }
+}
+
+TEST_P(HDPStereo_ScanlineAggregation, formula_in_stripes)
+{
+    RNG rng(42);
+    hdp::ScanlineBuffers buffers;
+    for (const Size& size :
+         { Size(23, 255), Size(23, 256), Size(22, 257), Size(3, 301), Size(1, 387), Size(14, 390), Size(15, 401) })
+        for (int numDisparities : { 9, 40 })
+        {
+            SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
+            const Layer layer(rng, size, numDisparities, GetParam());
+            expectIdentical(layer.expected(usualPenalties), aggregate(layer, usualPenalties, buffers));
+        }
+}
+
+//! Also those that make sums of directions greater than a byte can hold
+TEST_P(HDPStereo_ScanlineAggregation, any_penalties)
+{
+    RNG rng(43);
+    hdp::ScanlineBuffers buffers;
+    const hdp::ScanlinePenalties penalties[] = { { 0, 0 }, { 0, 100 }, { 100, 100 }, { 5, 30 }, { 1, 2 }, { 60, 20 } };
+    for (int numDisparities : { 3, 14, 33 })
+    {
+        const Layer layer(rng, Size(61, 38), numDisparities, GetParam());
+        for (const hdp::ScanlinePenalties& p : penalties)
+        {
+            SCOPED_TRACE(testing::Message() << numDisparities << " disparities, " << p.small << ", " << p.large);
+            expectIdentical(layer.expected(p), aggregate(layer, p, buffers));
+        }
+    }
+}
+
+TEST_P(HDPStereo_ScanlineAggregation, lanes_without_instruction_sets)
+{
+    RNG rng(44);
+    hdp::ScanlineBuffers buffers;
+    hdp::ScanlineScratch scratch;
+    for (const Size& size : { Size(1, 1), Size(2, 2), Size(37, 20), Size(40, 31) })
+        for (int numDisparities : { 5, 16, 50 })
+        {
+            SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
+            const Layer layer(rng, size, numDisparities, GetParam());
+            const hdp::MatchingCost cost = layer.cost();
+            const hdp::ScanlineProblem problem = { &cost, size, numDisparities, &layer.windows, usualPenalties };
+            Mat disparity(size, CV_16UC1);
+            hdp::opt_portable::aggregateStripe(problem, 0, Range(0, size.height), scratch, disparity);
+            expectIdentical(aggregate(layer, usualPenalties, buffers), disparity);
+        }
+}
+
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ScanlineAggregation, testing::Values(3, 5, 7));
+
+} // namespace
+} // namespace opencv_test
