@@ -17,6 +17,9 @@ namespace {
 // Columns behind the last candidate that evaluate() may read
 const int padding = 32;
 
+// Bytes before and behind a row of the census that may be read; they mean nothing.
+const int censusMargin = 16;
+
 // Columns of a census row are computed in groups of this many.
 const int censusColumns = 32;
 
@@ -127,8 +130,8 @@ void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities
         planes_.leftGradient = leftGradient_.ptr<short>();
         planes_.rightGradient = rightGradient_.ptr<short>();
     }
-    planes_.left = left_.ptr();
-    planes_.right = right_.ptr();
+    planes_.left = left_.ptr() + (params.census ? censusMargin : 0);
+    planes_.right = right_.ptr() + (params.census ? censusMargin : 0);
     planes_.leftStep = left_.step;
     planes_.rightStep = right_.step;
     const size_t rows = left.rows + (params.census ? 0 : 2 * (blockSize_ / 2));
@@ -157,19 +160,19 @@ void MatchingCost::prepareCensus(const Mat& image, bool mirrored, int after)
     grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16U);
     copyBordered<ushort>(image, 0, radius, radius, radius + cols - width, mirrored, grey_);
     Mat& census = mirrored ? right_ : left_;
-    census.create((planes + 1) * rows, std::max(width + after, cols), CV_8U);
+    census.create((planes + 1) * rows, censusMargin + std::max(width + after, cols) + censusMargin, CV_8U);
     parallel_for_(Range(0, rows), [&](const Range& range) {
         for (int y = range.start; y < range.end; ++y)
         {
             computeCensusRow(grey_.ptr<ushort>(y + radius) + radius, (ptrdiff_t)grey_.step1(), radius, mirrored, cols,
-                             census.ptr(y), census.step * rows);
+                             census.ptr(y) + censusMargin, census.step * rows);
             const ushort* grey = grey_.ptr<ushort>(y + radius) + radius;
-            uchar* intensity = census.ptr(planes * rows + y);
+            uchar* intensity = census.ptr(planes * rows + y) + censusMargin;
             HDP_VECTORIZED for (int x = 0; x < width; ++x) intensity[x] = (uchar)(grey[x] / greyScale);
             for (int plane = 0; plane <= planes; ++plane)
             {
-                uchar* row = census.ptr(plane * rows + y);
-                std::fill(row + width, row + census.cols, row[width - 1]);
+                uchar* row = census.ptr(plane * rows + y) + censusMargin;
+                std::fill(row + width, census.ptr(plane * rows + y) + census.cols, row[width - 1]);
             }
         }
     });

@@ -73,11 +73,14 @@ public:
         return planes_.left + plane * planes_.leftPlane + y * planes_.leftStep;
     }
     //! As leftPlane(), of the right image: candidate d of pixel x is at [width - 1 - x + d], and there are 32 more bytes
-    //! to read behind the last candidate.
+    //! to read behind the last candidate, and
+    //! of both images 16 before and behind a row.
     const uchar* rightPlane(int plane, int y) const
     {
         return planes_.right + plane * planes_.rightPlane + y * planes_.rightStep;
     }
+    //! From a plane of the left or the right image to the next
+    size_t planeStride(bool ofRight) const { return ofRight ? planes_.rightPlane : planes_.leftPlane; }
 
 private:
     void prepareColorAndGradient(const Mat& image, bool mirrored, int after);

@@ -41,9 +41,18 @@ struct ScanlineProblem
 //! Memory of one stripe
 struct ScanlineScratch
 {
-    std::vector<uchar> costs, fromRight, fromAbove;            // CandidateWindow::candidates per pixel
-    std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // per pixel of the layer above
-    std::vector<short> rises, slopes;                          // of the winners of some rows
+    struct Column // of the layer above
+    {
+        short first[CandidateWindow::runs];
+        ushort inner; // bits of the lanes that have candidates on both sides
+    };
+    std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel
+    std::vector<Column> columns;
+    std::vector<uchar> priors, intoRight, intoLeft,
+        intoBelow;                   // CandidateWindow::candidates per column of the layer above
+    std::vector<ushort> disparities; // of the winners of some rows
+    std::vector<short> rises, slopes;
+    std::vector<uchar> residuals;
 };
 
 struct ScanlineBuffers
