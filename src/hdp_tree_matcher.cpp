@@ -242,6 +242,7 @@ public:
         prior_.clear();
         searchRatios_.assign(settings.layers, 0);
 
+        buffers_.resize(settings.layers + 1);
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] { buildPyramids(left, right, settings, images); });
         for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
@@ -454,6 +455,16 @@ private:
         Mat left, right; // give the matching cost
     };
 
+    //! Memory of a layer. What two layers share would be allocated anew for each of them.
+    struct LayerBuffers
+    {
+        Mat guide, pixelIntv;
+        Mat smallest, largest, windows;
+        MatchingCost cost;
+        Mat winner, residual, filtered, medianStripes, stable;
+        Mat disparity; // the result
+    };
+
     static void checkImages(const Mat& left, const Mat& right)
     {
         if (left.empty())
@@ -556,27 +567,28 @@ private:
         rightPyramid_[0].release();
     }
 
-    //! Section 3: disparity_, that of the layer above, becomes that of this layer.
+    //! Section 3: from the disparities of the layer above to those of this layer
     void matchLayer(int layer, const LayerImages& images, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
+        LayerBuffers& b = buffers_[layer];
         clock_.run("matching cost", [&] {
             const MatchingCostParams params = { p_.matchingCost == COST_CENSUS, (float)p_.colorTruncation,
                                                 (float)p_.gradientTruncation, (float)p_.colorWeight, p_.blockSize };
-            cost_.prepare(images.left, images.right, disparities, params);
+            b.cost.prepare(images.left, images.right, disparities, params);
         });
         if (layer == settings.layers - 1 || p_.aggregation == AGGREGATION_TREES)
             aggregateTrees(layer, images, settings);
         else
             aggregateScanlines(layer, images, settings);
         if (p_.useNonLocalRefinement)
-            clock_.run("non-local refinement", [&] { refine(images, settings); });
+            clock_.run("non-local refinement", [&] { refine(images, settings, b); });
         clock_.run("disparity median", [&] {
-            swap(winner_, disparity_);
+            swap(b.winner, b.disparity);
             for (int pass = 0; settings.medianSize > 0 && pass < p_.disparityMedianPasses; ++pass)
             {
-                medianDisparity(disparity_, settings.medianSize, medianStripes_, winner_);
-                swap(winner_, disparity_);
+                medianDisparity(b.disparity, settings.medianSize, b.medianStripes, b.winner);
+                swap(b.winner, b.disparity);
             }
         });
     }
@@ -585,11 +597,13 @@ private:
     void aggregateTrees(int layer, const LayerImages& images, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
+        LayerBuffers& b = buffers_[layer];
+        Mat& upper = buffers_[layer + 1].disparity;
         const Size size = images.guide.size();
         if (layer == settings.layers - 1)
             clock_.run("disparity prediction", [&] {
-                pixelIntv_.create(size, CV_16UC2);
-                pixelIntv_.setTo(Scalar(0, disparities - 1)); // the full range
+                b.pixelIntv.create(size, CV_16UC2);
+                b.pixelIntv.setTo(Scalar(0, disparities - 1)); // the full range
             });
         else
         {
@@ -605,48 +619,48 @@ private:
                     disparityHistogram(points_, disparities, prior_);
                 });
             else
-                clock_.run("disparity prediction",
-                           [&] { upperHistogram(disparity_, settings.scale, disparities, prior_); });
+                clock_.run("disparity prediction", [&] { upperHistogram(upper, settings.scale, disparities, prior_); });
             clock_.run("disparity prediction", [&] {
                 predictIntervals(*settings.model, layer, prior_, layerDisparities(p_.numDisparities, layer + 1),
                                  settings.delta0 * (1 << layer), p_.intervalMargin, intervals_);
-                assignIntervals(disparity_, settings.scale, size, intervals_, pixelIntv_);
+                assignIntervals(upper, settings.scale, size, intervals_, b.pixelIntv);
             });
         }
         clock_.run("disparity forest", [&] {
-            buildLayerForest(images, settings);
+            buildLayerForest(images, settings, b);
             searchRatios_[layer] = searchRatio(forest_, disparities);
         });
         clock_.run("cost aggregation",
-                   [&] { aggregateForest(forest_, cost_, p_.gamma, settings.scale > 1, aggregation_, winner_); });
+                   [&] { aggregateForest(forest_, b.cost, p_.gamma, settings.scale > 1, aggregation_, b.winner); });
         if (p_.fillOcclusions)
             clock_.run("occlusions", [&] {
-                cost_.censusCosts(winner_, settings.scale, residual_);
-                fillOccluded(winner_, residual_, settings.scale);
+                b.cost.censusCosts(b.winner, settings.scale, b.residual);
+                fillOccluded(b.winner, b.residual, settings.scale);
             });
     }
 
-    //! Section 3.2: forest_, from pixelIntv_
-    void buildLayerForest(const LayerImages& images, const LayerSettings& settings)
+    //! Section 3.2: forest_, from b.pixelIntv
+    void buildLayerForest(const LayerImages& images, const LayerSettings& settings, LayerBuffers& b)
     {
         if (p_.useMedianPrefilter)
-            medianBlur(images.guide, guide_, 3);
-        buildForest(p_.useMedianPrefilter ? guide_ : images.guide, pixelIntv_, *p_.treeStrategy, settings.beta,
+            medianBlur(images.guide, b.guide, 3);
+        buildForest(p_.useMedianPrefilter ? b.guide : images.guide, b.pixelIntv, *p_.treeStrategy, settings.beta,
                     !p_.usePrediction, forestBuffers_, forest_);
     }
 
-    //! Refines winner_ over forest_.
-    void refine(const LayerImages& images, const LayerSettings& settings)
+    //! Refines b.winner over forest_.
+    void refine(const LayerImages& images, const LayerSettings& settings, LayerBuffers& b)
     {
-        if (forest_.links.size() != winner_.size()) // the layer has no trees of its own
+        if (forest_.links.size() != b.winner.size()) // the layer has no trees of its own
         {
-            pixelIntv_.create(winner_.size(), CV_16UC2);
-            pixelIntv_.setTo(Scalar::all(0)); // one tree
-            buildLayerForest(images, settings);
+            b.pixelIntv.create(b.winner.size(), CV_16UC2);
+            b.pixelIntv.setTo(Scalar::all(0)); // one tree
+            buildLayerForest(images, settings, b);
         }
-        swap(winner_, disparity_);
-        findStable(disparity_, settings.scale, stableMaxDiff, stable_);
-        refineNonLocal(forest_, disparity_, settings.scale, stable_, p_.gamma * refinementGamma, aggregation_, winner_);
+        swap(b.winner, b.disparity);
+        findStable(b.disparity, settings.scale, stableMaxDiff, b.stable);
+        refineNonLocal(forest_, b.disparity, settings.scale, b.stable, p_.gamma * refinementGamma, aggregation_,
+                       b.winner);
     }
 
     //! Predicted windows instead of trees. Each pass but the first takes its windows from the disparities of the one
@@ -654,23 +668,25 @@ private:
     void aggregateScanlines(int layer, const LayerImages& images, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
+        LayerBuffers& b = buffers_[layer];
+        Mat& upper = buffers_[layer + 1].disparity;
         searchRatios_[layer] = std::min<double>(CandidateWindow::candidates, disparities) / disparities;
         for (int pass = 0; pass < p_.scanlinePasses; ++pass)
         {
             if (pass > 0)
                 clock_.run("disparity median", [&] {
-                    medianDisparity(winner_, secondPassMedian, medianStripes_, filtered_);
-                    halveDisparity(filtered_, disparity_);
+                    medianDisparity(b.winner, secondPassMedian, b.medianStripes, b.filtered);
+                    halveDisparity(b.filtered, upper);
                 });
             clock_.run("disparity prediction",
-                       [&] { predictWindows(disparity_, settings.scale, disparities, smallest_, largest_, windows_); });
+                       [&] { predictWindows(upper, settings.scale, disparities, b.smallest, b.largest, b.windows); });
             clock_.run("cost aggregation", [&] {
                 const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty, pass == 0 ? 1 : 2 };
-                hdp::aggregateScanlines(cost_, images.left.size(), disparities, windows_, penalties, scanlines_,
-                                        winner_, residual_);
+                hdp::aggregateScanlines(b.cost, images.left.size(), disparities, b.windows, penalties, scanlines_,
+                                        b.winner, b.residual);
             });
             if (p_.fillOcclusions)
-                clock_.run("occlusions", [&] { fillOccluded(winner_, residual_, settings.scale); });
+                clock_.run("occlusions", [&] { fillOccluded(b.winner, b.residual, settings.scale); });
         }
     }
 
@@ -678,19 +694,18 @@ private:
     void finish(const std::vector<LayerImages>& images, const LayerSettings& settings, Mat& disparity)
     {
         for (int layer = settings.finestLayer - 1; layer >= 0; --layer)
-        {
-            upsampleDisparity(disparity_, settings.scale, images[layer].guide.size(), winner_);
-            swap(winner_, disparity_);
-        }
+            upsampleDisparity(buffers_[layer + 1].disparity, settings.scale, images[layer].guide.size(),
+                              buffers_[layer].disparity);
+        LayerBuffers& b = buffers_[0];
         const short invalid = (short)((p_.minDisparity - 1) * DISP_SCALE);
         const double offset = (double)p_.minDisparity * DISP_SCALE;
         if (settings.scale > 1 && !p_.useSubpixel) // to whole pixels
         {
-            disparity_.convertTo(disparity_, CV_16U, 1. / settings.scale);
-            disparity_.convertTo(disparity, CV_16S, DISP_SCALE, offset);
+            b.disparity.convertTo(b.winner, CV_16U, 1. / settings.scale);
+            b.winner.convertTo(disparity, CV_16S, DISP_SCALE, offset);
         }
         else
-            disparity_.convertTo(disparity, CV_16S, (double)DISP_SCALE / settings.scale, offset);
+            b.disparity.convertTo(disparity, CV_16S, (double)DISP_SCALE / settings.scale, offset);
         if (p_.disp12MaxDiff > 0)
             rejectOccluded(disparity, p_.disp12MaxDiff, invalid);
         if (p_.speckleWindowSize > 0)
@@ -718,19 +733,17 @@ private:
 
     // Buffers that are kept between calls
     std::vector<Mat> leftPyramid_, leftGreyPyramid_, rightPyramid_;
-    Mat shiftedRight_, leftGrey_, rightGrey_, guide_;
+    Mat shiftedRight_, leftGrey_, rightGrey_;
     SupportPointBuffers supportPoints_;
     Mat points_;
     std::vector<double> prior_;
     std::vector<DisparityInterval> intervals_;
-    Mat pixelIntv_;
-    Mat smallest_, largest_, windows_;
     ForestBuffers forestBuffers_;
     DisparityForest forest_;
-    MatchingCost cost_;
     AggregationBuffers aggregation_;
     ScanlineBuffers scanlines_;
-    Mat winner_, residual_, filtered_, medianStripes_, disparity_, stable_, speckles_;
+    std::vector<LayerBuffers> buffers_; // one more than layers: there is nothing above the top one
+    Mat speckles_;
 };
 
 } // namespace

@@ -52,7 +52,7 @@ public:
         s_.costs.resize((size_t)steps_ * 2 * lanes);
         s_.fromRight.resize((size_t)steps_ * 2 * lanes);
         s_.fromAbove.assign(columns * Window::candidates, 0);
-        s_.columns.resize(upperColumns);
+        s_.columns.assign(upperColumns, Column()); // also the margins' addresses are valid
         s_.priors.resize(upperColumns * Window::candidates);
         s_.intoRight.resize(upperColumns * Window::candidates);
         s_.intoLeft.resize(upperColumns * Window::candidates);
@@ -70,7 +70,7 @@ public:
             residuals_[r] = &s_.residuals[row];
         }
         preparePriorTable();
-        prepareOrderTable();
+        prepareOrderTables();
     }
 
     //! The direction from above alone, over a block of rows from y on.
@@ -117,45 +117,59 @@ private:
             three(std::integral_constant<int, 3>());
     }
 
-    //! The prior of a run, by the distance of its first candidate from the predicted disparity
+    //! The prior of a run, or of two runs that follow one another, by the distance of its first candidate from the
+    //! predicted disparity
     void preparePriorTable()
     {
         for (int distance = -priorRange; distance < priorRange; ++distance)
-            for (int i = 0; i < Window::runLength; ++i)
+            for (int i = 0; i < Window::candidates; ++i)
                 priorTable_[distance + priorRange][i] =
                     (uchar)(p_.penalties.prior * std::abs(distance + i * ScanlineProblem::scale) /
                             (2 * ScanlineProblem::scale));
     }
 
-    //! For runs that begin `shift` disparities after another one: which of its candidates are the same ones
-    void prepareOrderTable()
+    const uchar* priorOf(const Window& own, int run) const
     {
-        for (int shift = -Window::runLength; shift <= Window::runLength; ++shift)
-            for (int run = 0; run < Window::runs; ++run)
-                for (int i = 0; i < Window::runLength; ++i)
-                {
-                    const bool exists = i + shift >= 0 && i + shift < Window::runLength;
-                    orderTable_[run][shift + Window::runLength][i] =
-                        exists ? (uchar)(run * Window::runLength + i + shift) : (uchar)255;
-                }
+        const int distance = own.first[run] * ScanlineProblem::scale - own.predicted[run];
+        return priorTable_[std::min(std::max(distance, -priorRange), priorRange - 1) + priorRange];
     }
+
+    //! Which lanes have the candidates of a run, or of two that follow one another, that begins `shift` disparities
+    //! after another one of the same length: 255 for those that do not exist
+    void prepareOrderTables()
+    {
+        for (int i = 0; i < 3 * Window::candidates; ++i)
+        {
+            const int lane = i - Window::candidates, high = i - 2 * Window::runLength;
+            pairOrder_[i] = lane >= 0 && lane < Window::candidates ? (uchar)lane : (uchar)255;
+            for (int run = 0; run < Window::runs; ++run)
+                runOrder_[run][i] =
+                    high >= 0 && high < Window::runLength ? (uchar)(run * Window::runLength + high) : (uchar)255;
+        }
+    }
+
+    static int clampShift(int shift, int length) { return std::min(std::max(shift, -length), length); }
 
     //! Which lanes of `from` have the candidates of `to`
     void transition(const Window& from, const Window& to, uchar* order) const
     {
+        if (from.isContiguous() && to.isContiguous())
+        {
+            const int shift = clampShift(to.first[0] - from.first[0], Window::candidates);
+            std::memcpy(order, pairOrder_ + Window::candidates + shift, Window::candidates);
+            return;
+        }
         for (int run = 0; run < Window::runs; ++run)
         {
-            uint64 first, second;
-            std::memcpy(&first, orderTable_[0][clampShift(to.first[run] - from.first[0])], 8);
-            std::memcpy(&second, orderTable_[1][clampShift(to.first[run] - from.first[1])], 8);
-            first &= second; // runs do not overlap: at least one of the two is 255
-            std::memcpy(order + run * Window::runLength, &first, 8);
+            uint64 lanesOf[Window::runs];
+            for (int other = 0; other < Window::runs; ++other)
+            {
+                const int shift = clampShift(to.first[run] - from.first[other], Window::runLength);
+                std::memcpy(&lanesOf[other], runOrder_[other] + 2 * Window::runLength + shift, Window::runLength);
+            }
+            lanesOf[0] &= lanesOf[1]; // runs do not overlap: at least one of the two is 255
+            std::memcpy(order + run * Window::runLength, &lanesOf[0], Window::runLength);
         }
-    }
-
-    static int clampShift(int shift)
-    {
-        return std::min(std::max(shift, -Window::runLength), +Window::runLength) + Window::runLength;
     }
 
     //! An odd last column belongs to the pixel of the layer above that the one before belongs to.
@@ -187,12 +201,11 @@ private:
         const Window& own = window(windows_, x);
         const size_t at = (size_t)(x + margin) * Window::candidates;
         uchar* prior = &s_.priors[at];
-        for (int run = 0; run < Window::runs; ++run)
-        {
-            const int distance = own.first[run] * ScanlineProblem::scale - own.predicted[run];
-            const int index = std::min(std::max(distance, -priorRange), priorRange - 1) + priorRange;
-            std::memcpy(prior + run * Window::runLength, priorTable_[index], Window::runLength);
-        }
+        if (own.isContiguous() && own.predicted[0] == own.predicted[1])
+            std::memcpy(prior, priorOf(own, 0), Window::candidates);
+        else
+            for (int run = 0; run < Window::runs; ++run)
+                std::memcpy(prior + run * Window::runLength, priorOf(own, run), Window::runLength);
         // Lanes that have candidates on both sides
         const int last = std::min<int>(Window::candidates, p_.numDisparities) - 1;
         const int inner = (own.isContiguous() ? 0x7ffe : 0x7e7e) & ((1 << last) - 1);
@@ -414,8 +427,8 @@ private:
     ushort* disparities_[groups];
     short *rises_[groups], *slopes_[groups];
     uchar* residuals_[groups];
-    uchar priorTable_[2 * priorRange][Window::runLength];
-    uchar orderTable_[Window::runs][2 * Window::runLength + 1][Window::runLength];
+    uchar priorTable_[2 * priorRange][Window::candidates];
+    uchar pairOrder_[3 * Window::candidates], runOrder_[Window::runs][3 * Window::candidates];
 };
 
 } // namespace
