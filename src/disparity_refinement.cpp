@@ -96,34 +96,38 @@ void fillOccluded(Mat& disparity, const Mat& residual, int scale)
 {
     const int width = disparity.cols;
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        // By column of the right image: residual and disparity of the pixel that is there
-        std::vector<unsigned> visible(width);
+        // By column of the right image: residual and disparity of the pixel that is there. One more on the left, for
+        // pixels that map to no column.
+        std::vector<unsigned> there(width + 1);
+        std::vector<int> rightColumn(width);
+        std::vector<uchar> visible(width);
         for (int y = rows.start; y < rows.end; ++y)
         {
             ushort* row = disparity.ptr<ushort>(y);
             const uchar* cost = residual.ptr(y);
-            const auto rightColumn = [&](int x) { return x - wholeDisparity(row[x], scale); };
-            std::fill(visible.begin(), visible.end(), UINT_MAX);
+            std::fill(there.begin(), there.end(), UINT_MAX);
+            for (int x = 0; x < width; ++x)
+                rightColumn[x] = std::max(x - wholeDisparity(row[x], scale), -1) + 1;
             for (int x = 0; x < width; ++x)
             {
-                const int right = rightColumn(x);
-                if (right >= 0) // the nearer one of two with the same residual
-                    visible[right] = std::min(visible[right], ((unsigned)cost[x] << 16) + (0xffff - row[x]));
+                unsigned& other = there[rightColumn[x]];
+                other = std::min(other, ((unsigned)cost[x] << 16) + (0xffffu - row[x])); // the nearer one, if equal
             }
-            const auto isVisible = [&](int x) {
-                const int right = rightColumn(x);
-                return right >= 0 && std::abs((int)(0xffff - (visible[right] & 0xffff)) - row[x]) <= scale;
-            };
+            for (int x = 0; x < width; ++x)
+            {
+                const int other = (int)(0xffff - (there[rightColumn[x]] & 0xffff));
+                visible[x] = rightColumn[x] > 0 && std::abs(other - row[x]) <= scale;
+            }
             int before = -1; // the disparity of the last visible pixel
             for (int x = 0; x < width;)
             {
-                if (isVisible(x))
+                if (visible[x])
                 {
                     before = row[x++];
                     continue;
                 }
                 int end = x + 1;
-                while (end < width && !isVisible(end))
+                while (end < width && !visible[end])
                     ++end;
                 const int after = end < width ? row[end] : before;
                 const int farther = before < 0 ? after : std::min(before, after);
