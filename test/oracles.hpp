@@ -8,10 +8,10 @@
 // Nothing here calls the library, except for the strategies' Rule 1 and 2 and the parameters of the prediction model.
 
 #include "test_precomp.hpp"
-#include "../src/candidate_windows.hpp"
 #include "../src/disparity_forest.hpp"
 #include "../src/disparity_prediction.hpp"
 #include "../src/matching_cost.hpp"
+#include "../src/scanline_aggregation.hpp"
 
 namespace opencv_test {
 namespace oracle {
@@ -568,11 +568,12 @@ inline Mat median(const Mat& image, int size)
 class Scanlines
 {
 public:
-    //! windows: CandidateWindow, one for every 2 x 2 pixels
-    Scanlines(const CensusCost& cost, Size size, int numDisparities, const Mat& windows, int smallPenalty,
-              int largePenalty)
-        : cost_(cost), size_(size), numDisparities_(numDisparities), windows_(windows), small_(smallPenalty),
-          large_(largePenalty)
+    //! left, right: grey levels in quarters; windows: CandidateWindow, one for every 2 x 2 pixels.
+    Scanlines(const Mat& left, const Mat& right, int blockSize, int numDisparities, const Mat& windows,
+              const hdp::ScanlinePenalties& penalties)
+        : left_(left), right_(right), census_(left, right, blockSize), size_(left.size()),
+          numDisparities_(numDisparities), windows_(windows), small_(penalties.small), large_(penalties.large),
+          prior_(penalties.prior)
     {
     }
 
@@ -626,7 +627,10 @@ private:
     {
         const hdp::CandidateWindow& w = window(p);
         const int run = d >= w.first[0] && d < w.first[0] + 8 ? 0 : 1;
-        return cost_(p.y, p.x, d) + (int)(std::abs(d - w.predicted[run] / 16.) / 2);
+        const int difference =
+            left_.at<ushort>(p) / 4 - right_.at<ushort>(p.y, clamped(p.x - d, size_.width)) / 4; // of whole levels
+        return census_(p.y, p.x, d) + std::min(std::abs(difference), 31) / 4 +
+               (int)std::floor(prior_ * std::abs(d - w.predicted[run] / 16.) / 2);
     }
 
     //! L(p, d), from that of the pixel before
@@ -677,11 +681,12 @@ private:
         return (ushort)(16 * d[i] + cvRound(16 * offset));
     }
 
-    CensusCost cost_;
+    Mat left_, right_;
+    CensusCost census_;
     Size size_;
     int numDisparities_;
     Mat windows_;
-    int small_, large_;
+    int small_, large_, prior_;
 };
 
 //! The disparities of a layer from those above: bilinear over the four pixels above that are nearest, those outside of

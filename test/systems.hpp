@@ -85,6 +85,7 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setBeta(isTree ? 0.9 : (double)HDPTreeMatcher::AUTO);
     matcher.setSmallPenalty(12);
     matcher.setLargePenalty(50);
+    matcher.setScanlinePasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setUseNonLocalRefinement(false);
 }
 

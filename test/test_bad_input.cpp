@@ -95,6 +95,8 @@ TEST(HDPStereo_BadInput, setters)
     }
     for (int bad : { 0, -2, 17, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setNumLayers(bad); }, "numLayers");
+    for (int bad : { 0, -1, 5, INT_MAX, INT_MIN })
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setScanlinePasses(bad); }, "scanlinePasses");
     for (int bad : { -1, 16, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setFinestLayer(bad); }, "finestLayer");
     for (int bad : { -1, 101, INT_MAX, INT_MIN })

@@ -136,5 +136,29 @@ TEST(HDPStereo_CandidateWindows, a_step)
     }
 }
 
+//! For a second pass: half the mean of the middle two of four, rounded down
+TEST(HDPStereo_CandidateWindows, halved_disparities)
+{
+    RNG rng(46);
+    for (const Size& size : { Size(2, 2), Size(3, 2), Size(2, 9), Size(47, 33) })
+        for (int levels : { 2, 1000, 65536 })
+        {
+            SCOPED_TRACE(testing::Message() << size << ", levels " << levels);
+            const Mat disparity = randomImage(rng, size, CV_16UC1, levels);
+            Mat expected(size / 2, CV_16UC1), upper;
+            for (int y = 0; y < expected.rows; ++y)
+                for (int x = 0; x < expected.cols; ++x)
+                {
+                    std::vector<int> four;
+                    for (int i = 0; i < 4; ++i)
+                        four.push_back(disparity.at<ushort>(2 * y + i / 2, 2 * x + i % 2));
+                    std::sort(four.begin(), four.end());
+                    expected.at<ushort>(y, x) = (ushort)((four[1] + four[2]) / 2 / 2);
+                }
+            hdp::halveDisparity(disparity, upper);
+            expectIdentical(expected, upper);
+        }
+}
+
 } // namespace
 } // namespace opencv_test

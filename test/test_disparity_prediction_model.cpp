@@ -302,7 +302,7 @@ TEST(HDPStereo_ModelTraining, appends_layers_that_a_matcher_takes)
     EXPECT_EQ(serialized(*model), serialized(*DisparityPredictionModel::load(file.name)));
 
     const SyntheticPair pair = makeSyntheticPair(Size(80, 60), 16, 6);
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_PAPER);
     matcher->setPredictionModel(DisparityPredictionModel::load(file.name));
     EXPECT_EQ(pair.left.size(), match(*matcher, pair.left, pair.right).size());
 }
@@ -347,7 +347,7 @@ TEST(HDPStereo_ModelFiles, equal_to_those_built_in)
 void expectHostile(const std::string& text)
 {
     SCOPED_TRACE(text.substr(0, 300));
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_PAPER);
     const Ptr<DisparityPredictionModel> model =
         DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL);
     matcher->setPredictionModel(model);
@@ -414,7 +414,7 @@ TEST(HDPStereo_ModelFiles, model_without_enough_layers)
     const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
     deserialize(modelText(1, "[ { means: [ 0. ], sigmas: [ 1. ], weights: [ 1. ] } ]"), *model);
     const SyntheticPair pair = makeSyntheticPair(Size(80, 60), 16, 6);
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_PAPER);
     matcher->setPredictionModel(model);
     Mat disparity(3, 3, CV_8U, Scalar(9));
     expectRejected([&] { matcher->compute(pair.left, pair.right, disparity); }, "predictionModel");

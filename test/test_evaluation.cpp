@@ -140,7 +140,7 @@ TEST(HDPStereo_Evaluation, matcher_of_a_layer)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 11);
     const Ptr<DisparityPredictionModel> model = publishedModel(160);
-    const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32);
+    const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32, HDPTreeMatcher::PRESET_PAPER);
     expectIdentical(match(*whole, pair.left, pair.right),
                     match(*matcherOfLayer(0, 3, 32, 160, model), pair.left, pair.right));
     std::vector<double> wholeRatios, ratios;
@@ -159,7 +159,7 @@ TEST(HDPStereo_Evaluation, matcher_of_a_layer)
 TEST(HDPStereo_Evaluation, forest_of_the_last_pair)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 12);
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-2, 32);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-2, 32, HDPTreeMatcher::PRESET_PAPER);
     Mat trees, intervals;
     std::vector<double> prior, ratios;
     matcher->getForest(trees, intervals);

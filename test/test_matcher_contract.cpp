@@ -73,6 +73,7 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, matcher->getAggregation());
     EXPECT_EQ(12, matcher->getSmallPenalty());
     EXPECT_EQ(50, matcher->getLargePenalty());
+    EXPECT_EQ(1, matcher->getScanlinePasses());
     EXPECT_EQ(0, matcher->getFinestLayer());
     EXPECT_FALSE(matcher->getUseNonLocalRefinement());
 
@@ -133,6 +134,7 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
                  (int)HDPTreeMatcher::AGGREGATION_TREES);
     EXPECT_KEEPS(matcher, SmallPenalty, 0, 100, 12);
     EXPECT_KEEPS(matcher, LargePenalty, 0, 100, 50);
+    EXPECT_KEEPS(matcher, ScanlinePasses, 4, 2, 1);
     EXPECT_KEEPS(matcher, FinestLayer, 15, 1, 0);
     EXPECT_KEEPS(matcher, UseNonLocalRefinement, true, false);
     EXPECT_KEEPS(matcher, TreeStrategy, createSegmentTree(), createRandomTree());
@@ -204,6 +206,7 @@ const Change colorAndGradientChanges[] = {
 const Change scanlineChanges[] = {
     { "smallPenalty", [](HDPTreeMatcher& m) { m.setSmallPenalty(3); } },
     { "largePenalty", [](HDPTreeMatcher& m) { m.setLargePenalty(90); } },
+    { "scanlinePasses", [](HDPTreeMatcher& m) { m.setScanlinePasses(3); } },
     { "aggregation", [](HDPTreeMatcher& m) { m.setAggregation(HDPTreeMatcher::AGGREGATION_TREES); } },
 };
 // clang-format on

@@ -39,6 +39,7 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
     matcher->setSmallPenalty(9);
     matcher->setLargePenalty(44);
+    matcher->setScanlinePasses(3);
     matcher->setFinestLayer(2);
     matcher->setUseNonLocalRefinement(true);
     return matcher;
@@ -88,6 +89,7 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_SCANLINES, read->getAggregation());
             EXPECT_EQ(9, read->getSmallPenalty());
             EXPECT_EQ(44, read->getLargePenalty());
+            EXPECT_EQ(3, read->getScanlinePasses());
             EXPECT_EQ(2, read->getFinestLayer());
             EXPECT_TRUE(read->getUseNonLocalRefinement());
             expectIdentical(matchTestPair(*written), matchTestPair(*read));
@@ -235,6 +237,7 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "aggregation", { "-1", "2", "2147483647", "0.5", 0 } },
         { "smallPenalty", { "-1", "101", "2147483647", "0.5", 0 } },
         { "largePenalty", { "-1", "101", "2147483647", "0.5", 0 } },
+        { "scanlinePasses", { "0", "-1", "5", "2147483647", "0.5", 0 } },
         { "finestLayer", { "-1", "16", "2147483647", "0.5", 0 } },
         { "useNonLocalRefinement", { "0.5", 0 } },
         { "delta0", { "-0.5", "1.", "1e300", 0 } },
@@ -283,9 +286,9 @@ TEST(HDPStereo_MatcherStorage, missing_keys)
 //! A file that knows nothing of the parameters that later versions have means the paper's system.
 TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
 {
-    const char* const added[] = { "disparityMedianPasses", "matchingCost",         "disparityPrior", "intervalMargin",
-                                  "useSubpixel",           "aggregation",          "smallPenalty",   "largePenalty",
-                                  "finestLayer",           "useNonLocalRefinement" };
+    const char* const added[] = { "disparityMedianPasses", "matchingCost", "disparityPrior",       "intervalMargin",
+                                  "useSubpixel",           "aggregation",  "smallPenalty",         "largePenalty",
+                                  "scanlinePasses",        "finestLayer",  "useNonLocalRefinement" };
     const Ptr<HDPTreeMatcher> paper = HDPTreeMatcher::create(3, 19, HDPTreeMatcher::PRESET_PAPER);
     std::string text = serialized(*paper);
     for (const char* key : added)

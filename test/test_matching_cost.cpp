@@ -179,8 +179,8 @@ TEST_P(HDPStereo_CensusCost, largest_cost)
     testCensus(left, right, 4, blockSize);
 }
 
-//! The rows of bytes for those that compare them themselves: as many bits differ as the cost tells. There are 32 bytes
-//! more than candidates.
+//! The rows of bytes for those that compare them themselves: as many bits differ as the cost tells; and the grey levels,
+//! in whole ones. There are 32 bytes more than candidates.
 TEST_P(HDPStereo_CensusCost, planes)
 {
     const int blockSize = GetParam(), candidates = 13, behind = 32;
@@ -204,9 +204,12 @@ TEST_P(HDPStereo_CensusCost, planes)
                         for (int bit = 0; bit < 8; ++bit)
                             different += differences >> bit & 1;
                     }
+                    const int level = cost.rightPlane(cost.planes(), y)[size.width - 1 - x + d];
                     if (d < candidates)
                     {
                         ASSERT_EQ(formula(y, x, d), different) << "y " << y << " x " << x << " candidate " << d;
+                        ASSERT_EQ(right.at<ushort>(y, std::max(x - d, 0)) / 4, level) << "y " << y << " x " << x - d;
+                        ASSERT_EQ(left.at<ushort>(y, x) / 4, cost.leftPlane(cost.planes(), y)[x]);
                     }
                 }
     }

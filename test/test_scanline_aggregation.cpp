@@ -68,9 +68,7 @@ struct Layer
 
     Mat expected(const hdp::ScanlinePenalties& penalties) const
     {
-        return oracle::Scanlines(oracle::CensusCost(left, right, blockSize), size(), numDisparities, windows,
-                                 penalties.small, penalties.large)
-            .match();
+        return oracle::Scanlines(left, right, blockSize, numDisparities, windows, penalties).match();
     }
 };
 
@@ -82,7 +80,7 @@ Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::
     return disparity;
 }
 
-const hdp::ScanlinePenalties usualPenalties = { 12, 50 };
+const hdp::ScanlinePenalties usualPenalties = { 12, 50, 1 };
 
 typedef testing::TestWithParam<int> HDPStereo_ScanlineAggregation; // blockSize
 
@@ -119,13 +117,15 @@ TEST_P(HDPStereo_ScanlineAggregation, any_penalties)
 {
     RNG rng(43);
     hdp::ScanlineBuffers buffers;
-    const hdp::ScanlinePenalties penalties[] = { { 0, 0 }, { 0, 100 }, { 100, 100 }, { 5, 30 }, { 1, 2 }, { 60, 20 } };
+    const hdp::ScanlinePenalties penalties[] = { { 0, 0, 1 },  { 0, 100, 2 }, { 100, 100, 4 },
+                                                 { 5, 30, 2 }, { 1, 2, 3 },   { 60, 20, 1 } };
     for (int numDisparities : { 3, 14, 33 })
     {
         const Layer layer(rng, Size(61, 38), numDisparities, GetParam());
         for (const hdp::ScanlinePenalties& p : penalties)
         {
-            SCOPED_TRACE(testing::Message() << numDisparities << " disparities, " << p.small << ", " << p.large);
+            SCOPED_TRACE(testing::Message()
+                         << numDisparities << " disparities, " << p.small << ", " << p.large << ", " << p.prior);
             expectIdentical(layer.expected(p), aggregate(layer, p, buffers));
         }
     }
