@@ -4,6 +4,7 @@
 #include "precomp.hpp"
 #include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
+#include "vectorized.hpp"
 
 namespace cv {
 namespace stereo {
@@ -149,15 +150,24 @@ void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity)
             const ushort* own = upper.ptr<ushort>(clampRow(y / 2));
             const ushort* beside = upper.ptr<ushort>(clampRow(y % 2 ? y / 2 + 1 : y / 2 - 1));
             ushort* row = disparity.ptr<ushort>(y);
-            for (int x = 0; x < size.width; ++x)
-            {
-                const int column = std::min(x / 2, upper.cols - 1), d = own[column];
-                const int next = std::min(std::max(x % 2 ? x / 2 + 1 : x / 2 - 1, 0), upper.cols - 1);
+            const auto mean = [&](int x, int next) {
+                const int d = own[x];
                 const auto sameSurface = [&](int other) { return std::abs(other - d) <= scale ? other : d; };
-                row[x] = (ushort)((9 * d + 3 * sameSurface(own[next]) + 3 * sameSurface(beside[column]) +
-                                   sameSurface(beside[next]) + 4) /
-                                  8);
+                return (ushort)((9 * d + 3 * sameSurface(own[next]) + 3 * sameSurface(beside[x]) +
+                                 sameSurface(beside[next]) + 4) /
+                                8);
+            };
+            const int last = upper.cols - 1;
+            HDP_VECTORIZED for (int x = 1; x < last; ++x)
+            {
+                row[2 * x] = mean(x, x - 1);
+                row[2 * x + 1] = mean(x, x + 1);
             }
+            row[0] = mean(0, 0);
+            if (size.width > 1)
+                row[1] = mean(0, std::min(1, last));
+            for (int x = std::max(2 * last, 2); x < size.width; ++x) // a last odd column is that pixel's, too
+                row[x] = mean(last, x % 2 ? last : x / 2 - 1);
         }
     });
 }

@@ -768,7 +768,6 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities,
         parameters.setIntervalMargin(1);
         parameters.setDelta0(0.02);
         parameters.setBeta(0.9);
-        parameters.setDisparityMedianPasses(2);
         break;
     case PRESET_ULTRAFAST:
         parameters.setFinestLayer(1);
