@@ -4,6 +4,7 @@
 #include "precomp.hpp"
 
 #include "candidate_windows.hpp"
+#include "disparity_confidence.hpp"
 #include "disparity_forest.hpp"
 #include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
@@ -82,6 +83,7 @@ struct Parameters
     int finestLayer = 0;
     int scanlinePasses = 1;
     bool fillOcclusions = false;
+    int disparityDepth = CV_16S;
     bool useNonLocalRefinement = false;
 
     void setMinDisparity(int value) { minDisparity = value; }
@@ -180,6 +182,11 @@ struct Parameters
         scanlinePasses = checked(value, value >= 1 && value <= 4, "scanlinePasses", "in 1..4");
     }
 
+    void setDisparityDepth(int value)
+    {
+        disparityDepth = checked(value, value == CV_16S || value == CV_32F, "disparityDepth", "CV_16S or CV_32F");
+    }
+
     static int checkedPenalty(int value, const char* name)
     {
         return checked(value, value >= 0 && value <= ScanlinePenalties::largest, name, "in 0..100");
@@ -234,8 +241,10 @@ public:
     void compute(InputArray leftArray, InputArray rightArray, OutputArray disparityArray) CV_OVERRIDE
     {
         CV_TRACE_FUNCTION();
+        matched_ = MatchedLayer(); // until this pair is
         const Mat left = leftArray.getMat(), right = rightArray.getMat();
         checkImages(left, right);
+        const int depth = outputDepth(disparityArray);
         const LayerSettings settings = resolve(left.size());
         clock_.restart();
         forest_.trees.clear(); // what getForest() and getLayerPrior() give is of this pair, or nothing
@@ -248,9 +257,14 @@ public:
         for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
             matchLayer(layer, images[layer], settings);
 
-        disparityArray.create(left.size(), CV_16S);
+        disparityArray.create(left.size(), depth);
         Mat disparity = disparityArray.getMat();
         clock_.run("output", [&] { finish(images, settings, disparity); });
+        matched_.size = left.size();
+        matched_.isFiltered = isFiltered();
+        matched_.layer = settings.finestLayer;
+        matched_.scale = settings.scale;
+        matched_.disparities = layerDisparities(p_.numDisparities, settings.finestLayer);
     }
 
     // cv::StereoMatcher
@@ -312,6 +326,8 @@ public:
     void setFinestLayer(int value) CV_OVERRIDE { p_.setFinestLayer(value); }
     int getScanlinePasses() const CV_OVERRIDE { return p_.scanlinePasses; }
     void setScanlinePasses(int value) CV_OVERRIDE { p_.setScanlinePasses(value); }
+    int getDisparityDepth() const CV_OVERRIDE { return p_.disparityDepth; }
+    void setDisparityDepth(int value) CV_OVERRIDE { p_.setDisparityDepth(value); }
     bool getFillOcclusions() const CV_OVERRIDE { return p_.fillOcclusions; }
     void setFillOcclusions(bool value) CV_OVERRIDE { p_.fillOcclusions = value; }
     bool getUseNonLocalRefinement() const CV_OVERRIDE { return p_.useNonLocalRefinement; }
@@ -338,6 +354,22 @@ public:
     }
 
     void getLayerPrior(std::vector<double>& prior) const CV_OVERRIDE { prior = prior_; }
+
+    void getConfidence(OutputArray confidenceArray) const CV_OVERRIDE
+    {
+        if (matched_.size.empty())
+            return confidenceArray.release();
+        confidenceArray.create(matched_.size, CV_8U);
+        Mat confidence = confidenceArray.getMat();
+        const LayerBuffers& b = buffers_[matched_.layer];
+        Mat coarse;
+        Mat& ofLayer = matched_.layer > 0 ? coarse : confidence;
+        disparityConfidence(b.disparity, matched_.scale, matched_.disparities, b.cost, ofLayer);
+        if (matched_.layer > 0)
+            resize(coarse, confidence, matched_.size, 0, 0, INTER_LINEAR_EXACT);
+        if (matched_.isFiltered)
+            confidence.setTo(Scalar(0), rejected_);
+    }
 
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
     {
@@ -379,6 +411,7 @@ public:
            << "finestLayer" << p_.finestLayer
            << "scanlinePasses" << p_.scanlinePasses
            << "fillOcclusions" << (int)p_.fillOcclusions
+           << "disparityDepth" << p_.disparityDepth
            << "useNonLocalRefinement" << (int)p_.useNonLocalRefinement;
         // clang-format on
         fs << "treeStrategy"
@@ -427,6 +460,7 @@ public:
         readNumber<int>(fn, "finestLayer", [&](int value) { p.setFinestLayer(value); });
         readNumber<int>(fn, "scanlinePasses", [&](int value) { p.setScanlinePasses(value); });
         readNumber<int>(fn, "fillOcclusions", [&](int value) { p.fillOcclusions = value != 0; });
+        readNumber<int>(fn, "disparityDepth", [&](int value) { p.setDisparityDepth(value); });
         readNumber<int>(fn, "useNonLocalRefinement", [&](int value) { p.useNonLocalRefinement = value != 0; });
         p.treeStrategy = readStrategy(fn["treeStrategy"]);
         if (!fn["predictionModel"].empty())
@@ -446,6 +480,17 @@ private:
         double delta0, beta;
         int medianSize;
         int scale; // units of a disparity in one pixel
+    };
+
+    //! The finest layer of the last pair
+    struct MatchedLayer
+    {
+        Size size; // of the image; empty: no pair is matched
+        int layer;
+        int scale;       // units of a disparity in one pixel
+        int disparities; // of the layer
+        bool isFiltered; // rejected_ says which pixels of the image are invalid
+        MatchedLayer() : layer(0), scale(0), disparities(0), isFiltered(false) {}
     };
 
     //! What the stages see of a layer
@@ -477,6 +522,15 @@ private:
             CV_Error(Error::StsUnmatchedFormats, "right must have the type of left");
         if (left.total() > (size_t)INT_MAX / 2)
             CV_Error(Error::StsOutOfRange, "left must have less than 2^30 pixels");
+    }
+
+    //! Of the disparities: what the caller's array has, if its type is fixed
+    int outputDepth(OutputArray disparity) const
+    {
+        const int type = disparity.fixedType() ? disparity.type() : p_.disparityDepth;
+        if (type != CV_16SC1 && type != CV_32FC1)
+            CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1 if its type is fixed");
+        return type;
     }
 
     LayerSettings resolve(Size size) const
@@ -690,6 +744,8 @@ private:
         }
     }
 
+    bool isFiltered() const { return p_.disp12MaxDiff > 0 || p_.speckleWindowSize > 0; }
+
     //! From candidates of the finest layer to what cv::StereoMatcher promises.
     void finish(const std::vector<LayerImages>& images, const LayerSettings& settings, Mat& disparity)
     {
@@ -697,19 +753,27 @@ private:
             upsampleDisparity(buffers_[layer + 1].disparity, settings.scale, images[layer].guide.size(),
                               buffers_[layer].disparity);
         LayerBuffers& b = buffers_[0];
-        const short invalid = (short)((p_.minDisparity - 1) * DISP_SCALE);
-        const double offset = (double)p_.minDisparity * DISP_SCALE;
-        if (settings.scale > 1 && !p_.useSubpixel) // to whole pixels
-        {
+        const bool toWhole = settings.scale > 1 && !p_.useSubpixel;
+        if (toWhole)
             b.disparity.convertTo(b.winner, CV_16U, 1. / settings.scale);
-            b.winner.convertTo(disparity, CV_16S, DISP_SCALE, offset);
-        }
-        else
-            b.disparity.convertTo(disparity, CV_16S, (double)DISP_SCALE / settings.scale, offset);
+        const Mat& map = toWhole ? b.winner : b.disparity;
+        const int scale = toWhole ? 1 : settings.scale;
+        const bool isFloat = disparity.depth() == CV_32F;
+        if (isFloat)
+            map.convertTo(disparity, CV_32F, 1. / scale, p_.minDisparity);
+        Mat& fixedPoint = isFloat ? fixedPoint_ : disparity; // what the filters take
+        if (!isFloat || isFiltered())
+            map.convertTo(fixedPoint, CV_16S, (double)DISP_SCALE / scale, (double)p_.minDisparity * DISP_SCALE);
+        if (!isFiltered())
+            return;
+        const short invalid = (short)((p_.minDisparity - 1) * DISP_SCALE);
         if (p_.disp12MaxDiff > 0)
-            rejectOccluded(disparity, p_.disp12MaxDiff, invalid);
+            rejectOccluded(fixedPoint, p_.disp12MaxDiff, invalid);
         if (p_.speckleWindowSize > 0)
-            filterSpeckles(disparity, invalid, p_.speckleWindowSize, DISP_SCALE * p_.speckleRange, speckles_);
+            filterSpeckles(fixedPoint, invalid, p_.speckleWindowSize, DISP_SCALE * p_.speckleRange, speckles_);
+        compare(fixedPoint, Scalar(invalid), rejected_, CMP_EQ);
+        if (isFloat)
+            disparity.setTo(Scalar(p_.minDisparity - 1), rejected_);
     }
 
     Ptr<TreeStrategy> readStrategy(const FileNode& fn) const
@@ -730,6 +794,7 @@ private:
     Parameters p_;
     std::vector<double> searchRatios_;
     StageClock clock_;
+    MatchedLayer matched_;
 
     // Buffers that are kept between calls
     std::vector<Mat> leftPyramid_, leftGreyPyramid_, rightPyramid_;
@@ -743,7 +808,7 @@ private:
     AggregationBuffers aggregation_;
     ScanlineBuffers scanlines_;
     std::vector<LayerBuffers> buffers_; // one more than layers: there is nothing above the top one
-    Mat speckles_;
+    Mat fixedPoint_, rejected_, speckles_;
 };
 
 } // namespace
