@@ -188,6 +188,8 @@ TEST(HDPStereo_BadInput, scanlines_without_census)
     matcher->setMatchingCost(HDPTreeMatcher::COST_COLOR_GRADIENT);
     expectRejected([&] { match(*matcher, image, image); }, "matchingCost");
     matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREES);
+    expectRejected([&] { match(*matcher, image, image); }, "fillOcclusions");
+    matcher->setFillOcclusions(false);
     EXPECT_NO_THROW(match(*matcher, image, image));
 }
 

@@ -300,7 +300,7 @@ TEST(HDPStereo_MatchingCostInput, prepared_again_for_another_cost)
             }
 }
 
-TEST(HDPStereo_MatchingCost, census_of_one_candidate_a_pixel)
+TEST(HDPStereo_MatchingCostCensus, of_one_candidate_a_pixel)
 {
     RNG rng(48);
     const Size size(37, 21);
