@@ -26,22 +26,28 @@ struct ByteLanes
         return of(_mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1));
     }
     static ByteLanes repeat(int byte) { return of(_mm256_set1_epi8((char)byte)); }
-    static ByteLanes repeat(const uchar* const* bytes)
+    static ByteLanes repeat(const uchar* const* bytes, size_t offset)
     {
-        return of(_mm_set1_epi8((char)*bytes[0]), _mm_set1_epi8((char)*bytes[1]));
+        return of(_mm_set1_epi8((char)bytes[0][offset]), _mm_set1_epi8((char)bytes[1][offset]));
     }
     static ByteLanes load(const uchar* bytes) { return of(_mm256_loadu_si256((const __m256i*)bytes)); }
     static ByteLanes load(const uchar* const* bytes)
     {
         return of(_mm_loadu_si128((const __m128i*)bytes[0]), _mm_loadu_si128((const __m128i*)bytes[1]));
     }
-    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high)
+    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, size_t offset)
     {
-        return of(halves(low[0], high[0]), halves(low[1], high[1]));
+        return of(halves(low[0] + offset, high[0] + offset), halves(low[1] + offset, high[1] + offset));
     }
     static __m128i halves(const uchar* low, const uchar* high)
     {
         return _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i*)low), _mm_loadl_epi64((const __m128i*)high));
+    }
+    //! The group at bytes, and 0, 1, .. 15 in the others
+    static ByteLanes first(const uchar* bytes)
+    {
+        const __m128i identity = _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+        return of(_mm_loadu_si128((const __m128i*)bytes), identity);
     }
     //! The group at bytes, then those of before but the last one.
     static ByteLanes shiftIn(const uchar* bytes, ByteLanes before)
@@ -111,14 +117,15 @@ struct ByteLanes
         return lanes;
     }
     static ByteLanes repeat(int byte) { return of(_mm_set1_epi8((char)byte)); }
-    static ByteLanes repeat(const uchar* const* bytes) { return repeat(*bytes[0]); }
+    static ByteLanes repeat(const uchar* const* bytes, size_t offset) { return repeat(bytes[0][offset]); }
     static ByteLanes load(const uchar* bytes) { return of(_mm_loadu_si128((const __m128i*)bytes)); }
     static ByteLanes load(const uchar* const* bytes) { return load(bytes[0]); }
-    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high)
+    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, size_t offset)
     {
-        return of(
-            _mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i*)low[0]), _mm_loadl_epi64((const __m128i*)high[0])));
+        return of(_mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i*)(low[0] + offset)),
+                                     _mm_loadl_epi64((const __m128i*)(high[0] + offset))));
     }
+    static ByteLanes first(const uchar* bytes) { return load(bytes); }
     static ByteLanes shiftIn(const uchar* bytes, ByteLanes) { return load(bytes); }
     void store(uchar* bytes) const { _mm_storeu_si128((__m128i*)bytes, v); }
     void storeLast(uchar* bytes) const { store(bytes); }
@@ -181,16 +188,17 @@ struct ByteLanes
     {
         return each([=](int) { return byte; });
     }
-    static ByteLanes repeat(const uchar* const* bytes) { return repeat(*bytes[0]); }
+    static ByteLanes repeat(const uchar* const* bytes, size_t offset) { return repeat(bytes[0][offset]); }
     static ByteLanes load(const uchar* bytes)
     {
         return each([=](int i) { return bytes[i]; });
     }
     static ByteLanes load(const uchar* const* bytes) { return load(bytes[0]); }
-    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high)
+    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, size_t offset)
     {
-        return each([=](int i) { return i < 8 ? low[0][i] : high[0][i - 8]; });
+        return each([=](int i) { return i < 8 ? low[0][offset + i] : high[0][offset + i - 8]; });
     }
+    static ByteLanes first(const uchar* bytes) { return load(bytes); }
     static ByteLanes shiftIn(const uchar* bytes, const ByteLanes&) { return load(bytes); }
     void store(uchar* bytes) const { std::copy(v, v + 16, bytes); }
     void storeLast(uchar* bytes) const { store(bytes); }

@@ -42,9 +42,6 @@ DisparityInterval growInterval(const std::vector<double>& row, double delta, int
     return interval;
 }
 
-//! Of a disparity times scale.
-int wholeDisparity(int disparity, int scale) { return (disparity + scale / 2) / scale; }
-
 } // namespace
 
 void predictIntervals(const DisparityPredictionModel& model, int layer, const std::vector<double>& prior,

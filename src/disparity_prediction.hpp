@@ -13,6 +13,12 @@ namespace hdp {
 //! Units of a sub-pixel disparity in one pixel
 const int subpixelScale = 16;
 
+//! Of a disparity times scale, which is 1 or subpixelScale
+inline int wholeDisparity(int disparity, int scale)
+{
+    return scale == 1 ? disparity : (int)((unsigned)(disparity + subpixelScale / 2) / subpixelScale);
+}
+
 //! Disparities first .. last; empty if last < first. Stored in Mats as CV_16UC2.
 struct DisparityInterval
 {

@@ -2,7 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
+#include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
+#include "vectorized.hpp"
 
 namespace cv {
 namespace stereo {
@@ -91,6 +93,53 @@ void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered
     }
 }
 
+void fillOccluded(Mat& disparity, const Mat& residual, int scale)
+{
+    const int width = disparity.cols;
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        // By column of the right image: residual and disparity of the pixel that is there. One more on the left, for
+        // pixels that map to no column.
+        std::vector<unsigned> there(width + 1);
+        std::vector<int> rightColumn(width);
+        std::vector<uchar> visible(width);
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            ushort* row = disparity.ptr<ushort>(y);
+            const uchar* cost = residual.ptr(y);
+            std::fill(there.begin(), there.end(), UINT_MAX);
+            for (int x = 0; x < width; ++x)
+                rightColumn[x] = std::max(x - wholeDisparity(row[x], scale), -1) + 1;
+            for (int x = 0; x < width; ++x)
+            {
+                unsigned& other = there[rightColumn[x]];
+                other = std::min(other, ((unsigned)cost[x] << 16) + (0xffffu - row[x])); // the nearer one, if equal
+            }
+            for (int x = 0; x < width; ++x)
+            {
+                const int other = (int)(0xffff - (there[rightColumn[x]] & 0xffff));
+                visible[x] = rightColumn[x] > 0 && std::abs(other - row[x]) <= scale;
+            }
+            int before = -1; // the disparity of the last visible pixel
+            for (int x = 0; x < width;)
+            {
+                if (visible[x])
+                {
+                    before = row[x++];
+                    continue;
+                }
+                int end = x + 1;
+                while (end < width && !visible[end])
+                    ++end;
+                const int after = end < width ? row[end] : before;
+                const int farther = before < 0 ? after : std::min(before, after);
+                if (farther >= 0)
+                    std::fill(row + x, row + end, (ushort)farther);
+                x = end;
+            }
+        }
+    });
+}
+
 void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity)
 {
     disparity.create(size, CV_16U);
@@ -101,15 +150,24 @@ void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity)
             const ushort* own = upper.ptr<ushort>(clampRow(y / 2));
             const ushort* beside = upper.ptr<ushort>(clampRow(y % 2 ? y / 2 + 1 : y / 2 - 1));
             ushort* row = disparity.ptr<ushort>(y);
-            for (int x = 0; x < size.width; ++x)
-            {
-                const int column = std::min(x / 2, upper.cols - 1), d = own[column];
-                const int next = std::min(std::max(x % 2 ? x / 2 + 1 : x / 2 - 1, 0), upper.cols - 1);
+            const auto mean = [&](int x, int next) {
+                const int d = own[x];
                 const auto sameSurface = [&](int other) { return std::abs(other - d) <= scale ? other : d; };
-                row[x] = (ushort)((9 * d + 3 * sameSurface(own[next]) + 3 * sameSurface(beside[column]) +
-                                   sameSurface(beside[next]) + 4) /
-                                  8);
+                return (ushort)((9 * d + 3 * sameSurface(own[next]) + 3 * sameSurface(beside[x]) +
+                                 sameSurface(beside[next]) + 4) /
+                                8);
+            };
+            const int last = upper.cols - 1;
+            HDP_VECTORIZED for (int x = 1; x < last; ++x)
+            {
+                row[2 * x] = mean(x, x - 1);
+                row[2 * x + 1] = mean(x, x + 1);
             }
+            row[0] = mean(0, 0);
+            if (size.width > 1)
+                row[1] = mean(0, std::min(1, last));
+            for (int x = std::max(2 * last, 2); x < size.width; ++x) // a last odd column is that pixel's, too
+                row[x] = mean(last, x % 2 ? last : x / 2 - 1);
         }
     });
 }

@@ -13,6 +13,14 @@ namespace hdp {
 //! Median of size x size pixels, borders replicated. disparity: CV_16UC1; stripes: memory to work in.
 CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered);
 
+/** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the pixels
+that map to one column of the right image the one with the lowest residual is there; those whose disparity is another
+one, and those that map to no column, are not.
+@param disparity CV_16UC1, times scale; changed.
+@param residual Matching costs, CV_8UC1.
+@param scale Units of a disparity in one pixel. */
+CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual, int scale);
+
 /** The disparities of a layer from those of the layer above: bilinear inside a surface, its pixel's own at its border.
 @param upper CV_16UC1, times scale.
 @param scale Units of a disparity in one pixel.

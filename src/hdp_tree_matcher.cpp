@@ -4,6 +4,7 @@
 #include "precomp.hpp"
 
 #include "candidate_windows.hpp"
+#include "disparity_confidence.hpp"
 #include "disparity_forest.hpp"
 #include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
@@ -81,6 +82,8 @@ struct Parameters
     int largePenalty = 50;
     int finestLayer = 0;
     int scanlinePasses = 1;
+    bool fillOcclusions = false;
+    int disparityDepth = CV_16S;
     bool useNonLocalRefinement = false;
 
     void setMinDisparity(int value) { minDisparity = value; }
@@ -179,6 +182,11 @@ struct Parameters
         scanlinePasses = checked(value, value >= 1 && value <= 4, "scanlinePasses", "in 1..4");
     }
 
+    void setDisparityDepth(int value)
+    {
+        disparityDepth = checked(value, value == CV_16S || value == CV_32F, "disparityDepth", "CV_16S or CV_32F");
+    }
+
     static int checkedPenalty(int value, const char* name)
     {
         return checked(value, value >= 0 && value <= ScanlinePenalties::largest, name, "in 0..100");
@@ -233,22 +241,30 @@ public:
     void compute(InputArray leftArray, InputArray rightArray, OutputArray disparityArray) CV_OVERRIDE
     {
         CV_TRACE_FUNCTION();
+        matched_ = MatchedLayer(); // until this pair is
         const Mat left = leftArray.getMat(), right = rightArray.getMat();
         checkImages(left, right);
+        const int depth = outputDepth(disparityArray);
         const LayerSettings settings = resolve(left.size());
         clock_.restart();
         forest_.trees.clear(); // what getForest() and getLayerPrior() give is of this pair, or nothing
         prior_.clear();
         searchRatios_.assign(settings.layers, 0);
 
+        buffers_.resize(settings.layers + 1);
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] { buildPyramids(left, right, settings, images); });
         for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
             matchLayer(layer, images[layer], settings);
 
-        disparityArray.create(left.size(), CV_16S);
+        disparityArray.create(left.size(), depth);
         Mat disparity = disparityArray.getMat();
         clock_.run("output", [&] { finish(images, settings, disparity); });
+        matched_.size = left.size();
+        matched_.isFiltered = isFiltered();
+        matched_.layer = settings.finestLayer;
+        matched_.scale = settings.scale;
+        matched_.disparities = layerDisparities(p_.numDisparities, settings.finestLayer);
     }
 
     // cv::StereoMatcher
@@ -310,6 +326,10 @@ public:
     void setFinestLayer(int value) CV_OVERRIDE { p_.setFinestLayer(value); }
     int getScanlinePasses() const CV_OVERRIDE { return p_.scanlinePasses; }
     void setScanlinePasses(int value) CV_OVERRIDE { p_.setScanlinePasses(value); }
+    int getDisparityDepth() const CV_OVERRIDE { return p_.disparityDepth; }
+    void setDisparityDepth(int value) CV_OVERRIDE { p_.setDisparityDepth(value); }
+    bool getFillOcclusions() const CV_OVERRIDE { return p_.fillOcclusions; }
+    void setFillOcclusions(bool value) CV_OVERRIDE { p_.fillOcclusions = value; }
     bool getUseNonLocalRefinement() const CV_OVERRIDE { return p_.useNonLocalRefinement; }
     void setUseNonLocalRefinement(bool value) CV_OVERRIDE { p_.useNonLocalRefinement = value; }
 
@@ -334,6 +354,22 @@ public:
     }
 
     void getLayerPrior(std::vector<double>& prior) const CV_OVERRIDE { prior = prior_; }
+
+    void getConfidence(OutputArray confidenceArray) const CV_OVERRIDE
+    {
+        if (matched_.size.empty())
+            return confidenceArray.release();
+        confidenceArray.create(matched_.size, CV_8U);
+        Mat confidence = confidenceArray.getMat();
+        const LayerBuffers& b = buffers_[matched_.layer];
+        Mat coarse;
+        Mat& ofLayer = matched_.layer > 0 ? coarse : confidence;
+        disparityConfidence(b.disparity, matched_.scale, matched_.disparities, b.cost, ofLayer);
+        if (matched_.layer > 0)
+            resize(coarse, confidence, matched_.size, 0, 0, INTER_LINEAR_EXACT);
+        if (matched_.isFiltered)
+            confidence.setTo(Scalar(0), rejected_);
+    }
 
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
     {
@@ -374,6 +410,8 @@ public:
            << "largePenalty" << p_.largePenalty
            << "finestLayer" << p_.finestLayer
            << "scanlinePasses" << p_.scanlinePasses
+           << "fillOcclusions" << (int)p_.fillOcclusions
+           << "disparityDepth" << p_.disparityDepth
            << "useNonLocalRefinement" << (int)p_.useNonLocalRefinement;
         // clang-format on
         fs << "treeStrategy"
@@ -421,6 +459,8 @@ public:
         readNumber<int>(fn, "largePenalty", [&](int value) { p.setLargePenalty(value); });
         readNumber<int>(fn, "finestLayer", [&](int value) { p.setFinestLayer(value); });
         readNumber<int>(fn, "scanlinePasses", [&](int value) { p.setScanlinePasses(value); });
+        readNumber<int>(fn, "fillOcclusions", [&](int value) { p.fillOcclusions = value != 0; });
+        readNumber<int>(fn, "disparityDepth", [&](int value) { p.setDisparityDepth(value); });
         readNumber<int>(fn, "useNonLocalRefinement", [&](int value) { p.useNonLocalRefinement = value != 0; });
         p.treeStrategy = readStrategy(fn["treeStrategy"]);
         if (!fn["predictionModel"].empty())
@@ -442,11 +482,32 @@ private:
         int scale; // units of a disparity in one pixel
     };
 
+    //! The finest layer of the last pair
+    struct MatchedLayer
+    {
+        Size size; // of the image; empty: no pair is matched
+        int layer;
+        int scale;       // units of a disparity in one pixel
+        int disparities; // of the layer
+        bool isFiltered; // rejected_ says which pixels of the image are invalid
+        MatchedLayer() : layer(0), scale(0), disparities(0), isFiltered(false) {}
+    };
+
     //! What the stages see of a layer
     struct LayerImages
     {
         Mat guide;       // gives the edge weights
         Mat left, right; // give the matching cost
+    };
+
+    //! Memory of a layer. What two layers share would be allocated anew for each of them.
+    struct LayerBuffers
+    {
+        Mat guide, pixelIntv;
+        Mat smallest, largest, windows;
+        MatchingCost cost;
+        Mat winner, residual, filtered, medianStripes, stable;
+        Mat disparity; // the result
     };
 
     static void checkImages(const Mat& left, const Mat& right)
@@ -461,6 +522,15 @@ private:
             CV_Error(Error::StsUnmatchedFormats, "right must have the type of left");
         if (left.total() > (size_t)INT_MAX / 2)
             CV_Error(Error::StsOutOfRange, "left must have less than 2^30 pixels");
+    }
+
+    //! Of the disparities: what the caller's array has, if its type is fixed
+    int outputDepth(OutputArray disparity) const
+    {
+        const int type = disparity.fixedType() ? disparity.type() : p_.disparityDepth;
+        if (type != CV_16SC1 && type != CV_32FC1)
+            CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1 if its type is fixed");
+        return type;
     }
 
     LayerSettings resolve(Size size) const
@@ -478,6 +548,9 @@ private:
 
         if (p_.aggregation == AGGREGATION_SCANLINES && p_.matchingCost != COST_CENSUS)
             CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for AGGREGATION_SCANLINES");
+
+        if (p_.fillOcclusions && p_.matchingCost != COST_CENSUS)
+            CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for fillOcclusions");
 
         const bool isLarge = size.width >= largeImageWidth;
         LayerSettings settings;
@@ -548,27 +621,28 @@ private:
         rightPyramid_[0].release();
     }
 
-    //! Section 3: disparity_, that of the layer above, becomes that of this layer.
+    //! Section 3: from the disparities of the layer above to those of this layer
     void matchLayer(int layer, const LayerImages& images, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
+        LayerBuffers& b = buffers_[layer];
         clock_.run("matching cost", [&] {
             const MatchingCostParams params = { p_.matchingCost == COST_CENSUS, (float)p_.colorTruncation,
                                                 (float)p_.gradientTruncation, (float)p_.colorWeight, p_.blockSize };
-            cost_.prepare(images.left, images.right, disparities, params);
+            b.cost.prepare(images.left, images.right, disparities, params);
         });
         if (layer == settings.layers - 1 || p_.aggregation == AGGREGATION_TREES)
             aggregateTrees(layer, images, settings);
         else
             aggregateScanlines(layer, images, settings);
         if (p_.useNonLocalRefinement)
-            clock_.run("non-local refinement", [&] { refine(images, settings); });
+            clock_.run("non-local refinement", [&] { refine(images, settings, b); });
         clock_.run("disparity median", [&] {
-            swap(winner_, disparity_);
+            swap(b.winner, b.disparity);
             for (int pass = 0; settings.medianSize > 0 && pass < p_.disparityMedianPasses; ++pass)
             {
-                medianDisparity(disparity_, settings.medianSize, medianStripes_, winner_);
-                swap(winner_, disparity_);
+                medianDisparity(b.disparity, settings.medianSize, b.medianStripes, b.winner);
+                swap(b.winner, b.disparity);
             }
         });
     }
@@ -577,11 +651,13 @@ private:
     void aggregateTrees(int layer, const LayerImages& images, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
+        LayerBuffers& b = buffers_[layer];
+        Mat& upper = buffers_[layer + 1].disparity;
         const Size size = images.guide.size();
         if (layer == settings.layers - 1)
             clock_.run("disparity prediction", [&] {
-                pixelIntv_.create(size, CV_16UC2);
-                pixelIntv_.setTo(Scalar(0, disparities - 1)); // the full range
+                b.pixelIntv.create(size, CV_16UC2);
+                b.pixelIntv.setTo(Scalar(0, disparities - 1)); // the full range
             });
         else
         {
@@ -597,43 +673,48 @@ private:
                     disparityHistogram(points_, disparities, prior_);
                 });
             else
-                clock_.run("disparity prediction",
-                           [&] { upperHistogram(disparity_, settings.scale, disparities, prior_); });
+                clock_.run("disparity prediction", [&] { upperHistogram(upper, settings.scale, disparities, prior_); });
             clock_.run("disparity prediction", [&] {
                 predictIntervals(*settings.model, layer, prior_, layerDisparities(p_.numDisparities, layer + 1),
                                  settings.delta0 * (1 << layer), p_.intervalMargin, intervals_);
-                assignIntervals(disparity_, settings.scale, size, intervals_, pixelIntv_);
+                assignIntervals(upper, settings.scale, size, intervals_, b.pixelIntv);
             });
         }
         clock_.run("disparity forest", [&] {
-            buildLayerForest(images, settings);
+            buildLayerForest(images, settings, b);
             searchRatios_[layer] = searchRatio(forest_, disparities);
         });
         clock_.run("cost aggregation",
-                   [&] { aggregateForest(forest_, cost_, p_.gamma, settings.scale > 1, aggregation_, winner_); });
+                   [&] { aggregateForest(forest_, b.cost, p_.gamma, settings.scale > 1, aggregation_, b.winner); });
+        if (p_.fillOcclusions)
+            clock_.run("occlusions", [&] {
+                b.cost.censusCosts(b.winner, settings.scale, b.residual);
+                fillOccluded(b.winner, b.residual, settings.scale);
+            });
     }
 
-    //! Section 3.2: forest_, from pixelIntv_
-    void buildLayerForest(const LayerImages& images, const LayerSettings& settings)
+    //! Section 3.2: forest_, from b.pixelIntv
+    void buildLayerForest(const LayerImages& images, const LayerSettings& settings, LayerBuffers& b)
     {
         if (p_.useMedianPrefilter)
-            medianBlur(images.guide, guide_, 3);
-        buildForest(p_.useMedianPrefilter ? guide_ : images.guide, pixelIntv_, *p_.treeStrategy, settings.beta,
+            medianBlur(images.guide, b.guide, 3);
+        buildForest(p_.useMedianPrefilter ? b.guide : images.guide, b.pixelIntv, *p_.treeStrategy, settings.beta,
                     !p_.usePrediction, forestBuffers_, forest_);
     }
 
-    //! Refines winner_ over forest_.
-    void refine(const LayerImages& images, const LayerSettings& settings)
+    //! Refines b.winner over forest_.
+    void refine(const LayerImages& images, const LayerSettings& settings, LayerBuffers& b)
     {
-        if (forest_.links.size() != winner_.size()) // the layer has no trees of its own
+        if (forest_.links.size() != b.winner.size()) // the layer has no trees of its own
         {
-            pixelIntv_.create(winner_.size(), CV_16UC2);
-            pixelIntv_.setTo(Scalar::all(0)); // one tree
-            buildLayerForest(images, settings);
+            b.pixelIntv.create(b.winner.size(), CV_16UC2);
+            b.pixelIntv.setTo(Scalar::all(0)); // one tree
+            buildLayerForest(images, settings, b);
         }
-        swap(winner_, disparity_);
-        findStable(disparity_, settings.scale, stableMaxDiff, stable_);
-        refineNonLocal(forest_, disparity_, settings.scale, stable_, p_.gamma * refinementGamma, aggregation_, winner_);
+        swap(b.winner, b.disparity);
+        findStable(b.disparity, settings.scale, stableMaxDiff, b.stable);
+        refineNonLocal(forest_, b.disparity, settings.scale, b.stable, p_.gamma * refinementGamma, aggregation_,
+                       b.winner);
     }
 
     //! Predicted windows instead of trees. Each pass but the first takes its windows from the disparities of the one
@@ -641,45 +722,58 @@ private:
     void aggregateScanlines(int layer, const LayerImages& images, const LayerSettings& settings)
     {
         const int disparities = layerDisparities(p_.numDisparities, layer);
+        LayerBuffers& b = buffers_[layer];
+        Mat& upper = buffers_[layer + 1].disparity;
         searchRatios_[layer] = std::min<double>(CandidateWindow::candidates, disparities) / disparities;
         for (int pass = 0; pass < p_.scanlinePasses; ++pass)
         {
             if (pass > 0)
                 clock_.run("disparity median", [&] {
-                    medianDisparity(winner_, secondPassMedian, medianStripes_, filtered_);
-                    halveDisparity(filtered_, disparity_);
+                    medianDisparity(b.winner, secondPassMedian, b.medianStripes, b.filtered);
+                    halveDisparity(b.filtered, upper);
                 });
             clock_.run("disparity prediction",
-                       [&] { predictWindows(disparity_, settings.scale, disparities, smallest_, largest_, windows_); });
+                       [&] { predictWindows(upper, settings.scale, disparities, b.smallest, b.largest, b.windows); });
             clock_.run("cost aggregation", [&] {
                 const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty, pass == 0 ? 1 : 2 };
-                hdp::aggregateScanlines(cost_, images.left.size(), disparities, windows_, penalties, scanlines_,
-                                        winner_);
+                hdp::aggregateScanlines(b.cost, images.left.size(), disparities, b.windows, penalties, scanlines_,
+                                        b.winner, b.residual);
             });
+            if (p_.fillOcclusions)
+                clock_.run("occlusions", [&] { fillOccluded(b.winner, b.residual, settings.scale); });
         }
     }
+
+    bool isFiltered() const { return p_.disp12MaxDiff > 0 || p_.speckleWindowSize > 0; }
 
     //! From candidates of the finest layer to what cv::StereoMatcher promises.
     void finish(const std::vector<LayerImages>& images, const LayerSettings& settings, Mat& disparity)
     {
         for (int layer = settings.finestLayer - 1; layer >= 0; --layer)
-        {
-            upsampleDisparity(disparity_, settings.scale, images[layer].guide.size(), winner_);
-            swap(winner_, disparity_);
-        }
+            upsampleDisparity(buffers_[layer + 1].disparity, settings.scale, images[layer].guide.size(),
+                              buffers_[layer].disparity);
+        LayerBuffers& b = buffers_[0];
+        const bool toWhole = settings.scale > 1 && !p_.useSubpixel;
+        if (toWhole)
+            b.disparity.convertTo(b.winner, CV_16U, 1. / settings.scale);
+        const Mat& map = toWhole ? b.winner : b.disparity;
+        const int scale = toWhole ? 1 : settings.scale;
+        const bool isFloat = disparity.depth() == CV_32F;
+        if (isFloat)
+            map.convertTo(disparity, CV_32F, 1. / scale, p_.minDisparity);
+        Mat& fixedPoint = isFloat ? fixedPoint_ : disparity; // what the filters take
+        if (!isFloat || isFiltered())
+            map.convertTo(fixedPoint, CV_16S, (double)DISP_SCALE / scale, (double)p_.minDisparity * DISP_SCALE);
+        if (!isFiltered())
+            return;
         const short invalid = (short)((p_.minDisparity - 1) * DISP_SCALE);
-        const double offset = (double)p_.minDisparity * DISP_SCALE;
-        if (settings.scale > 1 && !p_.useSubpixel) // to whole pixels
-        {
-            disparity_.convertTo(disparity_, CV_16U, 1. / settings.scale);
-            disparity_.convertTo(disparity, CV_16S, DISP_SCALE, offset);
-        }
-        else
-            disparity_.convertTo(disparity, CV_16S, (double)DISP_SCALE / settings.scale, offset);
         if (p_.disp12MaxDiff > 0)
-            rejectOccluded(disparity, p_.disp12MaxDiff, invalid);
+            rejectOccluded(fixedPoint, p_.disp12MaxDiff, invalid);
         if (p_.speckleWindowSize > 0)
-            filterSpeckles(disparity, invalid, p_.speckleWindowSize, DISP_SCALE * p_.speckleRange, speckles_);
+            filterSpeckles(fixedPoint, invalid, p_.speckleWindowSize, DISP_SCALE * p_.speckleRange, speckles_);
+        compare(fixedPoint, Scalar(invalid), rejected_, CMP_EQ);
+        if (isFloat)
+            disparity.setTo(Scalar(p_.minDisparity - 1), rejected_);
     }
 
     Ptr<TreeStrategy> readStrategy(const FileNode& fn) const
@@ -700,22 +794,21 @@ private:
     Parameters p_;
     std::vector<double> searchRatios_;
     StageClock clock_;
+    MatchedLayer matched_;
 
     // Buffers that are kept between calls
     std::vector<Mat> leftPyramid_, leftGreyPyramid_, rightPyramid_;
-    Mat shiftedRight_, leftGrey_, rightGrey_, guide_;
+    Mat shiftedRight_, leftGrey_, rightGrey_;
     SupportPointBuffers supportPoints_;
     Mat points_;
     std::vector<double> prior_;
     std::vector<DisparityInterval> intervals_;
-    Mat pixelIntv_;
-    Mat smallest_, largest_, windows_;
     ForestBuffers forestBuffers_;
     DisparityForest forest_;
-    MatchingCost cost_;
     AggregationBuffers aggregation_;
     ScanlineBuffers scanlines_;
-    Mat winner_, filtered_, medianStripes_, disparity_, stable_, speckles_;
+    std::vector<LayerBuffers> buffers_; // one more than layers: there is nothing above the top one
+    Mat fixedPoint_, rejected_, speckles_;
 };
 
 } // namespace
@@ -731,6 +824,7 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities,
         parameters.setGamma(20);
         parameters.useSubpixel = true;
         parameters.setDisparityMedianSize(5);
+        parameters.fillOcclusions = true;
     }
     switch (preset)
     {
@@ -739,7 +833,6 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities,
         parameters.setIntervalMargin(1);
         parameters.setDelta0(0.02);
         parameters.setBeta(0.9);
-        parameters.setDisparityMedianPasses(2);
         break;
     case PRESET_ULTRAFAST:
         parameters.setFinestLayer(1);

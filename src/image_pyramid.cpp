@@ -3,6 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
 #include "image_pyramid.hpp"
+#include "image_pyramid.simd.hpp"
+#include "image_pyramid.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 namespace cv {
 namespace stereo {
@@ -10,20 +12,26 @@ namespace hdp {
 
 namespace {
 
-//! Means of 2 x 2 pixels of one or three channels; `rounding` is added to the sum of four.
-template <typename T, int rounding> void halve(const Mat& image, Mat& half)
+void dispatchHalve(const uchar* upper, const uchar* lower, int width, int channels, uchar* means)
 {
-    const int channels = image.channels();
+    CV_CPU_DISPATCH(halveRow, (upper, lower, width, channels, means), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchHalve(const ushort* upper, const ushort* lower, int width, int, ushort* means)
+{
+    CV_CPU_DISPATCH(halveGreyRow, (upper, lower, width, means), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchGrey(const uchar* pixels, int width, ushort* levels)
+{
+    CV_CPU_DISPATCH(greyRow, (pixels, width, levels), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+template <typename T> void halve(const Mat& image, Mat& half)
+{
     parallel_for_(Range(0, half.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
-        {
-            const T* upper = image.ptr<T>(2 * y);
-            const T* lower = image.ptr<T>(2 * y + 1);
-            T* mean = half.ptr<T>(y);
-            for (int x = 0; x < half.cols; ++x, upper += 2 * channels, lower += 2 * channels)
-                for (int c = 0; c < channels; ++c)
-                    *mean++ = (T)((upper[c] + upper[c + channels] + lower[c] + lower[c + channels] + rounding) / 4);
-        }
+            dispatchHalve(image.ptr<T>(2 * y), image.ptr<T>(2 * y + 1), half.cols, image.channels(), half.ptr<T>(y));
     });
 }
 
@@ -41,9 +49,9 @@ void halveImage(const Mat& image, Mat& half)
 {
     half.create(image.rows / 2, image.cols / 2, image.type());
     if (image.depth() == CV_16U)
-        halve<ushort, 2>(image, half);
+        halve<ushort>(image, half);
     else
-        halve<uchar, 0>(image, half);
+        halve<uchar>(image, half);
 }
 
 void greyLevels(const Mat& image, Mat& grey)
@@ -59,9 +67,7 @@ void greyLevels(const Mat& image, Mat& grey)
                 for (int x = 0; x < image.cols; ++x)
                     level[x] = (ushort)(pixel[x] * greyScale);
             else
-                for (int x = 0; x < image.cols; ++x, pixel += 3)
-                    level[x] = (ushort)((7471 * pixel[0] + 38470 * pixel[1] + 19595 * pixel[2] + 32768 / greyScale) /
-                                        (65536 / greyScale));
+                dispatchGrey(pixel, image.cols, level);
         }
     });
 }

@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
+#include "disparity_prediction.hpp"
 #include "image_pyramid.hpp"
 #include "matching_cost.hpp"
 #include "matching_cost.simd.hpp"
@@ -15,6 +16,9 @@ namespace {
 
 // Columns behind the last candidate that evaluate() may read
 const int padding = 32;
+
+// Bytes before and behind a row of the census that may be read; they mean nothing.
+const int censusMargin = 16;
 
 // Columns of a census row are computed in groups of this many.
 const int censusColumns = 32;
@@ -126,8 +130,8 @@ void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities
         planes_.leftGradient = leftGradient_.ptr<short>();
         planes_.rightGradient = rightGradient_.ptr<short>();
     }
-    planes_.left = left_.ptr();
-    planes_.right = right_.ptr();
+    planes_.left = left_.ptr() + (params.census ? censusMargin : 0);
+    planes_.right = right_.ptr() + (params.census ? censusMargin : 0);
     planes_.leftStep = left_.step;
     planes_.rightStep = right_.step;
     const size_t rows = left.rows + (params.census ? 0 : 2 * (blockSize_ / 2));
@@ -156,19 +160,19 @@ void MatchingCost::prepareCensus(const Mat& image, bool mirrored, int after)
     grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16U);
     copyBordered<ushort>(image, 0, radius, radius, radius + cols - width, mirrored, grey_);
     Mat& census = mirrored ? right_ : left_;
-    census.create((planes + 1) * rows, std::max(width + after, cols), CV_8U);
+    census.create((planes + 1) * rows, censusMargin + std::max(width + after, cols) + censusMargin, CV_8U);
     parallel_for_(Range(0, rows), [&](const Range& range) {
         for (int y = range.start; y < range.end; ++y)
         {
             computeCensusRow(grey_.ptr<ushort>(y + radius) + radius, (ptrdiff_t)grey_.step1(), radius, mirrored, cols,
-                             census.ptr(y), census.step * rows);
+                             census.ptr(y) + censusMargin, census.step * rows);
             const ushort* grey = grey_.ptr<ushort>(y + radius) + radius;
-            uchar* intensity = census.ptr(planes * rows + y);
+            uchar* intensity = census.ptr(planes * rows + y) + censusMargin;
             HDP_VECTORIZED for (int x = 0; x < width; ++x) intensity[x] = (uchar)(grey[x] / greyScale);
             for (int plane = 0; plane <= planes; ++plane)
             {
-                uchar* row = census.ptr(plane * rows + y);
-                std::fill(row + width, row + census.cols, row[width - 1]);
+                uchar* row = census.ptr(plane * rows + y) + censusMargin;
+                std::fill(row + width, census.ptr(plane * rows + y) + census.cols, row[width - 1]);
             }
         }
     });
@@ -177,6 +181,36 @@ void MatchingCost::prepareCensus(const Mat& image, bool mirrored, int after)
 void MatchingCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
 {
     CV_CPU_DISPATCH(evaluateCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void MatchingCost::censusCosts(const Mat& disparity, int scale, Mat& costs) const
+{
+    costs.create(disparity.size(), CV_8U);
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const ushort* candidate = disparity.ptr<ushort>(y);
+            uchar* cost = costs.ptr(y);
+            const uchar *left[3], *right[3];
+            for (int plane = 0; plane < 3; ++plane)
+            {
+                left[plane] = leftPlane(std::min(plane, planes() - 1), y);
+                right[plane] = rightPlane(std::min(plane, planes() - 1), y) + planes_.width - 1;
+            }
+            const unsigned mask = 0xffffff >> (8 * (3 - planes()));
+            for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int at = wholeDisparity(candidate[x], scale) - x;
+                unsigned bits = (unsigned)(left[0][x] ^ right[0][at]) | (unsigned)(left[1][x] ^ right[1][at]) << 8 |
+                                (unsigned)(left[2][x] ^ right[2][at]) << 16;
+                bits &= mask;
+                bits -= (bits >> 1) & 0x555555;
+                bits = (bits & 0x333333) + ((bits >> 2) & 0x333333);
+                bits = (bits + (bits >> 4)) & 0x0f0f0f;
+                cost[x] = (uchar)(bits + (bits >> 8) + (bits >> 16));
+            }
+        }
+    });
 }
 
 } // namespace hdp

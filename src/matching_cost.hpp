@@ -62,6 +62,9 @@ public:
     @param cost Receives M(pixels[i], first + k) at [i * lanes + k]. */
     void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const;
 
+    //! The census cost of one candidate of each pixel, CV_8UC1. disparity: CV_16UC1, times scale.
+    void censusCosts(const Mat& disparity, int scale, Mat& costs) const;
+
     //! The number of planes of 8 bits that hold the census of a pixel; 0 for the cost of colour and gradient
     int planes() const { return planes_.census ? planes_.count : 0; }
     //! A row of the left image's census: pixel x is at [x]. Of the grey levels, in 8 bits, for plane = planes().
@@ -70,11 +73,14 @@ public:
         return planes_.left + plane * planes_.leftPlane + y * planes_.leftStep;
     }
     //! As leftPlane(), of the right image: candidate d of pixel x is at [width - 1 - x + d], and there are 32 more bytes
-    //! to read behind the last candidate.
+    //! to read behind the last candidate, and
+    //! of both images 16 before and behind a row.
     const uchar* rightPlane(int plane, int y) const
     {
         return planes_.right + plane * planes_.rightPlane + y * planes_.rightStep;
     }
+    //! From a plane of the left or the right image to the next
+    size_t planeStride(bool ofRight) const { return ofRight ? planes_.rightPlane : planes_.leftPlane; }
 
 private:
     void prepareColorAndGradient(const Mat& image, bool mirrored, int after);

@@ -18,26 +18,28 @@ const int stripeHeight = 128;
 const int warmUpRows = 16;
 
 void dispatchStripe(const ScanlineProblem& problem, int above, const Range& rows, ScanlineScratch& scratch,
-                    Mat& disparity)
+                    Mat& disparity, Mat& residual)
 {
-    CV_CPU_DISPATCH(aggregateStripe, (problem, above, rows, scratch, disparity), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(aggregateStripe, (problem, above, rows, scratch, disparity, residual), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 } // namespace
 
 void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,
-                        const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity)
+                        const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
     const ScanlineProblem problem = { &cost, size, numDisparities, &windows, penalties };
     const int stripes = std::max(1, size.height / stripeHeight);
     disparity.create(size, CV_16U);
+    residual.create(size, CV_8U);
     buffers.stripes.resize(stripes);
     parallel_for_(Range(0, stripes), [&](const Range& range) {
         for (int i = range.start; i < range.end; ++i)
         {
             const auto border = [&](int64 index) { return (int)(size.height * index / stripes / 2 * 2); };
             const Range rows(border(i), i + 1 < stripes ? border(i + 1) : size.height);
-            dispatchStripe(problem, std::max(rows.start - warmUpRows, 0), rows, buffers.stripes[i], disparity);
+            dispatchStripe(problem, std::max(rows.start - warmUpRows, 0), rows, buffers.stripes[i], disparity,
+                           residual);
         }
     });
 }

@@ -41,9 +41,18 @@ struct ScanlineProblem
 //! Memory of one stripe
 struct ScanlineScratch
 {
-    std::vector<uchar> costs, fromRight, fromAbove;            // CandidateWindow::candidates per pixel
-    std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // per pixel of the layer above
-    std::vector<short> rises, slopes;                          // of the winners of some rows
+    struct Column // of the layer above
+    {
+        short first[CandidateWindow::runs];
+        ushort inner; // bits of the lanes that have candidates on both sides
+    };
+    std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel
+    std::vector<Column> columns;
+    std::vector<uchar> priors, intoRight, intoLeft,
+        intoBelow;                   // CandidateWindow::candidates per column of the layer above
+    std::vector<ushort> disparities; // of the winners of some rows
+    std::vector<short> rises, slopes;
+    std::vector<uchar> residuals;
 };
 
 struct ScanlineBuffers
@@ -75,9 +84,11 @@ above each of them.
 @param windows From predictWindows(), with disparities times subpixelScale.
 @param penalties The penalties.
 @param buffers Memory to work in.
-@param disparity Receives CV_16UC1, times subpixelScale. */
+@param disparity Receives CV_16UC1, times subpixelScale.
+@param residual Receives the winners' own C(p, d), CV_8UC1. */
 CV_EXPORTS void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,
-                                   const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity);
+                                   const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity,
+                                   Mat& residual);
 
 } // namespace hdp
 } // namespace stereo

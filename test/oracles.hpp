@@ -577,10 +577,12 @@ public:
     {
     }
 
-    //! CV_16UC1. In stripes of at least 128 rows; from above each path begins 16 rows above its stripe.
-    Mat match() const
+    //! CV_16UC1. In stripes of at least 128 rows; from above each path begins 16 rows above its stripe. residual receives
+    //! the winners' own costs, CV_8UC1.
+    Mat match(Mat& residual) const
     {
         Mat disparity(size_, CV_16UC1);
+        residual.create(size_, CV_8U);
         const int stripes = std::max(1, size_.height / 128);
         for (int i = 0; i < stripes; ++i)
         {
@@ -597,7 +599,8 @@ public:
                 for (int x = size_.width - 1; x >= 0; --x)
                     right[x] = follow(Point(x, y), Point(x + 1, y), x + 1 < size_.width ? right[x + 1] : Costs());
                 for (int x = 0; y >= first && x < size_.width; ++x)
-                    disparity.at<ushort>(y, x) = winner(Point(x, y), left[x], right[x], above[x]);
+                    disparity.at<ushort>(y, x) =
+                        winner(Point(x, y), left[x], right[x], above[x], residual.at<uchar>(y, x));
             }
         }
         return disparity;
@@ -660,7 +663,7 @@ private:
         return result;
     }
 
-    ushort winner(Point p, const Costs& left, const Costs& right, const Costs& above) const
+    ushort winner(Point p, const Costs& left, const Costs& right, const Costs& above, uchar& residual) const
     {
         const std::vector<int> d = candidates(p);
         std::vector<int> sums(d.size(), 0);
@@ -670,6 +673,7 @@ private:
         for (int& sum : sums)
             sum = std::min(sum, 255);
         const size_t i = (size_t)(std::min_element(sums.begin(), sums.end()) - sums.begin());
+        residual = (uchar)pixelCost(p, d[i]);
         double offset = 0;
         if (i > 0 && i + 1 < d.size() && d[i - 1] == d[i] - 1 && d[i + 1] == d[i] + 1)
         {

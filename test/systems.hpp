@@ -75,7 +75,7 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setGamma(isPaper ? 25.5 : 20);
     matcher.setUseSubpixel(!isPaper);
     matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : 5);
-    matcher.setDisparityMedianPasses(isTree || preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
+    matcher.setDisparityMedianPasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
     matcher.setNumLayers(hasScanlines ? (int)HDPTreeMatcher::AUTO : 3);
     matcher.setFinestLayer(preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 1 : 0);
@@ -87,6 +87,7 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setLargePenalty(50);
     matcher.setScanlinePasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setUseNonLocalRefinement(false);
+    matcher.setFillOcclusions(!isPaper);
 }
 
 //! By setters alone, whatever was set before

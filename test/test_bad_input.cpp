@@ -67,8 +67,8 @@ TEST(HDPStereo_BadInput, pairs_that_do_not_match)
 TEST(HDPStereo_BadInput, output_of_a_fixed_other_type)
 {
     const Mat image(12, 16, CV_8UC3, Scalar::all(7));
-    Mat_<float> disparity;
-    EXPECT_THROW(HDPTreeMatcher::create()->compute(image, image, disparity), cv::Exception);
+    Mat_<double> disparity;
+    expectRejected([&] { HDPTreeMatcher::create()->compute(image, image, disparity); }, "disparity");
 }
 
 //! A bad value leaves every parameter of the matcher as it was.
@@ -188,6 +188,8 @@ TEST(HDPStereo_BadInput, scanlines_without_census)
     matcher->setMatchingCost(HDPTreeMatcher::COST_COLOR_GRADIENT);
     expectRejected([&] { match(*matcher, image, image); }, "matchingCost");
     matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREES);
+    expectRejected([&] { match(*matcher, image, image); }, "fillOcclusions");
+    matcher->setFillOcclusions(false);
     EXPECT_NO_THROW(match(*matcher, image, image));
 }
 

@@ -123,5 +123,40 @@ TEST(HDPStereo_DisparityRefinement, a_limit_beyond_all_disparities_rejects_nothi
     }
 }
 
+// In one row; whole disparities.
+Mat filled(const std::vector<int>& disparities, const std::vector<int>& residuals)
+{
+    Mat disparity(1, (int)disparities.size(), CV_16UC1), residual(disparity.size(), CV_8UC1);
+    for (int x = 0; x < disparity.cols; ++x)
+    {
+        disparity.at<ushort>(x) = (ushort)(16 * disparities[x]);
+        residual.at<uchar>(x) = (uchar)residuals[x];
+    }
+    hdp::fillOccluded(disparity, residual, 16);
+    return disparity / 16;
+}
+
+TEST(HDPStereo_DisparityRefinement, occluded_pixels_get_the_farther_disparity)
+{
+    // Columns 4 and 5 of disparity 1 lie behind columns 6 and 7 of disparity 3: both map to 3 and 4. Column 0 is within a
+    // pixel of what is there.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 9 }, { 0, 1, 1, 1, 1, 1, 3, 3, 3 })),
+                    filled({ 0, 1, 1, 1, 1, 1, 3, 3, 3 }, { 5, 0, 0, 0, 9, 9, 1, 1, 1 }));
+    // An outlier, in front of what it would hide, that matches badly
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 8 }, { 1, 1, 1, 1, 1, 1, 1, 1 })),
+                    filled({ 1, 1, 1, 1, 1, 4, 1, 1 }, { 9, 0, 0, 0, 0, 8, 0, 0 }));
+    // Nothing is visible: all map beside the right image.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 3 }, { 4, 5, 6 })), filled({ 4, 5, 6 }, { 0, 0, 0 }));
+}
+
+TEST(HDPStereo_DisparityRefinement, visible_pixels_are_not_filled)
+{
+    RNG rng(47);
+    Mat disparity(40, 60, CV_16UC1, Scalar(16 * 5 + 3)), residual = randomImage(rng, Size(60, 40), CV_8UC1, 30), result;
+    disparity.copyTo(result);
+    hdp::fillOccluded(result, residual, 16);
+    expectIdentical(disparity, result); // a plane, and its left border
+}
+
 } // namespace
 } // namespace opencv_test

@@ -76,6 +76,7 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_EQ(1, matcher->getScanlinePasses());
     EXPECT_EQ(0, matcher->getFinestLayer());
     EXPECT_FALSE(matcher->getUseNonLocalRefinement());
+    EXPECT_FALSE(matcher->getFillOcclusions());
 
     EXPECT_EQ(serialized(*HDPTreeMatcher::create(0, 64, HDPTreeMatcher::PRESET_FAST)),
               serialized(*HDPTreeMatcher::create()));

@@ -42,6 +42,7 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setScanlinePasses(3);
     matcher->setFinestLayer(2);
     matcher->setUseNonLocalRefinement(true);
+    matcher->setFillOcclusions(true);
     return matcher;
 }
 
@@ -92,6 +93,7 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(3, read->getScanlinePasses());
             EXPECT_EQ(2, read->getFinestLayer());
             EXPECT_TRUE(read->getUseNonLocalRefinement());
+            EXPECT_TRUE(read->getFillOcclusions());
             expectIdentical(matchTestPair(*written), matchTestPair(*read));
         }
 }
@@ -240,6 +242,7 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "scanlinePasses", { "0", "-1", "5", "2147483647", "0.5", 0 } },
         { "finestLayer", { "-1", "16", "2147483647", "0.5", 0 } },
         { "useNonLocalRefinement", { "0.5", 0 } },
+        { "fillOcclusions", { "0.5", 0 } },
         { "delta0", { "-0.5", "1.", "1e300", 0 } },
         { "beta", { "-0.5", "1.5", "-1e300", 0 } },
         { "gamma", { "0", "0.", "-19.5", 0 } },
@@ -286,9 +289,9 @@ TEST(HDPStereo_MatcherStorage, missing_keys)
 //! A file that knows nothing of the parameters that later versions have means the paper's system.
 TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
 {
-    const char* const added[] = { "disparityMedianPasses", "matchingCost", "disparityPrior",       "intervalMargin",
-                                  "useSubpixel",           "aggregation",  "smallPenalty",         "largePenalty",
-                                  "scanlinePasses",        "finestLayer",  "useNonLocalRefinement" };
+    const char* const added[] = { "disparityMedianPasses", "matchingCost", "disparityPrior",        "intervalMargin",
+                                  "useSubpixel",           "aggregation",  "smallPenalty",          "largePenalty",
+                                  "scanlinePasses",        "finestLayer",  "useNonLocalRefinement", "fillOcclusions" };
     const Ptr<HDPTreeMatcher> paper = HDPTreeMatcher::create(3, 19, HDPTreeMatcher::PRESET_PAPER);
     std::string text = serialized(*paper);
     for (const char* key : added)

@@ -66,18 +66,30 @@ struct Layer
         return result;
     }
 
+    //! Disparities beside residuals
     Mat expected(const hdp::ScanlinePenalties& penalties) const
     {
-        return oracle::Scanlines(left, right, blockSize, numDisparities, windows, penalties).match();
+        Mat residual;
+        const Mat disparity =
+            oracle::Scanlines(left, right, blockSize, numDisparities, windows, penalties).match(residual);
+        return beside(disparity, residual);
+    }
+
+    static Mat beside(const Mat& disparity, const Mat& residual)
+    {
+        Mat wide, both;
+        residual.convertTo(wide, CV_16U);
+        hconcat(disparity, wide, both);
+        return both;
     }
 };
 
 Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::ScanlineBuffers& buffers)
 {
-    Mat disparity;
+    Mat disparity, residual;
     hdp::aggregateScanlines(layer.cost(), layer.size(), layer.numDisparities, layer.windows, penalties, buffers,
-                            disparity);
-    return disparity;
+                            disparity, residual);
+    return Layer::beside(disparity, residual);
 }
 
 const hdp::ScanlinePenalties usualPenalties = { 12, 50, 1 };
@@ -143,9 +155,9 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_instruction_sets)
             const Layer layer(rng, size, numDisparities, GetParam());
             const hdp::MatchingCost cost = layer.cost();
             const hdp::ScanlineProblem problem = { &cost, size, numDisparities, &layer.windows, usualPenalties };
-            Mat disparity(size, CV_16UC1);
-            hdp::opt_portable::aggregateStripe(problem, 0, Range(0, size.height), scratch, disparity);
-            expectIdentical(aggregate(layer, usualPenalties, buffers), disparity);
+            Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
+            hdp::opt_portable::aggregateStripe(problem, 0, Range(0, size.height), scratch, disparity, residual);
+            expectIdentical(aggregate(layer, usualPenalties, buffers), Layer::beside(disparity, residual));
         }
 }
 

@@ -23,8 +23,9 @@ namespace stereo {
 
 compute() takes a rectified pair: CV_8UC1 or CV_8UC3 (BGR), both images of one size and type. The result is
 what cv::StereoMatcher promises: the disparity of every pixel of the left image as CV_16SC1, times 16
-(StereoMatcher::DISP_SCALE); a pixel (x, y) of the left image shows the same point as (x - disparity, y) of
-the right one. Pixels that a filter rejects get (minDisparity - 1) * 16. Unlike cv::StereoSGBM the matcher
+(StereoMatcher::DISP_SCALE), or as CV_32FC1 in pixels, see setDisparityDepth(); a pixel (x, y) of the left image shows
+the same point as (x - disparity, y) of the right one. Pixels that a filter rejects get (minDisparity - 1) * 16, or
+minDisparity - 1. Unlike cv::StereoSGBM the matcher
 leaves no border of invalid pixels: candidates outside of the right image are compared with its nearest
 column. Images of any size from 1 x 1 and any number of disparities are allowed, also more disparities than
 columns.
@@ -228,6 +229,13 @@ public:
     /** @copybrief setScanlinePasses @sa setScanlinePasses */
     CV_WRAP virtual int getScanlinePasses() const = 0;
 
+    /** @brief Whether pixels that the right image does not show take, in each layer, the disparity of the farther of the
+    pixels beside them (true), or keep what they matched best (false, default). Needs HDPTreeMatcher::COST_CENSUS: of the
+    pixels that map to one column of the right image the one with the lowest cost is there, the others are not. */
+    CV_WRAP virtual void setFillOcclusions(bool fillOcclusions) = 0;
+    /** @copybrief setFillOcclusions @sa setFillOcclusions */
+    CV_WRAP virtual bool getFillOcclusions() const = 0;
+
     /** @brief The layer the search ends at: 0 (default), the image itself, to 15. The map of a coarser layer is enlarged
     to the image's size. More than there are layers: the top one. Without effect if prediction is off. */
     CV_WRAP virtual void setFinestLayer(int layer) = 0;
@@ -245,6 +253,24 @@ public:
     CV_WRAP virtual void setUseNonLocalRefinement(bool useNonLocalRefinement) = 0;
     /** @copybrief setUseNonLocalRefinement @sa setUseNonLocalRefinement */
     CV_WRAP virtual bool getUseNonLocalRefinement() const = 0;
+
+    /** @brief The type of the disparities: CV_16S (default), times 16, or CV_32F, in pixels, with minDisparity - 1 where a
+    filter rejects a pixel. An output array of fixed type, as cv::Mat_<float> is, decides by itself. */
+    CV_WRAP virtual void setDisparityDepth(int depth) = 0;
+    /** @copybrief setDisparityDepth @sa setDisparityDepth */
+    CV_WRAP virtual int getDisparityDepth() const = 0;
+
+    /** @brief How far each disparity of the last compute() is to be trusted. It is made when asked for, and costs
+    compute() nothing.
+
+    A disparity counts the more, the farther it is from the next step of the disparities, and the more its matching cost
+    stands out from the costs of disparities beside it; if a nearer pixel hides it from the right image or its match is
+    outside of that one, it counts half. It is not a probability: it is there to sort or to weight pixels by, or to leave
+    out those below a threshold.
+    @param confidence Receives CV_8UC1 of the left image's size: from 0 to 255, larger is more reliable; 0 where a filter
+    rejected the pixel. Empty before the first compute() and after one that threw an exception.
+     */
+    CV_WRAP virtual void getConfidence(OutputArray confidence) const = 0;
 
     /** @brief Share of the disparity range that the last compute() searched, \f$R_l\f$ of the paper's Table 1.
     @param ratios Receives a number in [0, 1] per layer, the finest first; empty before the first compute().
