@@ -99,12 +99,16 @@ static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, Size s
     return matcher;
 }
 
-//! The system's name in the paper's tables, such as HDP+MST.
-static String systemName(const CommandLineParser& parser)
+//! What the matcher is; a system of the paper by its name in the tables there, such as HDP+MST.
+static String systemName(const CommandLineParser& parser, const HDPTreeMatcher& matcher)
 {
-    String name = parser.get<String>("tree");
-    std::transform(name.begin(), name.end(), name.begin(), [](char c) { return char(std::toupper(uchar(c))); });
-    return (parser.has("median-prefilter") ? "M+" : "") + String(parser.has("no-prediction") ? "" : "HDP+") + name;
+    String tree = parser.get<String>("tree");
+    std::transform(tree.begin(), tree.end(), tree.begin(), [](char c) { return char(std::toupper(uchar(c))); });
+    const String prefilter = matcher.getUseMedianPrefilter() ? "M+" : "";
+    if (matcher.getUsePrediction() && matcher.getAggregation() == HDPTreeMatcher::AGGREGATION_SCANLINES)
+        return "scanlines, " + prefilter + tree + " on the top layer";
+    return prefilter + (matcher.getUsePrediction() ? "HDP+" : "") + tree +
+           (matcher.getMatchingCost() == HDPTreeMatcher::COST_CENSUS ? ", census cost" : "");
 }
 
 static void printWork(const HDPTreeMatcher& matcher, double totalMilliseconds)
@@ -172,8 +176,8 @@ static void run(const CommandLineParser& parser)
     const int minDisparity = matcher->getMinDisparity();
     std::cout << format("images     %d x %d, disparities %d to %d\n", left.cols, left.rows, minDisparity,
                         minDisparity + matcher->getNumDisparities() - 1)
-              << "system     " << systemName(parser) << " (preset " << parser.get<String>("preset") << ", threads "
-              << getNumThreads() << ")" << std::endl;
+              << "system     " << systemName(parser, *matcher) << " (preset " << parser.get<String>("preset")
+              << ", threads " << getNumThreads() << ")" << std::endl;
 
     Mat disparity16;
     TickMeter timer;

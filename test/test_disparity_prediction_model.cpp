@@ -8,6 +8,8 @@
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 
+#include <fstream>
+
 #include "opencv2/opencv_modules.hpp"
 
 namespace opencv_test {
@@ -406,6 +408,15 @@ TEST(HDPStereo_ModelFiles, truncated_ones_change_nothing)
     const size_t last = text.find_last_of("0123456789");
     for (size_t length = 0; length < last - 40; length += 7)
         expectHostile(text.substr(0, length));
+}
+
+TEST(HDPStereo_ModelFiles, exceptions_name_the_file)
+{
+    const TemporaryFile foreign(".yml"), other(".yml");
+    std::ofstream(foreign.name.c_str()) << "root:x:0:0\n";
+    HDPTreeMatcher::create()->save(other.name);
+    for (const std::string& name : { foreign.name, other.name, foreign.name + ".none" })
+        expectRejected([&] { DisparityPredictionModel::load(name); }, "filename: '" + name + "'");
 }
 
 //! A matcher says that a model is too small before it works, and is as it was.
