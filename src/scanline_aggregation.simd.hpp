@@ -148,15 +148,15 @@ private:
 
     static int clampShift(int shift, int length) { return std::min(std::max(shift, -length), length); }
 
-    //! Which lanes have the candidates of a contiguous window that begins `shift` disparities after another one
-    void transition(int shift, uchar* order) const
-    {
-        std::memcpy(order, pairOrder_ + Window::candidates + clampShift(shift, Window::candidates), Window::candidates);
-    }
-
     //! Which lanes of `from` have the candidates of `to`
     void transition(const Window& from, const Window& to, uchar* order) const
     {
+        if (from.isContiguous() && to.isContiguous())
+        {
+            const int shift = clampShift(to.first[0] - from.first[0], Window::candidates);
+            std::memcpy(order, pairOrder_ + Window::candidates + shift, Window::candidates);
+            return;
+        }
         for (int run = 0; run < Window::runs; ++run)
         {
             uint64 lanesOf[Window::runs];
@@ -169,9 +169,6 @@ private:
             std::memcpy(order + run * Window::runLength, &lanesOf[0], Window::runLength);
         }
     }
-
-    //! An odd last column belongs to the pixel of the layer above that the one before belongs to.
-    const Window& window(const Window* row, int x) const { return row[std::min(x, p_.windows->cols - 1)]; }
 
     //! Prepares a block of rows from y on: what follows from the windows, if they are new, and the rows' pointers.
     void enterRows(int y)
@@ -195,32 +192,38 @@ private:
 
     void enterWindows(const Window* above)
     {
-        const int last = std::min<int>(Window::candidates, p_.numDisparities) - 1;
+        // Bytes may alias everything but what is local.
+        const Window* const windows = windows_;
+        // An odd last column belongs to the pixel of the layer above that the one before belongs to.
+        const int pairs = pairs_, lastWindow = p_.windows->cols - 1;
+        const int lanesUsed = std::min<int>(Window::candidates, p_.numDisparities);
+        Column* column = &s_.columns[margin];
+        short *firstOfLow = &s_.first[0][0], *firstOfHigh = &s_.first[1][0];
+        uchar *prior = ofUpper(s_.priors, 0), *intoRight = ofUpper(s_.intoRight, 0),
+              *intoLeft = ofUpper(s_.intoLeft, -1), *intoBelow = ofUpper(s_.intoBelow, 0);
+        Window before = windows[0];
         bool wasContiguous = false; // the window before
-        for (int x = 0; x < pairs_; ++x)
+        for (int x = 0; x < pairs; ++x)
         {
-            const Window &own = window(windows_, x), &before = window(windows_, std::max(x - 1, 0));
+            const Window own = windows[std::min(x, lastWindow)];
             const bool isContiguous = own.isContiguous();
-            const Column column = { { own.first[0], own.first[1] },
-                                    isContiguous && (groups == 1 || wasContiguous) };
-            s_.columns[x + margin] = column;
-            for (int run = 0; run < Window::runs; ++run)
-                s_.first[run][2 * x] = s_.first[run][2 * x + 1] = own.first[run];
+            column->first[0] = own.first[0];
+            column->first[1] = own.first[1];
+            column->isContiguous = isContiguous & (groups == 1 || wasContiguous);
+            firstOfLow[0] = firstOfLow[1] = own.first[0];
+            firstOfHigh[0] = firstOfHigh[1] = own.first[1];
 
-            uchar* prior = ofUpper(s_.priors, x);
-            if (isContiguous && own.predicted[0] == own.predicted[1])
-                std::memcpy(prior, priorOf(own, 0), Window::candidates);
-            else
-                for (int run = 0; run < Window::runs; ++run)
-                    std::memcpy(prior + run * Window::runLength, priorOf(own, run), Window::runLength);
-            for (int i = last + 1; i < Window::candidates; ++i)
+            std::memcpy(prior, priorOf(own, 0), Window::candidates);
+            if (!isContiguous || own.predicted[0] != own.predicted[1])
+                std::memcpy(prior + Window::runLength, priorOf(own, 1), Window::runLength);
+            for (int i = lanesUsed; i < Window::candidates; ++i)
                 prior[i] = 255;
 
-            uchar *intoRight = ofUpper(s_.intoRight, x), *intoLeft = ofUpper(s_.intoLeft, x - 1);
             if (isContiguous && wasContiguous)
             {
-                transition(own.first[0] - before.first[0], intoRight);
-                transition(before.first[0] - own.first[0], intoLeft);
+                const int shift = clampShift(own.first[0] - before.first[0], Window::candidates);
+                std::memcpy(intoRight, pairOrder_ + Window::candidates + shift, Window::candidates);
+                std::memcpy(intoLeft, pairOrder_ + Window::candidates - shift, Window::candidates);
             }
             else
             {
@@ -228,13 +231,16 @@ private:
                 transition(own, before, intoLeft);
             }
             if (above)
-            {
-                const Window& upper = window(above, x);
-                if (isContiguous && upper.isContiguous())
-                    transition(own.first[0] - upper.first[0], ofUpper(s_.intoBelow, x));
-                else
-                    transition(upper, own, ofUpper(s_.intoBelow, x));
-            }
+                transition(above[std::min(x, lastWindow)], own, intoBelow);
+
+            ++column;
+            firstOfLow += 2;
+            firstOfHigh += 2;
+            prior -= Window::candidates;
+            intoRight -= Window::candidates;
+            intoLeft -= Window::candidates;
+            intoBelow -= Window::candidates;
+            before = own;
             wasContiguous = isContiguous;
         }
     }
