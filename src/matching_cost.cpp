@@ -225,7 +225,8 @@ void MatchingCost::censusCosts(const Mat& disparity, int scale, Mat& costs) cons
             for (int x = 0; x < disparity.cols; ++x)
             {
                 const int at = wholeDisparity(candidate[x], scale) - x;
-                unsigned bits = (unsigned)(left[0][4 * x] ^ right[0][at]) | (unsigned)(left[1][4 * x] ^ right[1][at]) << 8 |
+                unsigned bits = (unsigned)(left[0][4 * x] ^ right[0][at]) |
+                                (unsigned)(left[1][4 * x] ^ right[1][at]) << 8 |
                                 (unsigned)(left[2][4 * x] ^ right[2][at]) << 16;
                 bits &= mask;
                 bits -= (bits >> 1) & 0x555555;
