@@ -42,7 +42,7 @@ inline String figure(const Mat& picture, const String& caption, const String& ex
                    0, interpolation);
     std::vector<uchar> bytes;
     cv::imencode(extension, shown, bytes,
-                 extension == ".jpg" ? std::vector<int>{ cv::IMWRITE_JPEG_QUALITY, 85 } : std::vector<int>());
+                 extension == ".jpg" ? std::vector<int>{ cv::IMWRITE_JPEG_QUALITY, 75 } : std::vector<int>());
     std::ostringstream out;
     out << "<figure><img width=\"" << shown.cols << "\" height=\"" << shown.rows << "\" alt=\"" << htmlText(caption)
         << "\" src=\"data:image/" << (extension == ".jpg" ? "jpeg" : "png") << ";base64," << base64(bytes)

@@ -140,19 +140,25 @@ TEST(HDPStereo_Evaluation, matcher_of_a_layer)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 11);
     const Ptr<DisparityPredictionModel> model = publishedModel(160);
-    const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32, HDPTreeMatcher::PRESET_PAPER);
-    expectIdentical(match(*whole, pair.left, pair.right),
-                    match(*matcherOfLayer(0, 3, 32, 160, model), pair.left, pair.right));
-    std::vector<double> wholeRatios, ratios;
-    whole->getSearchRatios(wholeRatios);
+    for (int preset : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE })
+    {
+        SCOPED_TRACE(preset);
+        const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32, preset),
+                                  adapted = HDPTreeMatcher::create(0, 32, preset),
+                                  upper = HDPTreeMatcher::create(0, disparitiesOfLayer(32, 1), preset);
+        adaptToLayer(*adapted, 0, 3, 160, model);
+        expectIdentical(match(*whole, pair.left, pair.right), match(*adapted, pair.left, pair.right));
+        std::vector<double> wholeRatios, ratios;
+        whole->getSearchRatios(wholeRatios);
 
-    const Ptr<HDPTreeMatcher> upper = matcherOfLayer(1, 3, 32, 160, upperPart(*model, 1));
-    EXPECT_EQ(16, upper->getNumDisparities());
-    match(*upper, nextLayer(pair.left), nextLayer(pair.right));
-    upper->getSearchRatios(ratios);
-    ASSERT_EQ(2u, ratios.size());
-    EXPECT_NEAR(wholeRatios[1], ratios[0], 0.02); // the means of 2 x 2 pixels are rounded in another way
-    EXPECT_EQ(1, ratios[1]);
+        EXPECT_EQ(16, upper->getNumDisparities());
+        adaptToLayer(*upper, 1, 3, 160, upperPart(*model, 1));
+        match(*upper, nextLayer(pair.left), nextLayer(pair.right));
+        upper->getSearchRatios(ratios);
+        ASSERT_EQ(2u, ratios.size());
+        EXPECT_NEAR(wholeRatios[1], ratios[0], 0.02); // the means of 2 x 2 pixels are rounded in another way
+        EXPECT_EQ(1, ratios[1]);
+    }
 }
 
 //! What getForest() gives agrees with the other results of the same compute().
