@@ -734,7 +734,7 @@ private:
                     halveDisparity(b.filtered, upper);
                 });
             clock_.run("disparity prediction",
-                       [&] { predictWindows(upper, settings.scale, disparities, b.smallest, b.largest, b.windows); });
+                       [&] { predictWindows(upper, disparities, b.smallest, b.largest, b.windows); });
             clock_.run("cost aggregation", [&] {
                 const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty, pass == 0 ? 1 : 2 };
                 hdp::aggregateScanlines(b.cost, images.left.size(), disparities, b.windows, penalties, scanlines_,
