@@ -181,8 +181,8 @@ TEST(HDPStereo_Evaluation, every_tree_has_a_color)
 
 TEST(HDPStereo_Evaluation, widths_in_steps_of_the_logarithm)
 {
-    const Mat intervals = (Mat_<Vec2w>(1, 4) << Vec2w(7, 7), Vec2w(0, 3), Vec2w(16, 31), Vec2w(0, 255));
-    const Mat levels = (Mat_<uchar>(1, 4) << 0, 64, 128, 255); // of 1, 4, 16 and all 256 candidates
+    const Mat intervals = (Mat_<Vec2w>(1, 4) << Vec2w(7, 7), Vec2w(0, 3), Vec2w(16, 23), Vec2w(0, 255));
+    const Mat levels = (Mat_<uchar>(1, 4) << 0, 64, 96, 255); // of 1, 4, 8 and all 256 candidates
     Mat colors;
     cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
     expectIdentical(colors, widthPicture(intervals, 256));
