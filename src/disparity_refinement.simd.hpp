@@ -34,6 +34,26 @@ inline int findByte(const uchar* bytes, int begin, int end, uchar value)
     return found ? (int)((const uchar*)found - bytes) : end;
 }
 
+//! The last of the pixels at the border of the right image with which a visible surface begins: what is on its left is
+//! not in the right image.
+int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width, int pixel)
+{
+    const int surface = 4; // columns, at least
+    const uchar* visible = scratch.visible.data();
+    int border = 0;
+    for (int x = findByte(scratch.atBorder.data(), 0, width, 1); x < width;
+         x = findByte(scratch.atBorder.data(), x + 1, width, 1))
+    {
+        int end = x + 1;
+        while (end < std::min(x + surface, width) && visible[end] &&
+               std::abs(disparity[end] - disparity[end - 1]) <= pixel)
+            ++end;
+        if (end == x + surface)
+            border = x;
+    }
+    return border;
+}
+
 } // namespace
 
 void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch)
@@ -42,9 +62,10 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int sh
     scratch.columns.resize(width);
     scratch.keys.resize(width);
     scratch.visible.resize(width);
+    scratch.atBorder.resize(width);
     unsigned *there = scratch.there.data(), *keys = scratch.keys.data();
     int* columns = scratch.columns.data();
-    uchar* visible = scratch.visible.data();
+    uchar *visible = scratch.visible.data(), *atBorder = scratch.atBorder.data();
     const int half = (1 << shift) / 2, pixel = 1 << shift;
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
@@ -58,7 +79,9 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int sh
     {
         const int difference = (int)(0xffff - (keys[x] & 0xffff)) - disparity[x];
         visible[x] = (uchar)((columns[x] > 0) & (difference <= pixel) & (difference >= -pixel));
+        atBorder[x] = (uchar)(visible[x] & (columns[x] <= 1 + 2));
     }
+    std::fill(visible, visible + findBorder(disparity, scratch, width, pixel), (uchar)0);
     for (int begin = findByte(visible, 0, width, 0); begin < width;)
     {
         const int end = findByte(visible, begin, width, 1);
