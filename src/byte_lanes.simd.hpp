@@ -88,11 +88,15 @@ struct ByteLanes
     }
     ByteLanes countBits() const
     {
+#if CV_AVX512_ICL
+        return of(_mm256_popcnt_epi8(v));
+#else
         const __m256i table = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3,
                                                1, 2, 2, 3, 2, 3, 3, 4);
         const __m256i nibble = _mm256_set1_epi8(15);
         return of(_mm256_add_epi8(_mm256_shuffle_epi8(table, _mm256_and_si256(v, nibble)),
                                   _mm256_shuffle_epi8(table, _mm256_and_si256(_mm256_srli_epi16(v, 4), nibble))));
+#endif
     }
     //! The first of the smallest lanes of each group.
     void findMinimum(unsigned* lanes) const
