@@ -9,7 +9,6 @@ install_packages build-essential cmake ninja-build libopencv-dev \
     python3-dev python3-numpy libtbb-dev libjpeg-dev libpng-dev zlib1g-dev
 
 directory=$build/in-tree
-python=/usr/bin/python3 # the one that Debian's headers and numpy are for
 if [ -z "${OPENCV_SOURCE_DIR:-}" ]; then
     fetch_tarball || fail "nothing to build without OpenCV's source"
     OPENCV_SOURCE_DIR=$build/source-${tarball##*/}
