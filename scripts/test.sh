@@ -1,6 +1,7 @@
 #!/bin/bash
 # Installs what is missing, builds the module with its tests against the installed OpenCV, and runs them.
-#   scripts/test.sh                       tests, those from Python too, and one short round of the performance tests
+#   scripts/test.sh                       tests, those from Python too, OpenCV's samples with this matcher, and one short
+#                                         round of the performance tests
 #   scripts/test.sh --sanitize            tests but the slow ones, under AddressSanitizer and UndefinedBehaviorSanitizer,
 #                                         and the samples: one on a full-size pair, the benchmark on a small one
 #   scripts/test.sh [--sanitize] OPTION...  the tests alone, with these options of theirs, e.g. --gtest_filter=...
@@ -135,6 +136,13 @@ if [ -z "$sanitize" ] && [ $# -eq 0 ]; then
     if [ ${#python_options[@]} -gt 0 ]; then
         say "Running the Python tests"
         run_python_tests
+        say "Running OpenCV's stereo_match samples with this matcher"
+        if time "$checkout/scripts/check_drop_in.sh"; then
+            passed=$((passed + 1))
+        else
+            say "scripts/check_drop_in.sh failed"
+            failed=$((failed + 1))
+        fi
     fi
     say "Comparing the reference maps between instruction sets"
     compare_instruction_sets "$directory/bin/opencv_test_hdpstereo"
