@@ -48,7 +48,7 @@ Matx44d rectify(Size size)
     const Mat none = Mat::zeros(1, 5, CV_64F);
     Mat R1, R2, P1, P2, Q;
     cv::stereoRectify(camera, none, camera, none, size, Mat::eye(3, 3, CV_64F), Vec3d(-baseline, 0, 0), R1, R2, P1, P2,
-                      Q, CALIB_ZERO_DISPARITY, 0, size);
+                      Q);
     EXPECT_NEAR(focal, P1.at<double>(0, 0), 1e-3 * focal);
     return Matx44d(Q.ptr<double>());
 }
