@@ -13,6 +13,15 @@ namespace hdp {
 //! Median of size x size pixels, borders replicated. disparity: CV_16UC1; stripes: memory to work in.
 CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered);
 
+//! Memory for a row of fillOccluded()
+struct OcclusionScratch
+{
+    std::vector<int> columns;    // of the right image that each pixel maps to, from 1 on; 0: none
+    std::vector<unsigned> keys;  // of each pixel, by which the lowest wins its column: residual and disparity
+    std::vector<unsigned> there; // the key that won each column
+    std::vector<uchar> visible;
+};
+
 /** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the pixels
 that map to one column of the right image the one with the lowest residual is there; those whose disparity is another
 one, and those that map to no column, are not.

@@ -91,7 +91,7 @@ void censusCosts(const CostPlanes& planes, const int* pixels, int size, int firs
         for (int i = 0; i < pixelCount; ++i)
         {
             const int p = pixels[begin + i], y = rowOf(p, rowsPerPixel), x = p - y * planes.width;
-            const uchar* left = planes.left + y * planes.leftStep + x;
+            const uchar* left = planes.left + y * planes.leftStep + 4 * x;
             const uchar* right = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
             for (int plane = 0; plane < count; ++plane, left += planes.leftPlane, right += planes.rightPlane)
             {
