@@ -35,6 +35,18 @@ TREES = {
     'rt': cv.stereo.createRandomTree,
 }
 
+PLY_HEADER = '''ply
+format binary_little_endian 1.0
+element vertex %d
+property float x
+property float y
+property float z
+property uchar red
+property uchar green
+property uchar blue
+end_header
+'''
+
 
 def read_image(filename, flags=cv.IMREAD_COLOR):
     image = cv.imread(cv.samples.findFile(filename, required=False) or filename, flags)
@@ -44,7 +56,7 @@ def read_image(filename, flags=cv.IMREAD_COLOR):
 
 
 def read_disparity(filename, scale):
-    '''PNG of 8 bit (disparity) or 16 bit (disparity * 256), both with 0 for unknown, or PFM. NaN where it is unknown.'''
+    '''PNG of 8 bit, or of 16 bit (disparity * 256), both with 0 for unknown, or PFM. NaN where it is unknown.'''
     image = read_image(filename, cv.IMREAD_UNCHANGED)
     if image.ndim != 2:
         sys.exit(filename + ' is a color image, not a disparity map')
@@ -85,16 +97,17 @@ def color_picture(disparity):
 def write_point_cloud(filename, disparity, image, focal, baseline):
     '''A binary .ply file; the principal point is the center of the image.'''
     height, width = disparity.shape
-    Q = np.float64([[1, 0, 0, -0.5 * (width - 1)], [0, 1, 0, -0.5 * (height - 1)], [0, 0, 0, focal], [0, 0, 1 / baseline, 0]])
+    Q = np.float64([[1, 0, 0, -0.5 * (width - 1)],
+                    [0, 1, 0, -0.5 * (height - 1)],
+                    [0, 0, 0, focal],
+                    [0, 0, 1 / baseline, 0]])
     points = cv.reprojectImageTo3D(disparity, Q)
     seen = np.isfinite(points).all(axis=2)
     vertices = np.empty(np.count_nonzero(seen), [('position', '<f4', 3), ('color', 'u1', 3)])
     vertices['position'] = points[seen]
     vertices['color'] = image[seen][:, ::-1]
-    names = ['property float ' + name for name in 'xyz'] + ['property uchar ' + name for name in ('red', 'green', 'blue')]
     with open(filename, 'wb') as f:
-        f.write(('ply\nformat binary_little_endian 1.0\nelement vertex %d\n%s\nend_header\n'
-                 % (len(vertices), '\n'.join(names))).encode('ascii'))
+        f.write((PLY_HEADER % len(vertices)).encode('ascii'))
         f.write(vertices.tobytes())
     print('written %s (%d points)' % (filename, len(vertices)))
 
@@ -122,7 +135,8 @@ def main():
     parser.add_argument('left', nargs='?', help='left image; without one, the Aloe pair of OpenCV\'s samples')
     parser.add_argument('right', nargs='?', help='right image')
     parser.add_argument('--preset', choices=PRESETS, default='fast', help='set of parameters (default: fast)')
-    parser.add_argument('--tree', choices=TREES, default='mst', help='spanning tree: minimum, segment or random (default: mst)')
+    parser.add_argument('--tree', choices=TREES, default='mst',
+                        help='spanning tree: minimum, segment or random (default: mst)')
     parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity in pixels (default: 0)')
     parser.add_argument('--num-disparities', type=int, help='number of disparities (default: a fifth of the width)')
     parser.add_argument('--output', help='disparity: .png (16 bit, times 256, 0 = none) or .pfm (float, inf = none)')
@@ -132,7 +146,8 @@ def main():
     parser.add_argument('--baseline', type=float, help='distance of the cameras, in the unit of the points')
     parser.add_argument('--truth', help='left disparity: PNG of 8 bit or 16 bit (times 256), 0 = unknown, or PFM')
     parser.add_argument('--truth-scale', type=float, help='what a disparity of 1 is in the truth, if not 1 or 256')
-    parser.add_argument('--compare', action='store_true', help='time and error beside cv.StereoSGBM; pixels without disparity count as wrong')
+    parser.add_argument('--compare', action='store_true',
+                        help='time and error beside cv.StereoSGBM; pixels without disparity count as wrong')
     parser.add_argument('--runs', type=int, default=5, help='runs that --compare takes the median of (default: 5)')
     parser.add_argument('--show', action='store_true', help='show the pictures in windows')
     args = parser.parse_args()
@@ -175,7 +190,8 @@ def main():
         if truth is not None:
             judged = ~np.isnan(truth)
             error = np.nan_to_num(np.abs(disparity - truth)[judged], nan=np.inf)
-            line += '%10.2f %% wrong by 1 and more, %6.2f %% by 2' % (100 * np.mean(error >= 1), 100 * np.mean(error >= 2))
+            wrong = [100 * np.mean(error >= threshold) for threshold in (1, 2)]
+            line += '%10.2f %% wrong by 1 and more, %6.2f %% by 2' % tuple(wrong)
         print(line + '%10.2f %% without disparity' % (100 * np.mean(np.isnan(disparity))))
 
     disparity = disparities[args.preset]

@@ -371,8 +371,8 @@ class hdpstereo_test(TestCase):
                 self.assertTrue(len(means) == len(sigmas) == len(weights) > 0)
                 self.assertAlmostEqual(1, np.sum(weights), delta=0.001)
                 offset = 0.75
-                expected = np.sum(weights * np.exp(-0.5 * ((offset - means) / sigmas) ** 2) / sigmas) / np.sqrt(2 * np.pi)
-                self.assertAlmostEqual(expected, model.density(layer, offset), places=9)
+                densities = np.exp(-0.5 * ((offset - means) / sigmas) ** 2) / (np.sqrt(2 * np.pi) * sigmas)
+                self.assertAlmostEqual(np.dot(weights, densities), model.density(layer, offset), places=9)
 
     def test_own_model(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32, PRESETS['PAPER'])
@@ -517,7 +517,8 @@ class hdpstereo_test(TestCase):
                 ('TreeStrategy', None, 'treeStrategy must not be empty')):
             self.assertRejected(message, getattr(matcher, 'set' + setter), value)
         self.assertRejected('numDisparities must be > 0, not -16', cv.stereo.HDPTreeMatcher.create, 0, -16)
-        self.assertRejected('preset must be one of HDPTreeMatcher::PRESET_*, not 9', cv.stereo.HDPTreeMatcher.create, 0, 16, 9)
+        self.assertRejected('preset must be one of HDPTreeMatcher::PRESET_*, not 9',
+                            cv.stereo.HDPTreeMatcher.create, 0, 16, 9)
         self.assertRejected('k must be finite and >= 0', cv.stereo.createSegmentTree, -1)
         self.assertRejected('seed must be >= 0', cv.stereo.createRandomTree, -1)
         self.assertRejected('which must be PUBLISHED_LARGE, PUBLISHED_SMALL, TRAINED_LARGE or TRAINED_SMALL',
@@ -528,8 +529,8 @@ class hdpstereo_test(TestCase):
         self.assertRejected('filename: cannot read ' + self.path('none.yml'),
                             cv.stereo.DisparityPredictionModel.load, self.path('none.yml'))
         self.assertEqual(0, model.getNumLayers())
-        for bad in ('wide', None, [1]):  # not a number: Python's own error
-            self.assertRaises((TypeError, cv.error), matcher.setGamma, [bad])
+        for bad in ('wide', [1], {}):  # not a number: an error of the bindings
+            self.assertRaises((TypeError, cv.error), matcher.setGamma, bad)
         self.assertEqual(before, parameters(matcher))
 
     def test_bad_images(self):
