@@ -203,11 +203,19 @@ public:
             writer_.write(picture);
         }
 #ifdef HAVE_OPENCV_HIGHGUI
-        if (window_)
+        try
         {
-            imshow("hdp_live", picture);
-            const int key = waitKey(1) & 255;
-            return key != 27 && key != 'q';
+            if (window_)
+            {
+                imshow("hdp_live", picture);
+                const int key = waitKey(1) & 255;
+                return key != 27 && key != 'q';
+            }
+        }
+        catch (const cv::Exception&) // OpenCV was built without windows
+        {
+            window_ = false;
+            std::cout << "no windows: printing only" << std::endl;
         }
 #endif
         return true;
@@ -235,7 +243,7 @@ private:
     }
 
     const String path_;
-    const bool window_;
+    bool window_;
     VideoWriter writer_;
 };
 

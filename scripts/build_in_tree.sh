@@ -19,7 +19,7 @@ fi
 # The module and what it needs, only our tests, and no optional part of OpenCV that they do not use (Debian's source
 # has no 3rdparty, so some of these could not be built anyway).
 options=(-DCMAKE_BUILD_TYPE=Release
-    "-DOPENCV_EXTRA_MODULES_PATH=$checkout" "-DBUILD_LIST=hdpstereo,ts,python3"
+    "-DOPENCV_EXTRA_MODULES_PATH=$checkout" "-DBUILD_LIST=hdpstereo,ts,python3,python_tests"
     -DOPENCV_BUILD_TEST_MODULES_LIST=hdpstereo -DOPENCV_BUILD_PERF_TEST_MODULES_LIST=hdpstereo
     -DBUILD_EXAMPLES=ON -DBUILD_opencv_apps=OFF -DBUILD_JAVA=OFF
     -DPYTHON3_EXECUTABLE="$python" -DWITH_TBB=ON)
