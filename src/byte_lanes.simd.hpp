@@ -153,6 +153,9 @@ struct ByteLanes
     ByteLanes toPrevious() const { return of(_mm_srli_si128(v, 1)); }
     ByteLanes permute(ByteLanes order) const
     {
+        const __m128i identity = _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+        if (_mm_movemask_epi8(_mm_cmpeq_epi8(order.v, identity)) == 0xffff) // most are
+            return *this;
         uchar lanes[32], orders[16], permuted[16];
         store(lanes);
         _mm_storeu_si128((__m128i*)(lanes + 16), _mm_setzero_si128());

@@ -15,12 +15,13 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 //! fillOccluded() for one row. shift: log2 of the units of a disparity in one pixel.
 void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch);
 
-/** A row of the median of 5 x 5 pixels.
-@param rows The rows around it.
+/** A row of the median of size x size pixels.
+@param rows The `size` rows around it.
+@param size 5 or 7.
 @param width Of the rows.
-@param sorted Five rows to work in, with two more columns on each side.
+@param sorted As many rows to work in, with size / 2 more columns on each side.
 @param filtered Receives the row. */
-void medianRow(const ushort* const* rows, int width, ushort* const* sorted, ushort* filtered);
+void medianRow(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -73,21 +74,23 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int sh
 
 namespace {
 
-inline void sortPair(ushort& a, ushort& b)
+// In what follows pixels are less 32768: the smaller of two signed words is one instruction of SSE2, of unsigned ones two.
+
+inline void sortPair(short& a, short& b)
 {
-    const ushort smaller = std::min(a, b);
+    const short smaller = std::min(a, b);
     b = std::max(a, b);
     a = smaller;
 }
 
-inline void sortThree(ushort& a, ushort& b, ushort& c)
+inline void sortThree(short& a, short& b, short& c)
 {
     sortPair(a, b);
     sortPair(b, c);
     sortPair(a, b);
 }
 
-inline void sortFour(ushort& a, ushort& b, ushort& c, ushort& d)
+inline void sortFour(short& a, short& b, short& c, short& d)
 {
     sortPair(a, b);
     sortPair(c, d);
@@ -96,67 +99,116 @@ inline void sortFour(ushort& a, ushort& b, ushort& c, ushort& d)
     sortPair(b, c);
 }
 
-inline void sortFive(ushort& a, ushort& b, ushort& c, ushort& d, ushort& e)
+inline void sort(short (&v)[5])
 {
-    sortFour(a, b, c, d);
-    sortPair(d, e);
-    sortPair(c, d);
-    sortPair(b, c);
-    sortPair(a, b);
+    sortFour(v[0], v[1], v[2], v[3]);
+    sortPair(v[3], v[4]);
+    sortPair(v[2], v[3]);
+    sortPair(v[1], v[2]);
+    sortPair(v[0], v[1]);
 }
 
-inline ushort medianOfThree(ushort a, ushort b, ushort c)
+inline void sort(short (&v)[7])
 {
-    return std::max(std::min(a, b), std::min(std::max(a, b), c));
+    sortFour(v[0], v[1], v[2], v[3]);
+    sortThree(v[4], v[5], v[6]);
+    // Batcher's merging of four and three
+    sortPair(v[0], v[4]);
+    sortPair(v[1], v[5]);
+    sortPair(v[2], v[6]);
+    sortPair(v[2], v[4]);
+    sortPair(v[3], v[5]);
+    sortPair(v[1], v[2]);
+    sortPair(v[3], v[4]);
+    sortPair(v[5], v[6]);
+}
+
+inline short medianOfThree(short a, short b, short c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
+
+//! The median of kept[0 .. count - 1] and rest[0 .. count - 4]: the smallest and the largest of kept cannot be it.
+template <int count> struct Forgetful
+{
+    static CV_ALWAYS_INLINE short median(short* kept, const short* rest)
+    {
+        HDP_UNROLLED for (int i = 0; i < count / 2; ++i) sortPair(kept[i], kept[count - 1 - i]);
+        HDP_UNROLLED for (int i = 1; i < (count + 1) / 2; ++i) sortPair(kept[0], kept[i]);
+        HDP_UNROLLED for (int i = count / 2; i < count - 1; ++i) sortPair(kept[i], kept[count - 1]);
+        kept[0] = *rest;
+        return Forgetful<count - 1>::median(kept, rest + 1);
+    }
+};
+template <> struct Forgetful<3>
+{
+    static CV_ALWAYS_INLINE short median(short* kept, const short*) { return medianOfThree(kept[0], kept[1], kept[2]); }
+};
+
+// The median of a window, sorted by rows and columns. The element in row i and column j is not smaller than
+// (i + 1) (j + 1) elements, itself included, and not larger than (size - i) (size - j), which leaves some diagonals. Of
+// two on the outer ones the smaller, or larger, may have too many above, or below, it.
+
+inline short medianOfSorted(const short (&d)[5][5])
+{
+    const short low = std::max(d[1][2], d[2][1]), high = std::min(d[2][3], d[3][2]);
+    // The median of nine: low <= d[2][2] <= high and two groups of three
+    short a = std::max(d[0][3], d[3][0]), b = d[0][4], c = d[4][0];
+    short e = std::min(d[1][4], d[4][1]), f = d[1][3], g = d[3][1];
+    sortThree(a, b, c);
+    sortThree(e, f, g);
+    return medianOfThree(std::max(std::max(a, e), low), medianOfThree(b, f, d[2][2]), std::min(std::min(c, g), high));
+}
+
+inline short medianOfSorted(const short (&d)[7][7])
+{
+    short kept[12] = { std::max(d[0][4], d[4][0]), std::max(d[1][3], d[3][1]), d[2][2],
+                       std::max(d[0][5], d[4][1]), std::max(d[5][0], d[1][4]), d[2][3],
+                       std::min(d[2][6], d[6][2]), std::min(d[3][5], d[5][3]), d[4][4],
+                       std::min(d[6][1], d[2][5]), std::min(d[1][6], d[5][2]), d[4][3] };
+    const short rest[9] = { d[3][2], d[3][4], d[0][6], d[6][0], d[1][5], d[5][1], d[2][4], d[4][2], d[3][3] };
+    return Forgetful<12>::median(kept, rest);
+}
+
+template <int size> void medianRow(const ushort* const* rows, int width, short* const* sorted, ushort* filtered)
+{
+    const int radius = size / 2;
+    const ushort* r[size];
+    short* s[size];
+    for (int i = 0; i < size; ++i)
+    {
+        r[i] = rows[i];
+        s[i] = sorted[i];
+    }
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        short column[size];
+        HDP_UNROLLED for (int i = 0; i < size; ++i) column[i] = (short)(r[i][x] ^ SHRT_MIN);
+        sort(column);
+        HDP_UNROLLED for (int i = 0; i < size; ++i) s[i][x] = column[i];
+    }
+    for (int i = 0; i < size; ++i) // the border is replicated
+    {
+        std::fill(s[i] - radius, s[i], s[i][0]);
+        std::fill(s[i] + width, s[i] + width + radius, s[i][width - 1]);
+    }
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        short window[size][size];
+        HDP_UNROLLED for (int i = 0; i < size; ++i)
+        {
+            HDP_UNROLLED for (int j = 0; j < size; ++j) window[i][j] = s[i][x + j - radius];
+            sort(window[i]); // the columns remain sorted; the compiler leaves out what is not used
+        }
+        filtered[x] = (ushort)(medianOfSorted(window) ^ SHRT_MIN);
+    }
 }
 
 } // namespace
 
-void medianRow(const ushort* const* rows, int width, ushort* const* sorted, ushort* filtered)
+void medianRow(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
 {
-    {
-        const ushort *r0 = rows[0], *r1 = rows[1], *r2 = rows[2], *r3 = rows[3], *r4 = rows[4];
-        ushort *s0 = sorted[0], *s1 = sorted[1], *s2 = sorted[2], *s3 = sorted[3], *s4 = sorted[4];
-        HDP_VECTORIZED for (int x = 0; x < width; ++x)
-        {
-            ushort a = r0[x], b = r1[x], c = r2[x], d = r3[x], e = r4[x];
-            sortFive(a, b, c, d, e);
-            s0[x] = a;
-            s1[x] = b;
-            s2[x] = c;
-            s3[x] = d;
-            s4[x] = e;
-        }
-    }
-    for (int i = 0; i < 5; ++i) // the border is replicated
-    {
-        sorted[i][-2] = sorted[i][-1] = sorted[i][0];
-        sorted[i][width] = sorted[i][width + 1] = sorted[i][width - 1];
-    }
-    // Once the columns are sorted, and then the rows, the element in row i and column j is not smaller than
-    // (i + 1) (j + 1) elements, itself included, and not larger than (5 - i) (5 - j). That leaves 13 that may be the
-    // median: below, dij.
-    const ushort *s0 = sorted[0], *s1 = sorted[1], *s2 = sorted[2], *s3 = sorted[3], *s4 = sorted[4];
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
-    {
-        ushort d00 = s0[x - 2], d01 = s0[x - 1], d02 = s0[x], d03 = s0[x + 1], d04 = s0[x + 2];
-        ushort d10 = s1[x - 2], d11 = s1[x - 1], d12 = s1[x], d13 = s1[x + 1], d14 = s1[x + 2];
-        ushort d20 = s2[x - 2], d21 = s2[x - 1], d22 = s2[x], d23 = s2[x + 1], d24 = s2[x + 2];
-        ushort d30 = s3[x - 2], d31 = s3[x - 1], d32 = s3[x], d33 = s3[x + 1], d34 = s3[x + 2];
-        ushort d40 = s4[x - 2], d41 = s4[x - 1], d42 = s4[x], d43 = s4[x + 1], d44 = s4[x + 2];
-        sortFive(d00, d01, d02, d03, d04); // the compiler leaves out what is not used
-        sortFive(d10, d11, d12, d13, d14);
-        sortFive(d20, d21, d22, d23, d24);
-        sortFive(d30, d31, d32, d33, d34);
-        sortFive(d40, d41, d42, d43, d44);
-        // Of two on the diagonals beside the middle one, the smaller (larger) has too many above (below) it.
-        ushort p = std::max(d03, d30), q = std::max(d12, d21), r = std::min(d14, d41), s = std::min(d23, d32);
-        // The median of the nine that are left, of which q <= d22 <= s
-        sortThree(p, d04, d40);
-        sortThree(r, d13, d31);
-        filtered[x] =
-            medianOfThree(std::max(std::max(p, r), q), medianOfThree(d04, d13, d22), std::min(std::min(d40, d31), s));
-    }
+    if (size == 5)
+        medianRow<5>(rows, width, sorted, filtered);
+    else
+        medianRow<7>(rows, width, sorted, filtered);
 }
 
 #endif
