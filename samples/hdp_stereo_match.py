@@ -135,8 +135,7 @@ def main():
     parser.add_argument('left', nargs='?', help='left image; without one, the Aloe pair of OpenCV\'s samples')
     parser.add_argument('right', nargs='?', help='right image')
     parser.add_argument('--preset', choices=PRESETS, default='fast', help='set of parameters (default: fast)')
-    parser.add_argument('--tree', choices=TREES, default='mst',
-                        help='spanning tree: minimum, segment or random (default: mst)')
+    parser.add_argument('--tree', choices=TREES, help='spanning tree: minimum, segment or random (default: the preset\'s)')
     parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity in pixels (default: 0)')
     parser.add_argument('--num-disparities', type=int, help='number of disparities (default: a fifth of the width)')
     parser.add_argument('--output', help='disparity: .png (16 bit, times 256, 0 = none) or .pfm (float, inf = none)')
@@ -168,7 +167,8 @@ def main():
 
     try:
         matcher = cv.stereo.HDPTreeMatcher.create(args.min_disparity, num_disparities, PRESETS[args.preset])
-        matcher.setTreeStrategy(TREES[args.tree]())
+        if args.tree:
+            matcher.setTreeStrategy(TREES[args.tree]())
         matchers = {args.preset: matcher}
         if args.compare:
             matchers['sgbm'] = cv.StereoSGBM.create(

@@ -161,7 +161,7 @@ class hdpstereo_test(TestCase):
 
     def test_enumerations(self):
         self.assertEqual(5, len(set(PRESETS.values())))
-        self.assertEqual(-1, cv.stereo.HDPTreeMatcher_AUTO)
+        self.assertEqual((-1, -2), (cv.stereo.HDPTreeMatcher_AUTO, cv.stereo.HDPTreeMatcher_FEWEST_LAYERS))
         self.assertEqual(PRESETS['FAST'], cv.stereo.HDPTREE_MATCHER_PRESET_FAST)
         default = parameters(cv.stereo.HDPTreeMatcher.create())
         seen = []
@@ -177,6 +177,7 @@ class hdpstereo_test(TestCase):
             matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
             for parameter, value in parameters(expected).items():
                 set_(matcher, parameter, value)
+            matcher.setTreeStrategy(expected.getTreeStrategy())
             self.assertSame(expected.compute(self.left, self.right), matcher.compute(self.left, self.right))
 
     # ---- Images
@@ -495,7 +496,7 @@ class hdpstereo_test(TestCase):
                 ('BlockSize', 4, 'blockSize must be odd, in 1..31, not 4'),
                 ('SpeckleWindowSize', -1, 'speckleWindowSize must be >= 0, not -1'),
                 ('SpeckleRange', 2048, 'speckleRange must be in 0..2047, not 2048'),
-                ('NumLayers', 17, 'numLayers must be in 1..16 or AUTO, not 17'),
+                ('NumLayers', 17, 'numLayers must be in 1..16, AUTO or FEWEST_LAYERS, not 17'),
                 ('Delta0', 1.0, 'delta0 must be in [0, 1) or AUTO, not 1'),
                 ('Beta', 1.5, 'beta must be in [0, 1] or AUTO, not 1.5'),
                 ('Gamma', 0, 'gamma must be finite and > 0, not 0'),
