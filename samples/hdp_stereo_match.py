@@ -135,7 +135,8 @@ def main():
     parser.add_argument('left', nargs='?', help='left image; without one, the Aloe pair of OpenCV\'s samples')
     parser.add_argument('right', nargs='?', help='right image')
     parser.add_argument('--preset', choices=PRESETS, default='fast', help='set of parameters (default: fast)')
-    parser.add_argument('--tree', choices=TREES, help='spanning tree: minimum, segment or random (default: the preset\'s)')
+    parser.add_argument('--tree', choices=TREES,
+                        help='spanning tree: minimum, segment or random (default: the preset\'s)')
     parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity in pixels (default: 0)')
     parser.add_argument('--num-disparities', type=int, help='number of disparities (default: a fifth of the width)')
     parser.add_argument('--output', help='disparity: .png (16 bit, times 256, 0 = none) or .pfm (float, inf = none)')
