@@ -4,8 +4,11 @@
 #ifndef OPENCV_HDPSTEREO_HDP_TREE_MATCHER_HPP
 #define OPENCV_HDPSTEREO_HDP_TREE_MATCHER_HPP
 
+// The only code that knows OpenCV's versions: what opencv_calib3d and opencv_imgproc of 4.x have for stereo matching is
+// in opencv_stereo and opencv_geometry since 5.0.
 #include "opencv2/core/version.hpp"
 #if CV_VERSION_MAJOR >= 5
+#include "opencv2/geometry/2d.hpp"
 #include "opencv2/stereo.hpp"
 #else
 #include "opencv2/calib3d.hpp"
