@@ -67,7 +67,7 @@ static Mat colorTrees(const Mat& trees)
     return picture;
 }
 
-//! How many candidates each pixel has: black is 1, white is 64 or more.
+//! How many candidates each pixel has: black is 1, white is 16 or more.
 static Mat greyWidths(const Mat& intervals)
 {
     Mat bounds[2], widths;
@@ -75,7 +75,7 @@ static Mat greyWidths(const Mat& intervals)
     subtract(bounds[1], bounds[0], widths, noArray(), CV_32F);
     widths += 1;
     log(widths, widths);
-    widths.convertTo(widths, CV_8U, 255 / std::log(64.));
+    widths.convertTo(widths, CV_8U, 255 / std::log(16.));
     cvtColor(widths, widths, COLOR_GRAY2BGR);
     return widths;
 }
