@@ -88,11 +88,15 @@ struct ByteLanes
     }
     ByteLanes countBits() const
     {
+#if CV_AVX512_ICL
+        return of(_mm256_popcnt_epi8(v));
+#else
         const __m256i table = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3,
                                                1, 2, 2, 3, 2, 3, 3, 4);
         const __m256i nibble = _mm256_set1_epi8(15);
         return of(_mm256_add_epi8(_mm256_shuffle_epi8(table, _mm256_and_si256(v, nibble)),
                                   _mm256_shuffle_epi8(table, _mm256_and_si256(_mm256_srli_epi16(v, 4), nibble))));
+#endif
     }
     //! The first of the smallest lanes of each group.
     void findMinimum(unsigned* lanes) const
@@ -153,6 +157,9 @@ struct ByteLanes
     ByteLanes toPrevious() const { return of(_mm_srli_si128(v, 1)); }
     ByteLanes permute(ByteLanes order) const
     {
+        const __m128i identity = _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+        if (_mm_movemask_epi8(_mm_cmpeq_epi8(order.v, identity)) == 0xffff) // most are
+            return *this;
         uchar lanes[32], orders[16], permuted[16];
         store(lanes);
         _mm_storeu_si128((__m128i*)(lanes + 16), _mm_setzero_si128());

@@ -38,6 +38,31 @@ void dispatchFill(ushort* disparity, const uchar* residual, int width, int shift
     CV_CPU_DISPATCH(fillOccludedRow, (disparity, residual, width, shift, scratch), CV_CPU_DISPATCH_MODES_ALL);
 }
 
+void dispatchMedian(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
+{
+    CV_CPU_DISPATCH(medianRow, (rows, size, width, sorted, filtered), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! As cv::medianBlur, which takes several times as long: it does not share the work on a column of the window.
+void medianOfRows(const Mat& image, int size, Mat& filtered)
+{
+    filtered.create(image.size(), CV_16U);
+    parallel_for_(Range(0, image.rows), [&](const Range& range) {
+        const int radius = size / 2, width = image.cols;
+        Mat buffer(size, width + 2 * radius, CV_16S);
+        std::vector<short*> sorted(size);
+        std::vector<const ushort*> rows(size);
+        for (int i = 0; i < size; ++i)
+            sorted[i] = buffer.ptr<short>(i) + radius;
+        for (int y = range.start; y < range.end; ++y)
+        {
+            for (int i = 0; i < size; ++i)
+                rows[i] = image.ptr<ushort>(std::min(std::max(y + i - radius, 0), image.rows - 1));
+            dispatchMedian(rows.data(), size, width, sorted.data(), filtered.ptr<ushort>(y));
+        }
+    });
+}
+
 //! What the right image has at a pixel's match
 enum Match
 {
@@ -82,7 +107,9 @@ void checkLeftRight(const Mat& disparity, int scale, int maxDiff, int invalid, c
 
 void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered)
 {
-    if (size <= 5)
+    if (size == 5 || size == 7)
+        return medianOfRows(disparity, size, filtered);
+    if (size == 3)
         return medianBlurStripes(disparity, size, stripes, filtered);
     // cv::medianBlur takes large windows in 8 bit only. A median commutes with monotone functions, and a value is the
     // sum of its slices min(max(value - 255 k, 0), 255), so it is the sum of the slices' medians.

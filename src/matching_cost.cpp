@@ -95,24 +95,14 @@ void copyBordered(const Mat& image, int channel, int radius, int before, int aft
     });
 }
 
-//! The census of a row, in planes of 8 bits, and its grey levels, pixel by pixel
-void interleaveRow(const uchar* planes, size_t planeSize, int count, const ushort* grey, int cols, uchar* pixels)
+void dispatchLeftCensus(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels)
 {
-    const uchar *first = planes, *second = count > 1 ? planes + planeSize : planes,
-                *third = count > 2 ? planes + 2 * planeSize : planes;
-    HDP_VECTORIZED for (int x = 0; x < cols; ++x)
-    {
-        pixels[4 * x] = first[x];
-        pixels[4 * x + 1] = second[x];
-        pixels[4 * x + 2] = third[x];
-        pixels[4 * x + MatchingCost::greyByte] = (uchar)(grey[x] / greyScale);
-    }
+    CV_CPU_DISPATCH(leftCensusRow, (grey, step, radius, cols, planes, pixels), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-void computeCensusRow(const ushort* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census,
-                      size_t planeSize)
+void dispatchRightCensus(const short* grey, ptrdiff_t step, int radius, int cols, uchar* row, size_t planeSize)
 {
-    CV_CPU_DISPATCH(censusRow, (grey, step, radius, mirrored, cols, census, planeSize), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(rightCensusRow, (grey, step, radius, cols, row, planeSize), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 } // namespace
@@ -171,28 +161,24 @@ void MatchingCost::prepareCensus(const Mat& image, bool isRight, int after)
 {
     const int radius = blockSize_ / 2, width = image.cols, planes = planes_.count, rows = image.rows;
     const int cols = (int)alignSize(width, censusColumns); // what is computed past the width is overwritten or not read
-    grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16U);
-    copyBordered<ushort>(image, 0, radius, radius, radius + cols - width, isRight, grey_);
+    grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16S); // all levels are below 32768
+    copyBordered<short>(image, 0, radius, radius, radius + cols - width, isRight, grey_);
     if (isRight)
         right_.create((planes + 1) * rows, censusMargin + std::max(width + after, cols) + censusMargin, CV_8U);
     else
         left_.create(rows, censusMargin + cols + censusMargin, CV_8UC4);
+    const ptrdiff_t step = (ptrdiff_t)grey_.step1();
     parallel_for_(Range(0, rows), [&](const Range& range) {
-        Mat leftPlanes(isRight ? 0 : planes, cols, CV_8U);
+        std::vector<uchar> leftPlanes(isRight ? 0 : 3 * cols);
         for (int y = range.start; y < range.end; ++y)
         {
-            const ushort* grey = grey_.ptr<ushort>(y + radius) + radius;
+            const short* grey = grey_.ptr<short>(y + radius) + radius;
             if (!isRight)
             {
-                computeCensusRow(grey, (ptrdiff_t)grey_.step1(), radius, false, cols, leftPlanes.ptr(),
-                                 leftPlanes.step);
-                interleaveRow(leftPlanes.ptr(), leftPlanes.step, planes, grey, cols, left_.ptr(y) + 4 * censusMargin);
+                dispatchLeftCensus(grey, step, radius, cols, leftPlanes.data(), left_.ptr(y) + 4 * censusMargin);
                 continue;
             }
-            computeCensusRow(grey, (ptrdiff_t)grey_.step1(), radius, true, cols, right_.ptr(y) + censusMargin,
-                             right_.step * rows);
-            uchar* intensity = right_.ptr(planes * rows + y) + censusMargin;
-            HDP_VECTORIZED for (int x = 0; x < width; ++x) intensity[x] = (uchar)(grey[x] / greyScale);
+            dispatchRightCensus(grey, step, radius, cols, right_.ptr(y) + censusMargin, right_.step * rows);
             for (int plane = 0; plane <= planes; ++plane)
             {
                 uchar* row = right_.ptr(plane * rows + y) + censusMargin;
@@ -225,7 +211,8 @@ void MatchingCost::censusCosts(const Mat& disparity, int scale, Mat& costs) cons
             for (int x = 0; x < disparity.cols; ++x)
             {
                 const int at = wholeDisparity(candidate[x], scale) - x;
-                unsigned bits = (unsigned)(left[0][4 * x] ^ right[0][at]) | (unsigned)(left[1][4 * x] ^ right[1][at]) << 8 |
+                unsigned bits = (unsigned)(left[0][4 * x] ^ right[0][at]) |
+                                (unsigned)(left[1][4 * x] ^ right[1][at]) << 8 |
                                 (unsigned)(left[2][4 * x] ^ right[2][at]) << 16;
                 bits &= mask;
                 bits -= (bits >> 1) & 0x555555;

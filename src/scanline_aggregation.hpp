@@ -49,7 +49,7 @@ struct ScanlineScratch
     std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel
     std::vector<Column> columns;
     std::vector<uchar> priors, intoRight, intoLeft,
-        intoBelow;                   // CandidateWindow::candidates per column of the layer above
+        intoBelow;                                   // CandidateWindow::candidates per column of the layer above
     std::vector<short> first[CandidateWindow::runs]; // by column
     // Of the winners of some rows: their lanes, sums, each with those of the lanes before and behind, and costs
     std::vector<uchar> winners, winnerCosts;

@@ -44,8 +44,9 @@ class Sweep
 public:
     Sweep(const ScanlineProblem& problem, ScanlineScratch& scratch)
         : p_(problem), s_(scratch), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
-          planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)), large_(ByteLanes::repeat(problem.penalties.large)),
-          zero_(ByteLanes::repeat(0)), windows_(0), upperRow_(-1), entersUpperRow_(false)
+          planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)),
+          large_(ByteLanes::repeat(problem.penalties.large)), zero_(ByteLanes::repeat(0)), windows_(0), upperRow_(-1),
+          entersUpperRow_(false)
     {
         const size_t columns = 2 * ((size_t)pairs_ + margin), upperColumns = (size_t)pairs_ + 2 * margin;
         s_.costs.resize((size_t)steps_ * 2 * lanes);
@@ -424,7 +425,8 @@ private:
             const int whole = lane + (lane < Window::runLength ? low : high);
             const int before = sums[x] & 255, sum = sums[x] >> 8 & 255, after = sums[x] >> 16 & 255;
             // Whether there are candidates on both sides
-            const int isInner = ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
+            const int isInner =
+                ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
             const float slope = (float)std::max(std::max(before, after) - sum, 1);
             const float rise = (float)((before - after) & -isInner);
             const float offset = rise * (ScanlineProblem::scale / 2) / slope;
@@ -440,8 +442,8 @@ private:
 
     const ScanlineProblem& p_;
     ScanlineScratch& s_;
-    const int width_, pairs_, steps_;       // columns, pairs of them, and steps over all groups
-    const size_t planeStride_; // from a plane of the cost to the next
+    const int width_, pairs_, steps_; // columns, pairs of them, and steps over all groups
+    const size_t planeStride_;        // from a plane of the cost to the next
     const ByteLanes small_, large_, zero_;
     const Window* windows_; // of the block's row of the upper layer
     int upperRow_;          // that row

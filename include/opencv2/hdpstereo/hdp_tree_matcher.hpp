@@ -123,13 +123,23 @@ public:
         PRIOR_UPPER_LAYER = 1     //!< the disparities of the layer above, which are there already
     };
 
-    //! Value of delta0, beta and the disparity median that leaves the choice to the matcher
+    //! Value of the number of layers, delta0, beta and the disparity median that leaves the choice to the matcher
     enum
     {
         AUTO = -1
     };
 
+<<<<<<< HEAD
     /** @brief Rule 1 and Rule 2 of the spanning trees (section 3.2); createMinimumSpanningTree() by default.
+=======
+    //! Value of the number of layers, see setNumLayers()
+    enum
+    {
+        FEWEST_LAYERS = -2
+    };
+
+    /** @brief Rule 1 and Rule 2 of the spanning trees; createMinimumSpanningTree() by default.
+>>>>>>> origin/main
 
     The paper's systems are HDP+MST, HDP+ST and HDP+RT with prediction, MST, ST and RT without it, and M+MST, M+ST
     and M+RT without prediction and with the median prefilter.
@@ -154,11 +164,19 @@ public:
     /** @copybrief setUseMedianPrefilter @sa setUseMedianPrefilter */
     CV_WRAP virtual bool getUseMedianPrefilter() const = 0;
 
+<<<<<<< HEAD
     /** @brief Number of pyramid layers (section 2.1), the image itself included; the paper's L + 1. Each has half the
     width, the height and the disparities of the one below.
     @param numLayers 1..16; layers that would have no pixel are left out. HDPTreeMatcher::AUTO: the fewest, but at least
     2, that leave the top layer, which searches all of them, 64 disparities or less. 3 in PRESET_PAPER and PRESET_TREE,
     AUTO in the others. Without effect if prediction is off. */
+=======
+    /** @brief Number of pyramid layers, the image itself included: 1..16, 3 by default. Layers that would have no
+    pixel are left out. HDPTreeMatcher::FEWEST_LAYERS: as few as leave the top layer 64 disparities or less, but at
+    least 2. HDPTreeMatcher::AUTO: the same, but 3 instead of 2 if these leave the top layer 16 disparities or more:
+    takes less time on images of less than a megapixel, and loses some fine structures there. Without effect if
+    prediction is off. */
+>>>>>>> origin/main
     CV_WRAP virtual void setNumLayers(int numLayers) = 0;
     /** @copybrief setNumLayers @sa setNumLayers */
     CV_WRAP virtual int getNumLayers() const = 0;
