@@ -55,7 +55,8 @@ The parameters that the presets differ in:
 | parameter | PAPER | TREE | FAST | ULTRAFAST | QUALITY |
 |---|---|---|---|---|---|
 | blockSize | 1 | 7 | 7 | 7 | 7 |
-| numLayers | 3 | 3 | AUTO | AUTO | AUTO |
+| treeStrategy | MST | MST | ST | ST | ST |
+| numLayers | 3 | 3 | AUTO | AUTO | FEWEST_LAYERS |
 | finestLayer | 0 | 0 | 0 | 1 | 0 |
 | matchingCost | COLOR_GRADIENT | CENSUS | CENSUS | CENSUS | CENSUS |
 | aggregation | TREES | TREES | SCANLINES | SCANLINES | SCANLINES |
@@ -69,7 +70,8 @@ The parameters that the presets differ in:
 | scanlinePasses | without effect | without effect | 1 | 1 | 2 |
 | fillOcclusions | false | true | true | true | true |
 
-The other parameters are the same in all of them: the values that their setters call the default.
+MST is createMinimumSpanningTree(), ST is createSegmentTree(). The other parameters are the same in all of them: the
+values that their setters call the default.
 
 Setters throw cv::Exception for values out of their range and leave the matcher as it was. What depends on several
 parameters or on the images is checked by compute(), before it does any work. compute() throws if
@@ -129,21 +131,18 @@ public:
         AUTO = -1
     };
 
-<<<<<<< HEAD
-    /** @brief Rule 1 and Rule 2 of the spanning trees (section 3.2); createMinimumSpanningTree() by default.
-=======
     //! Value of the number of layers, see setNumLayers()
     enum
     {
         FEWEST_LAYERS = -2
     };
 
-    /** @brief Rule 1 and Rule 2 of the spanning trees; createMinimumSpanningTree() by default.
->>>>>>> origin/main
+    /** @brief Rule 1 and Rule 2 of the spanning trees (section 3.2).
 
     The paper's systems are HDP+MST, HDP+ST and HDP+RT with prediction, MST, ST and RT without it, and M+MST, M+ST
     and M+RT without prediction and with the median prefilter.
-    @param strategy Not empty. The matcher keeps the pointer and only reads through it.
+    @param strategy Not empty. The matcher keeps the pointer and only reads through it. createMinimumSpanningTree() in
+    PRESET_PAPER and PRESET_TREE, createSegmentTree() in the others.
      */
     CV_WRAP virtual void setTreeStrategy(const Ptr<TreeStrategy>& strategy) = 0;
     /** @copybrief setTreeStrategy @sa setTreeStrategy */
@@ -164,19 +163,13 @@ public:
     /** @copybrief setUseMedianPrefilter @sa setUseMedianPrefilter */
     CV_WRAP virtual bool getUseMedianPrefilter() const = 0;
 
-<<<<<<< HEAD
     /** @brief Number of pyramid layers (section 2.1), the image itself included; the paper's L + 1. Each has half the
     width, the height and the disparities of the one below.
-    @param numLayers 1..16; layers that would have no pixel are left out. HDPTreeMatcher::AUTO: the fewest, but at least
-    2, that leave the top layer, which searches all of them, 64 disparities or less. 3 in PRESET_PAPER and PRESET_TREE,
+    @param numLayers 1..16; layers that would have no pixel are left out. HDPTreeMatcher::FEWEST_LAYERS: as few as leave
+    the top layer, which searches all of them, 64 disparities or less, but at least 2. HDPTreeMatcher::AUTO: the same,
+    but 3 instead of 2 if these leave the top layer 16 disparities or more: takes less time on images of less than a
+    megapixel, and loses some fine structures there. 3 in PRESET_PAPER and PRESET_TREE, FEWEST_LAYERS in PRESET_QUALITY,
     AUTO in the others. Without effect if prediction is off. */
-=======
-    /** @brief Number of pyramid layers, the image itself included: 1..16, 3 by default. Layers that would have no
-    pixel are left out. HDPTreeMatcher::FEWEST_LAYERS: as few as leave the top layer 64 disparities or less, but at
-    least 2. HDPTreeMatcher::AUTO: the same, but 3 instead of 2 if these leave the top layer 16 disparities or more:
-    takes less time on images of less than a megapixel, and loses some fine structures there. Without effect if
-    prediction is off. */
->>>>>>> origin/main
     CV_WRAP virtual void setNumLayers(int numLayers) = 0;
     /** @copybrief setNumLayers @sa setNumLayers */
     CV_WRAP virtual int getNumLayers() const = 0;
@@ -315,7 +308,8 @@ public:
 
     /** @brief Whether pixels that the right image does not show take, in each layer, the disparity of the farther of
     the pixels beside them, or keep what they matched best. Of the pixels that map to one column of the right image the
-    one with the lowest cost is shown; those of another disparity are not.
+    one with the lowest cost is shown; those of another disparity are not, nor the rest of a surface that begins at the
+    left border of the right image.
     @param fillOcclusions Needs HDPTreeMatcher::COST_CENSUS; false in PRESET_PAPER, true in the others. */
     CV_WRAP virtual void setFillOcclusions(bool fillOcclusions) = 0;
     /** @copybrief setFillOcclusions @sa setFillOcclusions */
