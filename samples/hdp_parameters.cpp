@@ -62,7 +62,10 @@ static std::vector<Variant> variantsOf(int preset)
     add<bool>(variants, "useNonLocalRefinement", &M::setUseNonLocalRefinement, { true });
     variants.push_back(
         { "numDisparities twice as large", [](M& m) { m.setNumDisparities(2 * m.getNumDisparities()); }, 0, 0, 0 });
-    addTree(variants, "createSegmentTree()", stereo::createSegmentTree());
+    if (preset == M::PRESET_FAST) // each has one of the two
+        addTree(variants, "createMinimumSpanningTree()", stereo::createMinimumSpanningTree());
+    else
+        addTree(variants, "createSegmentTree()", stereo::createSegmentTree());
     addTree(variants, "createRandomTree()", stereo::createRandomTree());
     if (preset == M::PRESET_FAST)
     {
