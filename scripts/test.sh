@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs what is missing, builds the module with its tests against the installed OpenCV, and runs them.
-#   scripts/test.sh                       tests, those from Python too, OpenCV's samples with this matcher, and one short
-#                                         round of the performance tests
+#   scripts/test.sh                       tests, those from Python too, OpenCV's samples with this matcher, one short round
+#                                         of the performance tests, and the documentation
 #   scripts/test.sh --sanitize            tests but the slow ones, under AddressSanitizer and UndefinedBehaviorSanitizer,
 #                                         and the samples: one on a full-size pair, the benchmark on a small one
 #   scripts/test.sh [--sanitize] OPTION...  the tests alone, with these options of theirs, e.g. --gtest_filter=...
@@ -151,6 +151,18 @@ if [ -z "$sanitize" ] && [ $# -eq 0 ] && [ -x "$directory/bin/opencv_perf_hdpste
     say "Running the performance tests, one round of the smallest images"
     run_tests "$directory/bin/opencv_perf_hdpstereo" "--gtest_param_filter=*640x480*" \
         --perf_min_samples=1 --perf_force_samples=1
+fi
+if [ -z "$sanitize" ] && [ $# -eq 0 ]; then
+    say "Making the documentation"
+    install_packages doxygen texlive-binaries
+    if ! command -v doxygen >/dev/null || ! command -v bibtex >/dev/null; then
+        say "NOT checked: there is no doxygen, or no bibtex"
+    elif "$checkout/scripts/docs.sh"; then
+        passed=$((passed + 1))
+    else
+        say "the documentation has warnings"
+        failed=$((failed + 1))
+    fi
 fi
 
 echo "$passed passed, $failed failed"
