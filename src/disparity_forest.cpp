@@ -754,7 +754,7 @@ void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& str
 
 void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk& walk)
 {
-    if (walk.pixels.size() < (size_t)tree.size)
+    if (walk.weights.size() < (size_t)tree.size) // the last to grow: if there was no memory, the others may be larger
     {
         walk.pixels.resize(tree.size);
         walk.parents.resize(tree.size);
