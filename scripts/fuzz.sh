@@ -26,5 +26,5 @@ if [ "$seconds" -eq 0 ]; then
 fi
 mkdir -p "$directory/corpus"
 say "Fuzzing for $seconds s"
-"$fuzzer" "-max_total_time=$seconds" -timeout=120 -rss_limit_mb=4096 -max_len=512 -len_control=10 -print_final_stats=1 \
+"$fuzzer" "-max_total_time=$seconds" -timeout=120 -rss_limit_mb=4096 -max_len=512 -len_control=0 -print_final_stats=1 \
     "-artifact_prefix=$directory/found-" "$@" "$directory/corpus"
