@@ -143,7 +143,7 @@ Mat placed(Input& input, const Mat& image)
 void makePair(Input& input, int numDisparities, Mat& left, Mat& right)
 {
     const int types[] = { CV_8UC1, CV_8UC3 }, otherTypes[] = { CV_16UC1, CV_8SC3, CV_32FC1, CV_8UC4 };
-    const int most = std::max(64, std::min(20000, (1 << 20) / std::max(numDisparities, 1)));
+    const int most = std::max(48, std::min(8000, (1 << 18) / std::max(numDisparities, 1)));
     const bool isStrip = input.ConsumeBool();
     int width = input.ConsumeIntegralInRange(1, isStrip ? most : std::min(300, most));
     int height = input.ConsumeIntegralInRange(1, std::max(most / width, 1));

@@ -10,7 +10,7 @@
 #     bookworm, trixie   scripts/test.sh from a clone in a fresh Debian 12 or 13 (as root; mmdebstrap makes it)
 # Each step's messages are in build/check_all/STEP.log; a summary comes last, and the status is that of the worst step.
 # HDPSTEREO_MMDEBSTRAP: further options of mmdebstrap.
-# shellcheck source-path=SCRIPTDIR source=common.sh
+# shellcheck source-path=SCRIPTDIR source=common.sh disable=SC2317
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 fuzz_seconds=1800
