@@ -7,7 +7,6 @@
 
 #include "opencv2/core/parallel/parallel_backend.hpp"
 
-#include <atomic>
 #include <thread>
 
 namespace {
@@ -19,15 +18,16 @@ class ThreadsSeen : public cv::parallel::ParallelForAPI
 public:
     void parallel_for(int tasks, FN_parallel_for_body_cb_t body, void* data) CV_OVERRIDE
     {
-        std::atomic<int> next(0);
-        const auto work = [&] {
-            for (int task; (task = next.fetch_add(1, std::memory_order_relaxed)) < tasks;)
+        // Each thread has tasks of its own, however fast the others are: what they share is always seen.
+        const int count = std::min(threads_, tasks);
+        const auto work = [=](int first) {
+            for (int task = first; task < tasks; task += count)
                 body(task, task + 1, data);
         };
         std::vector<std::thread> threads;
-        for (int i = 1; i < std::min(threads_, tasks); ++i)
-            threads.push_back(std::thread(work));
-        work();
+        for (int i = 1; i < count; ++i)
+            threads.push_back(std::thread(work, i));
+        work(0);
         for (std::thread& thread : threads)
             thread.join();
     }
