@@ -21,7 +21,7 @@ static const char* const KEYS =
     "{@left            |       | left image of a rectified pair }"
     "{@right           |       | right image }"
     "{preset           | fast  | set of parameters: ultrafast, fast, quality, tree, or paper (the paper's tables) }"
-    "{tree             | mst   | spanning tree: mst (minimum), st (segment) or rt (random) }"
+    "{tree             |       | spanning tree: mst (minimum), st (segment) or rt (random); by default the preset's }"
     "{no-prediction    |       | the plain tree algorithm over the full range }"
     "{median-prefilter |       | edge weights from a 3 x 3 median of the image }"
     "{min-disparity    | 0     | smallest disparity in pixels }"
@@ -86,7 +86,9 @@ static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, Size s
     Ptr<HDPTreeMatcher> matcher =
         HDPTreeMatcher::create(disparities.start, disparities.size(), getPreset(parser, "preset"));
 
-    if (tree == "mst")
+    if (tree.empty())
+        ; // the preset's
+    else if (tree == "mst")
         matcher->setTreeStrategy(stereo::createMinimumSpanningTree());
     else if (tree == "st")
         matcher->setTreeStrategy(stereo::createSegmentTree());

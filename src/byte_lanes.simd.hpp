@@ -26,14 +26,16 @@ struct ByteLanes
         return of(_mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1));
     }
     static ByteLanes repeat(int byte) { return of(_mm256_set1_epi8((char)byte)); }
-    static ByteLanes repeat(const uchar* const* bytes, size_t offset)
+    //! Byte `at`, one of the first 16
+    template <int at> static ByteLanes repeatByte(const uchar* const* bytes)
     {
-        return of(_mm_set1_epi8((char)bytes[0][offset]), _mm_set1_epi8((char)bytes[1][offset]));
+        return of(_mm256_shuffle_epi8(load(bytes, 0).v, _mm256_set1_epi8(at)));
     }
     static ByteLanes load(const uchar* bytes) { return of(_mm256_loadu_si256((const __m256i*)bytes)); }
-    static ByteLanes load(const uchar* const* bytes)
+    static ByteLanes load(const uchar* const* bytes, size_t offset)
     {
-        return of(_mm_loadu_si128((const __m128i*)bytes[0]), _mm_loadu_si128((const __m128i*)bytes[1]));
+        return of(_mm_loadu_si128((const __m128i*)(bytes[0] + offset)),
+                  _mm_loadu_si128((const __m128i*)(bytes[1] + offset)));
     }
     static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, size_t offset)
     {
@@ -86,18 +88,25 @@ struct ByteLanes
     }
     ByteLanes countBits() const
     {
+#if CV_AVX512_ICL
+        return of(_mm256_popcnt_epi8(v));
+#else
         const __m256i table = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3,
                                                1, 2, 2, 3, 2, 3, 3, 4);
         const __m256i nibble = _mm256_set1_epi8(15);
         return of(_mm256_add_epi8(_mm256_shuffle_epi8(table, _mm256_and_si256(v, nibble)),
                                   _mm256_shuffle_epi8(table, _mm256_and_si256(_mm256_srli_epi16(v, 4), nibble))));
+#endif
     }
-    //! Bit i tells whether lane i equals that of b; 16 bits for each group.
-    void findEqual(ByteLanes b, unsigned* bits) const
+    //! The first of the smallest lanes of each group.
+    void findMinimum(unsigned* lanes) const
     {
-        const unsigned equal = (unsigned)_mm256_movemask_epi8(_mm256_cmpeq_epi8(v, b.v));
-        bits[0] = equal & 0xffff;
-        bits[1] = equal >> 16;
+        // Words of which the lane is the low byte
+        const __m256i numbers = _mm256_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5,
+                                                 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+        const __m256i words = _mm256_min_epu16(_mm256_unpacklo_epi8(numbers, v), _mm256_unpackhi_epi8(numbers, v));
+        lanes[0] = _mm_extract_epi8(_mm_minpos_epu16(_mm256_castsi256_si128(words)), 0);
+        lanes[1] = _mm_extract_epi8(_mm_minpos_epu16(_mm256_extracti128_si256(words, 1)), 0);
     }
 };
 
@@ -117,9 +126,15 @@ struct ByteLanes
         return lanes;
     }
     static ByteLanes repeat(int byte) { return of(_mm_set1_epi8((char)byte)); }
-    static ByteLanes repeat(const uchar* const* bytes, size_t offset) { return repeat(bytes[0][offset]); }
+    template <int at> static ByteLanes repeatByte(const uchar* const* bytes)
+    {
+        const __m128i all = _mm_loadu_si128((const __m128i*)bytes[0]);
+        const __m128i twice = at < 8 ? _mm_unpacklo_epi8(all, all) : _mm_unpackhi_epi8(all, all);
+        const __m128i fourTimes = at % 8 < 4 ? _mm_unpacklo_epi16(twice, twice) : _mm_unpackhi_epi16(twice, twice);
+        return of(_mm_shuffle_epi32(fourTimes, at % 4 * 0x55));
+    }
     static ByteLanes load(const uchar* bytes) { return of(_mm_loadu_si128((const __m128i*)bytes)); }
-    static ByteLanes load(const uchar* const* bytes) { return load(bytes[0]); }
+    static ByteLanes load(const uchar* const* bytes, size_t offset) { return load(bytes[0] + offset); }
     static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, size_t offset)
     {
         return of(_mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i*)(low[0] + offset)),
@@ -142,6 +157,9 @@ struct ByteLanes
     ByteLanes toPrevious() const { return of(_mm_srli_si128(v, 1)); }
     ByteLanes permute(ByteLanes order) const
     {
+        const __m128i identity = _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+        if (_mm_movemask_epi8(_mm_cmpeq_epi8(order.v, identity)) == 0xffff) // most are
+            return *this;
         uchar lanes[32], orders[16], permuted[16];
         store(lanes);
         _mm_storeu_si128((__m128i*)(lanes + 16), _mm_setzero_si128());
@@ -164,7 +182,17 @@ struct ByteLanes
         n = _mm_add_epi8(_mm_and_si128(n, m2), _mm_and_si128(_mm_srli_epi16(n, 2), m2));
         return of(_mm_and_si128(_mm_add_epi8(n, _mm_srli_epi16(n, 4)), m4));
     }
-    void findEqual(ByteLanes b, unsigned* bits) const { *bits = (unsigned)_mm_movemask_epi8(_mm_cmpeq_epi8(v, b.v)); }
+    void findMinimum(unsigned* lanes) const
+    {
+        const int bits = _mm_movemask_epi8(_mm_cmpeq_epi8(v, minimum().v));
+#if defined(__GNUC__)
+        *lanes = (unsigned)__builtin_ctz(bits);
+#else
+        for (*lanes = 0; (bits >> *lanes & 1) == 0; ++*lanes)
+        {
+        }
+#endif
+    }
 };
 
 #else
@@ -188,12 +216,12 @@ struct ByteLanes
     {
         return each([=](int) { return byte; });
     }
-    static ByteLanes repeat(const uchar* const* bytes, size_t offset) { return repeat(bytes[0][offset]); }
+    template <int at> static ByteLanes repeatByte(const uchar* const* bytes) { return repeat(bytes[0][at]); }
     static ByteLanes load(const uchar* bytes)
     {
         return each([=](int i) { return bytes[i]; });
     }
-    static ByteLanes load(const uchar* const* bytes) { return load(bytes[0]); }
+    static ByteLanes load(const uchar* const* bytes, size_t offset) { return load(bytes[0] + offset); }
     static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, size_t offset)
     {
         return each([=](int i) { return i < 8 ? low[0][offset + i] : high[0][offset + i - 8]; });
@@ -257,12 +285,7 @@ struct ByteLanes
             return bits;
         });
     }
-    void findEqual(const ByteLanes& b, unsigned* bits) const
-    {
-        *bits = 0;
-        for (int i = 0; i < 16; ++i)
-            *bits |= (unsigned)(v[i] == b.v[i]) << i;
-    }
+    void findMinimum(unsigned* lanes) const { *lanes = (unsigned)(std::min_element(v, v + 16) - v); }
 };
 
 #endif

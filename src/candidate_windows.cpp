@@ -3,6 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
 #include "candidate_windows.hpp"
+#include "candidate_windows.simd.hpp"
+#include "candidate_windows.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 namespace cv {
 namespace stereo {
@@ -13,40 +15,15 @@ namespace {
 // The surface beyond a discontinuity is looked for in the pixels of the upper layer up to this far away.
 const int neighborhood = 3;
 
-// Disparities, in pixels of the layer, that lie this far apart belong to different surfaces.
-const int discontinuity = 5;
-
-typedef CandidateWindow Window;
-
-CandidateWindow predictWindow(int own, int smallest, int largest, int scale, int numDisparities)
+void dispatchRow(const ushort* own, const ushort* least, const ushort* most, int width, int numDisparities,
+                 ushort* windows)
 {
-    const auto clampFirst = [&](int first, int candidates) {
-        return (short)std::max(0, std::min(first, numDisparities - candidates));
-    };
-    const auto firstAround = [&](int disparity, int candidates) {
-        return clampFirst((disparity + scale / 2) / scale - (candidates / 2 - 1), candidates);
-    };
-    const auto contiguous = [&](short first, int predicted0, int predicted1) {
-        const Window window = { { first, (short)(first + Window::runLength) },
-                                { (ushort)predicted0, (ushort)predicted1 } };
-        return window;
-    };
-
-    const int other = largest - own >= own - smallest ? largest : smallest;
-    if (std::abs(other - own) < discontinuity * scale)
-        return contiguous(firstAround(own, Window::candidates), own, own);
-
-    const short first = firstAround(own, Window::runLength), beyond = firstAround(other, Window::runLength);
-    if (std::abs(first - beyond) < Window::runLength) // runs do not overlap
-        return contiguous(clampFirst((first + beyond + Window::runLength - Window::candidates) / 2, Window::candidates),
-                          std::min(own, other), std::max(own, other));
-    const Window window = { { first, beyond }, { (ushort)own, (ushort)other } };
-    return window;
+    CV_CPU_DISPATCH(predictRow, (own, least, most, width, numDisparities, windows), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 } // namespace
 
-void predictWindows(const Mat& upper, int scale, int numDisparities, Mat& smallest, Mat& largest, Mat& windows)
+void predictWindows(const Mat& upper, int numDisparities, Mat& smallest, Mat& largest, Mat& windows)
 {
     const int stripes = std::max(1, std::min(16, upper.rows / 16));
     smallest.create(upper.size(), CV_16U);
@@ -61,14 +38,8 @@ void predictWindows(const Mat& upper, int scale, int numDisparities, Mat& smalle
             erode(upper.rowRange(rows), minima, kernel); // a stripe sees its neighbours' rows
             dilate(upper.rowRange(rows), maxima, kernel);
             for (int y = rows.start; y < rows.end; ++y)
-            {
-                const ushort* own = upper.ptr<ushort>(y);
-                const ushort* least = smallest.ptr<ushort>(y);
-                const ushort* most = largest.ptr<ushort>(y);
-                Window* window = windows.ptr<Window>(y);
-                for (int x = 0; x < upper.cols; ++x)
-                    window[x] = predictWindow(2 * own[x], 2 * least[x], 2 * most[x], scale, numDisparities);
-            }
+                dispatchRow(upper.ptr<ushort>(y), smallest.ptr<ushort>(y), largest.ptr<ushort>(y), upper.cols,
+                            numDisparities, windows.ptr<ushort>(y));
         }
     });
 }

@@ -22,21 +22,19 @@ struct CandidateWindow
         candidates = runs * runLength
     };
     short first[runs];      // the first disparity of each run
-    ushort predicted[runs]; // what the run is there for, as a disparity of the layer, times the upper layer's scale
+    ushort predicted[runs]; // what the run is there for, as a disparity of the layer, times subpixelScale
 
     bool isContiguous() const { return first[1] == first[0] + runLength; }
 };
 
 /** Predicts the candidates of a layer.
-@param upper The disparities of the layer above, CV_16UC1, times scale.
-@param scale Units of upper in one pixel.
+@param upper The disparities of the layer above, CV_16UC1, times subpixelScale.
 @param numDisparities Of the layer. Candidates from there on mean nothing; there are some only if it is less than
 CandidateWindow::candidates.
 @param smallest Memory to work in.
 @param largest Memory to work in.
 @param windows Receives a CandidateWindow per pixel of upper, CV_16UC4. */
-CV_EXPORTS void predictWindows(const Mat& upper, int scale, int numDisparities, Mat& smallest, Mat& largest,
-                               Mat& windows);
+CV_EXPORTS void predictWindows(const Mat& upper, int numDisparities, Mat& smallest, Mat& largest, Mat& windows);
 
 //! Disparities of a layer as the layer above would have them: half the mean of the middle two of 2 x 2 pixels. For a
 //! second pass over a layer, around the disparities of the first. disparity and upper: CV_16UC1, times the same scale.

@@ -4,6 +4,8 @@
 #include "precomp.hpp"
 #include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
+#include "disparity_refinement.simd.hpp"
+#include "disparity_refinement.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "vectorized.hpp"
 
 namespace cv {
@@ -27,6 +29,36 @@ void medianBlurStripes(const Mat& image, int size, Mat& stripesBuffer, Mat& filt
             Mat stripe = stripesBuffer.rowRange(begin, begin + seen.size());
             medianBlur(image.rowRange(seen), stripe, size);
             stripe.rowRange(rows.start - seen.start, rows.end - seen.start).copyTo(filtered.rowRange(rows));
+        }
+    });
+}
+
+void dispatchFill(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch)
+{
+    CV_CPU_DISPATCH(fillOccludedRow, (disparity, residual, width, shift, scratch), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchMedian(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
+{
+    CV_CPU_DISPATCH(medianRow, (rows, size, width, sorted, filtered), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! As cv::medianBlur, which takes several times as long: it does not share the work on a column of the window.
+void medianOfRows(const Mat& image, int size, Mat& filtered)
+{
+    filtered.create(image.size(), CV_16U);
+    parallel_for_(Range(0, image.rows), [&](const Range& range) {
+        const int radius = size / 2, width = image.cols;
+        Mat buffer(size, width + 2 * radius, CV_16S);
+        std::vector<short*> sorted(size);
+        std::vector<const ushort*> rows(size);
+        for (int i = 0; i < size; ++i)
+            sorted[i] = buffer.ptr<short>(i) + radius;
+        for (int y = range.start; y < range.end; ++y)
+        {
+            for (int i = 0; i < size; ++i)
+                rows[i] = image.ptr<ushort>(std::min(std::max(y + i - radius, 0), image.rows - 1));
+            dispatchMedian(rows.data(), size, width, sorted.data(), filtered.ptr<ushort>(y));
         }
     });
 }
@@ -75,7 +107,9 @@ void checkLeftRight(const Mat& disparity, int scale, int maxDiff, int invalid, c
 
 void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered)
 {
-    if (size <= 5)
+    if (size == 5 || size == 7)
+        return medianOfRows(disparity, size, filtered);
+    if (size == 3)
         return medianBlurStripes(disparity, size, stripes, filtered);
     // cv::medianBlur takes large windows in 8 bit only. A median commutes with monotone functions, and a value is the
     // sum of its slices min(max(value - 255 k, 0), 255), so it is the sum of the slices' medians.
@@ -95,48 +129,12 @@ void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered
 
 void fillOccluded(Mat& disparity, const Mat& residual, int scale)
 {
-    const int width = disparity.cols;
+    const int shift = scale == 1 ? 0 : 4;
+    CV_StaticAssert(subpixelScale == 1 << 4, "the shift is that of subpixelScale");
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        // By column of the right image: residual and disparity of the pixel that is there. One more on the left, for
-        // pixels that map to no column.
-        std::vector<unsigned> there(width + 1);
-        std::vector<int> rightColumn(width);
-        std::vector<uchar> visible(width);
+        OcclusionScratch scratch;
         for (int y = rows.start; y < rows.end; ++y)
-        {
-            ushort* row = disparity.ptr<ushort>(y);
-            const uchar* cost = residual.ptr(y);
-            std::fill(there.begin(), there.end(), UINT_MAX);
-            for (int x = 0; x < width; ++x)
-                rightColumn[x] = std::max(x - wholeDisparity(row[x], scale), -1) + 1;
-            for (int x = 0; x < width; ++x)
-            {
-                unsigned& other = there[rightColumn[x]];
-                other = std::min(other, ((unsigned)cost[x] << 16) + (0xffffu - row[x])); // the nearer one, if equal
-            }
-            for (int x = 0; x < width; ++x)
-            {
-                const int other = (int)(0xffff - (there[rightColumn[x]] & 0xffff));
-                visible[x] = rightColumn[x] > 0 && std::abs(other - row[x]) <= scale;
-            }
-            int before = -1; // the disparity of the last visible pixel
-            for (int x = 0; x < width;)
-            {
-                if (visible[x])
-                {
-                    before = row[x++];
-                    continue;
-                }
-                int end = x + 1;
-                while (end < width && !visible[end])
-                    ++end;
-                const int after = end < width ? row[end] : before;
-                const int farther = before < 0 ? after : std::min(before, after);
-                if (farther >= 0)
-                    std::fill(row + x, row + end, (ushort)farther);
-                x = end;
-            }
-        }
+            dispatchFill(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, shift, scratch);
     });
 }
 

@@ -13,9 +13,19 @@ namespace hdp {
 //! Median of size x size pixels, borders replicated. disparity: CV_16UC1; stripes: memory to work in.
 CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered);
 
+//! Memory for a row of fillOccluded()
+struct OcclusionScratch
+{
+    std::vector<int> columns;             // of the right image that each pixel maps to, from 1 on; 0: none
+    std::vector<unsigned> keys;           // of each pixel, by which the lowest wins its column: residual and disparity
+    std::vector<unsigned> there;          // the key that won each column
+    std::vector<uchar> visible, atBorder; // which pixels the right image shows, and in its first columns
+};
+
 /** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the pixels
 that map to one column of the right image the one with the lowest residual is there; those whose disparity is another
-one, and those that map to no column, are not.
+one, and those that map to no column, are not. Nor is what is left of a surface that begins at the border of the right
+image: the last run of four pixels it shows, without steps, of which the first one is in column 0, 1 or 2.
 @param disparity CV_16UC1, times scale; changed.
 @param residual Matching costs, CV_8UC1.
 @param scale Units of a disparity in one pixel. */

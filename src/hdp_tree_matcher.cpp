@@ -35,6 +35,7 @@ const int speckleBytes = 9; // a pixel, of the memory of cv::filterSpeckles, whi
 const int maxBlockSize = 31;
 const int maxMedianSize = 31;
 const int maxLayers = 16;
+const int leastTopDisparities = CandidateWindow::candidates; // of a third layer
 const int mostTopDisparities = 64;
 const int secondPassMedian = 5;
 
@@ -116,8 +117,9 @@ struct Parameters
     }
     void setNumLayers(int value)
     {
-        numLayers = checked(value, value == HDPTreeMatcher::AUTO || (value >= 1 && value <= maxLayers), "numLayers",
-                            "in 1..16 or AUTO");
+        const bool isValid = value == HDPTreeMatcher::AUTO || value == HDPTreeMatcher::FEWEST_LAYERS ||
+                             (value >= 1 && value <= maxLayers);
+        numLayers = checked(value, isValid, "numLayers", "in 1..16, AUTO or FEWEST_LAYERS");
     }
     void setDelta0(double value)
     {
@@ -584,12 +586,11 @@ private:
         return settings;
     }
 
-    //! AUTO: the fewest layers, but at least two, that leave the top layer at most as many disparities as this.
     int numLayers() const
     {
-        if (p_.numLayers != AUTO)
+        if (p_.numLayers > 0)
             return p_.numLayers;
-        int layers = 2;
+        int layers = p_.numLayers == AUTO && layerDisparities(p_.numDisparities, 2) >= leastTopDisparities ? 3 : 2;
         while (layerDisparities(p_.numDisparities, layers - 1) > mostTopDisparities)
             ++layers;
         return layers;
@@ -747,7 +748,7 @@ private:
                     halveDisparity(b.filtered, upper);
                 });
             clock_.run("disparity prediction",
-                       [&] { predictWindows(upper, settings.scale, disparities, b.smallest, b.largest, b.windows); });
+                       [&] { predictWindows(upper, disparities, b.smallest, b.largest, b.windows); });
             clock_.run("cost aggregation", [&] {
                 const ScanlinePenalties penalties = { p_.smallPenalty, p_.largePenalty, pass == 0 ? 1 : 2 };
                 hdp::aggregateScanlines(b.cost, images.left.size(), disparities, b.windows, penalties, scanlines_,
@@ -859,11 +860,13 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities,
         // fall through
     case PRESET_FAST:
         parameters.setAggregation(AGGREGATION_SCANLINES);
-        parameters.setNumLayers(HDPTreeMatcher::AUTO);
+        parameters.setTreeStrategy(createSegmentTree());
+        parameters.setNumLayers(AUTO);
         break;
     case PRESET_QUALITY:
         parameters.setAggregation(AGGREGATION_SCANLINES);
-        parameters.setNumLayers(HDPTreeMatcher::AUTO);
+        parameters.setTreeStrategy(createSegmentTree());
+        parameters.setNumLayers(FEWEST_LAYERS);
         parameters.setScanlinePasses(2);
         parameters.setDisparityMedianPasses(2);
         break;

@@ -95,10 +95,14 @@ void copyBordered(const Mat& image, int channel, int radius, int before, int aft
     });
 }
 
-void computeCensusRow(const ushort* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census,
-                      size_t planeSize)
+void dispatchLeftCensus(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels)
 {
-    CV_CPU_DISPATCH(censusRow, (grey, step, radius, mirrored, cols, census, planeSize), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(leftCensusRow, (grey, step, radius, cols, planes, pixels), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchRightCensus(const short* grey, ptrdiff_t step, int radius, int cols, uchar* row, size_t planeSize)
+{
+    CV_CPU_DISPATCH(rightCensusRow, (grey, step, radius, cols, row, planeSize), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 } // namespace
@@ -130,12 +134,12 @@ void MatchingCost::prepare(const Mat& left, const Mat& right, int numDisparities
         planes_.leftGradient = leftGradient_.ptr<short>();
         planes_.rightGradient = rightGradient_.ptr<short>();
     }
-    planes_.left = left_.ptr() + (params.census ? censusMargin : 0);
+    planes_.left = left_.ptr() + (params.census ? 4 * censusMargin : 0);
     planes_.right = right_.ptr() + (params.census ? censusMargin : 0);
     planes_.leftStep = left_.step;
     planes_.rightStep = right_.step;
     const size_t rows = left.rows + (params.census ? 0 : 2 * (blockSize_ / 2));
-    planes_.leftPlane = left_.step * rows;
+    planes_.leftPlane = params.census ? 1 : left_.step * rows;
     planes_.rightPlane = right_.step * rows;
 }
 
@@ -153,26 +157,32 @@ void MatchingCost::prepareColorAndGradient(const Mat& image, bool mirrored, int 
     copyBordered<short>(gradient_, 0, radius, radius, radius + after, mirrored, gradient);
 }
 
-void MatchingCost::prepareCensus(const Mat& image, bool mirrored, int after)
+void MatchingCost::prepareCensus(const Mat& image, bool isRight, int after)
 {
     const int radius = blockSize_ / 2, width = image.cols, planes = planes_.count, rows = image.rows;
     const int cols = (int)alignSize(width, censusColumns); // what is computed past the width is overwritten or not read
-    grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16U);
-    copyBordered<ushort>(image, 0, radius, radius, radius + cols - width, mirrored, grey_);
-    Mat& census = mirrored ? right_ : left_;
-    census.create((planes + 1) * rows, censusMargin + std::max(width + after, cols) + censusMargin, CV_8U);
+    grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16S); // all levels are below 32768
+    copyBordered<short>(image, 0, radius, radius, radius + cols - width, isRight, grey_);
+    if (isRight)
+        right_.create((planes + 1) * rows, censusMargin + std::max(width + after, cols) + censusMargin, CV_8U);
+    else
+        left_.create(rows, censusMargin + cols + censusMargin, CV_8UC4);
+    const ptrdiff_t step = (ptrdiff_t)grey_.step1();
     parallel_for_(Range(0, rows), [&](const Range& range) {
+        std::vector<uchar> leftPlanes(isRight ? 0 : 3 * cols);
         for (int y = range.start; y < range.end; ++y)
         {
-            computeCensusRow(grey_.ptr<ushort>(y + radius) + radius, (ptrdiff_t)grey_.step1(), radius, mirrored, cols,
-                             census.ptr(y) + censusMargin, census.step * rows);
-            const ushort* grey = grey_.ptr<ushort>(y + radius) + radius;
-            uchar* intensity = census.ptr(planes * rows + y) + censusMargin;
-            HDP_VECTORIZED for (int x = 0; x < width; ++x) intensity[x] = (uchar)(grey[x] / greyScale);
+            const short* grey = grey_.ptr<short>(y + radius) + radius;
+            if (!isRight)
+            {
+                dispatchLeftCensus(grey, step, radius, cols, leftPlanes.data(), left_.ptr(y) + 4 * censusMargin);
+                continue;
+            }
+            dispatchRightCensus(grey, step, radius, cols, right_.ptr(y) + censusMargin, right_.step * rows);
             for (int plane = 0; plane <= planes; ++plane)
             {
-                uchar* row = census.ptr(plane * rows + y) + censusMargin;
-                std::fill(row + width, census.ptr(plane * rows + y) + census.cols, row[width - 1]);
+                uchar* row = right_.ptr(plane * rows + y) + censusMargin;
+                std::fill(row + width, right_.ptr(plane * rows + y) + right_.cols, row[width - 1]);
             }
         }
     });
@@ -194,15 +204,16 @@ void MatchingCost::censusCosts(const Mat& disparity, int scale, Mat& costs) cons
             const uchar *left[3], *right[3];
             for (int plane = 0; plane < 3; ++plane)
             {
-                left[plane] = leftPlane(std::min(plane, planes() - 1), y);
+                left[plane] = leftPixels(y) + plane;
                 right[plane] = rightPlane(std::min(plane, planes() - 1), y) + planes_.width - 1;
             }
             const unsigned mask = 0xffffff >> (8 * (3 - planes()));
             for (int x = 0; x < disparity.cols; ++x)
             {
                 const int at = wholeDisparity(candidate[x], scale) - x;
-                unsigned bits = (unsigned)(left[0][x] ^ right[0][at]) | (unsigned)(left[1][x] ^ right[1][at]) << 8 |
-                                (unsigned)(left[2][x] ^ right[2][at]) << 16;
+                unsigned bits = (unsigned)(left[0][4 * x] ^ right[0][at]) |
+                                (unsigned)(left[1][4 * x] ^ right[1][at]) << 8 |
+                                (unsigned)(left[2][4 * x] ^ right[2][at]) << 16;
                 bits &= mask;
                 bits -= (bits >> 1) & 0x555555;
                 bits = (bits & 0x333333) + ((bits >> 2) & 0x333333);

@@ -21,7 +21,8 @@ struct MatchingCostParams
 
 //! The planes of a pair, as MatchingCost holds them: rows of the right image are mirrored and padded. Without their
 //! borders, the window of pixel (x, y) and those of its candidates have their first pixels at
-//! left[y * leftStep + x] and right[y * rightStep + width - 1 - x + candidate + blockSize - 1].
+//! left[y * leftStep + x] and right[y * rightStep + width - 1 - x + candidate + blockSize - 1]. A pixel of the left
+//! image's census has its planes side by side, at left[y * leftStep + 4 * x].
 struct CostPlanes
 {
     bool census;
@@ -67,30 +68,32 @@ public:
 
     //! The number of planes of 8 bits that hold the census of a pixel; 0 for the cost of colour and gradient
     int planes() const { return planes_.census ? planes_.count : 0; }
-    //! A row of the left image's census: pixel x is at [x]. Of the grey levels, in 8 bits, for plane = planes().
-    const uchar* leftPlane(int plane, int y) const
-    {
-        return planes_.left + plane * planes_.leftPlane + y * planes_.leftStep;
-    }
-    //! As leftPlane(), of the right image: candidate d of pixel x is at [width - 1 - x + d], and there are 32 more bytes
-    //! to read behind the last candidate, and
-    //! of both images 16 before and behind a row.
+    //! The census of a row of the left image and its grey levels, in 8 bits: 4 bytes a pixel, its planes and greyByte.
+    //! There are 16 more pixels to read before and behind the row.
+    const uchar* leftPixels(int y) const { return planes_.left + y * planes_.leftStep; }
+    //! A row of the right image's census, or of its grey levels for plane = planes(): candidate d of pixel x is at
+    //! [width - 1 - x + d]. There are 16 more bytes to read before the row and 48 behind the last candidate.
     const uchar* rightPlane(int plane, int y) const
     {
         return planes_.right + plane * planes_.rightPlane + y * planes_.rightStep;
     }
-    //! From a plane of the left or the right image to the next
-    size_t planeStride(bool ofRight) const { return ofRight ? planes_.rightPlane : planes_.leftPlane; }
+    //! From a plane of the right image to the next
+    size_t planeStride() const { return planes_.rightPlane; }
+    enum
+    {
+        greyByte = 3
+    };
 
 private:
     void prepareColorAndGradient(const Mat& image, bool mirrored, int after);
-    void prepareCensus(const Mat& image, bool mirrored, int after);
+    void prepareCensus(const Mat& image, bool isRight, int after);
 
     int blockSize_, channels_;
     CostPlanes planes_;
-    Mat left_; // CV_8UC1 planes below one another: of the channels, bordered, or of the census and the grey levels
+    Mat left_;          // CV_8UC1, planes of the channels below one another, bordered, or CV_8UC4, see leftPixels()
     Mat leftGradient_;  // CV_16SC1, fixed point, bordered by half the window
-    Mat right_;         // as left_, mirrored, with a border for all candidates
+    Mat right_;         // CV_8UC1, planes of the channels or of the census and the grey levels below one another,
+                        // mirrored, with a border for all candidates
     Mat rightGradient_; // as leftGradient_, mirrored, with a border for all candidates
     Mat gradient_, grey_;
 };

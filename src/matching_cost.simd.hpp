@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "image_pyramid.hpp"
 #include "matching_cost.hpp"
 #include "vectorized.hpp"
 #include <cstring>
@@ -13,23 +14,32 @@ namespace stereo {
 namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** A row of the census transform, a bit for each pixel of the checkerboard around the centre, set if it is darker.
-@param grey The first pixel of the row; it has a border of the radius, and may be read up to column cols.
+/** A row of the left image: the census transform, a bit for each pixel of the checkerboard around the centre, set if it
+is darker, and the grey levels.
+@param grey The first pixel of the row, levels times greyScale; it has a border of the radius, and may be read up to
+column cols.
 @param step From a row to the next, in elements.
 @param radius Of the window, 1 to 3.
-@param mirrored Whether the image is mirrored: the window is then, too, so that its bits are the same ones.
 @param cols Columns to compute.
-@param census Receives the row, 8 bits in each of its planes.
+@param planes Memory for a row of 3 planes, cols bytes each.
+@param pixels Receives the row, see MatchingCost::leftPixels(). */
+void leftCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels);
+
+/** A row of the right image, as leftCensusRow(). The image is mirrored, and so is its window then, so that its bits are
+the same ones.
+@param row Receives the row, see MatchingCost::rightPlane().
 @param planeSize From a plane to the next. */
-void censusRow(const ushort* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census,
-               size_t planeSize);
+void rightCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* row, size_t planeSize);
 
 //! MatchingCost::evaluate()
 void evaluateCost(const CostPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-void censusRow(const ushort* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize)
+namespace {
+
+//! Returns the number of planes.
+int censusRow(const short* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize)
 {
     // Of the last plane's bits that compare nothing: the centre, which is not darker than itself
     ptrdiff_t offsets[24] = { 0 };
@@ -41,16 +51,45 @@ void censusRow(const ushort* grey, ptrdiff_t step, int radius, bool mirrored, in
     for (int bit = 0; bit < bits; bit += 8, census += planeSize)
     {
         const ptrdiff_t* offset = offsets + bit;
-        const ushort *p0 = grey + offset[0], *p1 = grey + offset[1], *p2 = grey + offset[2], *p3 = grey + offset[3],
-                     *p4 = grey + offset[4], *p5 = grey + offset[5], *p6 = grey + offset[6], *p7 = grey + offset[7];
+        const short *p0 = grey + offset[0], *p1 = grey + offset[1], *p2 = grey + offset[2], *p3 = grey + offset[3],
+                    *p4 = grey + offset[4], *p5 = grey + offset[5], *p6 = grey + offset[6], *p7 = grey + offset[7];
         HDP_VECTORIZED for (int x = 0; x < cols; ++x)
         {
-            const ushort centre = grey[x];
-            census[x] = (uchar)((p0[x] < centre ? 1 : 0) | (p1[x] < centre ? 2 : 0) | (p2[x] < centre ? 4 : 0) |
-                                (p3[x] < centre ? 8 : 0) | (p4[x] < centre ? 16 : 0) | (p5[x] < centre ? 32 : 0) |
-                                (p6[x] < centre ? 64 : 0) | (p7[x] < centre ? 128 : 0));
+            // Word by word, so that they are narrowed once
+            const short centre = grey[x];
+            short byte = (short)(p0[x] < centre ? 1 : 0);
+            byte = (short)(byte | (short)(p1[x] < centre ? 2 : 0));
+            byte = (short)(byte | (short)(p2[x] < centre ? 4 : 0));
+            byte = (short)(byte | (short)(p3[x] < centre ? 8 : 0));
+            byte = (short)(byte | (short)(p4[x] < centre ? 16 : 0));
+            byte = (short)(byte | (short)(p5[x] < centre ? 32 : 0));
+            byte = (short)(byte | (short)(p6[x] < centre ? 64 : 0));
+            byte = (short)(byte | (short)(p7[x] < centre ? 128 : 0));
+            census[x] = (uchar)byte;
         }
     }
+    return (bits + 7) / 8;
+}
+
+} // namespace
+
+void leftCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels)
+{
+    const int count = censusRow(grey, step, radius, false, cols, planes, cols);
+    const uchar *second = planes + (count > 1 ? cols : 0), *third = planes + (count > 2 ? 2 * cols : 0);
+    HDP_VECTORIZED for (int x = 0; x < cols; ++x)
+    {
+        pixels[4 * x] = planes[x];
+        pixels[4 * x + 1] = second[x];
+        pixels[4 * x + 2] = third[x];
+        pixels[4 * x + MatchingCost::greyByte] = (uchar)(grey[x] / greyScale);
+    }
+}
+
+void rightCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* row, size_t planeSize)
+{
+    row += censusRow(grey, step, radius, true, cols, row, planeSize) * planeSize;
+    HDP_VECTORIZED for (int x = 0; x < cols; ++x) row[x] = (uchar)(grey[x] / greyScale);
 }
 
 namespace {
@@ -91,7 +130,7 @@ void censusCosts(const CostPlanes& planes, const int* pixels, int size, int firs
         for (int i = 0; i < pixelCount; ++i)
         {
             const int p = pixels[begin + i], y = rowOf(p, rowsPerPixel), x = p - y * planes.width;
-            const uchar* left = planes.left + y * planes.leftStep + x;
+            const uchar* left = planes.left + y * planes.leftStep + 4 * x;
             const uchar* right = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
             for (int plane = 0; plane < count; ++plane, left += planes.leftPlane, right += planes.rightPlane)
             {

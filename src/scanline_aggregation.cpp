@@ -12,6 +12,7 @@ namespace hdp {
 
 namespace {
 
+// Of a stripe, about: stripes are of even number, so that also two threads have as much to do.
 const int stripeHeight = 128;
 
 // Rows above a stripe from which on the direction from above is followed
@@ -29,7 +30,8 @@ void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities,
                         const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
     const ScanlineProblem problem = { &cost, size, numDisparities, &windows, penalties };
-    const int stripes = std::max(1, size.height / stripeHeight);
+    const int stripes =
+        size.height < stripeHeight / 2 ? 1 : 2 * std::max(1, cvRound(size.height / (2. * stripeHeight)));
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);
     buffers.stripes.resize(stripes);

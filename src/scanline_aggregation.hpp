@@ -44,15 +44,16 @@ struct ScanlineScratch
     struct Column // of the layer above
     {
         short first[CandidateWindow::runs];
-        ushort inner; // bits of the lanes that have candidates on both sides
+        bool isContiguous; // and so are those that a step does with it
     };
     std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel
     std::vector<Column> columns;
     std::vector<uchar> priors, intoRight, intoLeft,
-        intoBelow;                   // CandidateWindow::candidates per column of the layer above
-    std::vector<ushort> disparities; // of the winners of some rows
-    std::vector<short> rises, slopes;
-    std::vector<uchar> residuals;
+        intoBelow;                                   // CandidateWindow::candidates per column of the layer above
+    std::vector<short> first[CandidateWindow::runs]; // by column
+    // Of the winners of some rows: their lanes, sums, each with those of the lanes before and behind, and costs
+    std::vector<uchar> winners, winnerCosts;
+    std::vector<unsigned> winnerSums;
 };
 
 struct ScanlineBuffers

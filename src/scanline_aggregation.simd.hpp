@@ -44,11 +44,11 @@ class Sweep
 public:
     Sweep(const ScanlineProblem& problem, ScanlineScratch& scratch)
         : p_(problem), s_(scratch), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
-          leftStride_(problem.cost->planeStride(false)), rightStride_(problem.cost->planeStride(true)),
-          small_(ByteLanes::repeat(problem.penalties.small)), large_(ByteLanes::repeat(problem.penalties.large)),
-          zero_(ByteLanes::repeat(0)), windows_(0), upperRow_(-1), entersUpperRow_(false)
+          planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)),
+          large_(ByteLanes::repeat(problem.penalties.large)), zero_(ByteLanes::repeat(0)), windows_(0), upperRow_(-1),
+          entersUpperRow_(false)
     {
-        const size_t columns = (size_t)width_ + 2 * margin + 1, upperColumns = (size_t)pairs_ + 2 * margin;
+        const size_t columns = 2 * ((size_t)pairs_ + margin), upperColumns = (size_t)pairs_ + 2 * margin;
         s_.costs.resize((size_t)steps_ * 2 * lanes);
         s_.fromRight.resize((size_t)steps_ * 2 * lanes);
         s_.fromAbove.assign(columns * Window::candidates, 0);
@@ -57,17 +57,17 @@ public:
         s_.intoRight.resize(upperColumns * Window::candidates);
         s_.intoLeft.resize(upperColumns * Window::candidates);
         s_.intoBelow.resize(upperColumns * Window::candidates);
-        s_.disparities.resize(groups * columns);
-        s_.rises.resize(groups * columns);
-        s_.slopes.resize(groups * columns);
-        s_.residuals.resize(groups * columns);
+        for (int run = 0; run < Window::runs; ++run)
+            s_.first[run].resize(2 * (size_t)pairs_);
+        s_.winners.resize(groups * columns);
+        s_.winnerSums.resize(groups * columns);
+        s_.winnerCosts.resize(groups * columns);
         for (int r = 0; r < groups; ++r)
         {
             const size_t row = r * columns + margin;
-            disparities_[r] = &s_.disparities[row];
-            rises_[r] = &s_.rises[row];
-            slopes_[r] = &s_.slopes[row];
-            residuals_[r] = &s_.residuals[row];
+            winners_[r] = &s_.winners[row];
+            sums_[r] = &s_.winnerSums[row];
+            costs_[r] = &s_.winnerCosts[row];
         }
         preparePriorTable();
         prepareOrderTables();
@@ -92,8 +92,7 @@ public:
         fromLeftAndAbove();
         for (int r = 0; r < groups && y + r < end; ++r)
         {
-            addSubpixel(r, disparity.ptr<ushort>(y + r));
-            std::memcpy(residual.ptr(y + r), residuals_[r], width_);
+            finishRow(r, disparity.ptr<ushort>(y + r), residual.ptr(y + r));
         }
     }
 
@@ -118,14 +117,14 @@ private:
     }
 
     //! The prior of a run, or of two runs that follow one another, by the distance of its first candidate from the
-    //! predicted disparity
+    //! predicted disparity; with the large penalty, which is a part of all costs in a sweep.
     void preparePriorTable()
     {
         for (int distance = -priorRange; distance < priorRange; ++distance)
             for (int i = 0; i < Window::candidates; ++i)
                 priorTable_[distance + priorRange][i] =
-                    (uchar)(p_.penalties.prior * std::abs(distance + i * ScanlineProblem::scale) /
-                            (2 * ScanlineProblem::scale));
+                    (uchar)(p_.penalties.large + p_.penalties.prior * std::abs(distance + i * ScanlineProblem::scale) /
+                                                     (2 * ScanlineProblem::scale));
     }
 
     const uchar* priorOf(const Window& own, int run) const
@@ -172,9 +171,6 @@ private:
         }
     }
 
-    //! An odd last column belongs to the pixel of the layer above that the one before belongs to.
-    const Window& window(const Window* row, int x) const { return row[std::min(x, p_.windows->cols - 1)]; }
-
     //! Prepares a block of rows from y on: what follows from the windows, if they are new, and the rows' pointers.
     void enterRows(int y)
     {
@@ -185,98 +181,133 @@ private:
             const Window* above = windows_;
             windows_ = p_.windows->ptr<Window>(upperRow);
             upperRow_ = upperRow;
-            for (int x = 0; x < pairs_; ++x)
-                enterWindow(x, above);
+            enterWindows(above);
         }
         for (int r = 0; r < groups; ++r)
         {
             const int row = std::min(y + r, p_.size.height - 1);
-            left_[r] = p_.cost->leftPlane(0, row);
+            left_[r] = p_.cost->leftPixels(row);
             right_[r] = p_.cost->rightPlane(0, row) + width_ - 1;
         }
     }
 
-    void enterWindow(int x, const Window* above)
+    void enterWindows(const Window* above)
     {
-        const Window& own = window(windows_, x);
-        const size_t at = (size_t)(x + margin) * Window::candidates;
-        uchar* prior = &s_.priors[at];
-        if (own.isContiguous() && own.predicted[0] == own.predicted[1])
+        // Bytes may alias everything but what is local.
+        const Window* const windows = windows_;
+        // An odd last column belongs to the pixel of the layer above that the one before belongs to.
+        const int pairs = pairs_, lastWindow = p_.windows->cols - 1;
+        const int lanesUsed = std::min<int>(Window::candidates, p_.numDisparities);
+        Column* column = &s_.columns[margin];
+        short *firstOfLow = &s_.first[0][0], *firstOfHigh = &s_.first[1][0];
+        uchar *prior = ofUpper(s_.priors, 0), *intoRight = ofUpper(s_.intoRight, 0),
+              *intoLeft = ofUpper(s_.intoLeft, -1), *intoBelow = ofUpper(s_.intoBelow, 0);
+        Window before = windows[0];
+        bool wasContiguous = false; // the window before
+        for (int x = 0; x < pairs; ++x)
+        {
+            const Window own = windows[std::min(x, lastWindow)];
+            const bool isContiguous = own.isContiguous();
+            column->first[0] = own.first[0];
+            column->first[1] = own.first[1];
+            column->isContiguous = isContiguous & (groups == 1 || wasContiguous);
+            firstOfLow[0] = firstOfLow[1] = own.first[0];
+            firstOfHigh[0] = firstOfHigh[1] = own.first[1];
+
             std::memcpy(prior, priorOf(own, 0), Window::candidates);
-        else
-            for (int run = 0; run < Window::runs; ++run)
-                std::memcpy(prior + run * Window::runLength, priorOf(own, run), Window::runLength);
-        // Lanes that have candidates on both sides
-        const int last = std::min<int>(Window::candidates, p_.numDisparities) - 1;
-        const int inner = (own.isContiguous() ? 0x7ffe : 0x7e7e) & ((1 << last) - 1);
-        for (int i = last + 1; i < Window::candidates; ++i)
-            prior[i] = 255;
-        const Column column = { { own.first[0], own.first[1] }, (ushort)inner };
-        s_.columns[x + margin] = column;
-        transition(window(windows_, std::max(x - 1, 0)), own, &s_.intoRight[at]);
-        transition(window(windows_, x + 1), own, &s_.intoLeft[at]);
-        if (above)
-            transition(window(above, x), own, &s_.intoBelow[at]);
+            if (!isContiguous || own.predicted[0] != own.predicted[1])
+                std::memcpy(prior + Window::runLength, priorOf(own, 1), Window::runLength);
+            for (int i = lanesUsed; i < Window::candidates; ++i)
+                prior[i] = 255;
+
+            if (isContiguous && wasContiguous)
+            {
+                const int shift = clampShift(own.first[0] - before.first[0], Window::candidates);
+                std::memcpy(intoRight, pairOrder_ + Window::candidates + shift, Window::candidates);
+                std::memcpy(intoLeft, pairOrder_ + Window::candidates - shift, Window::candidates);
+            }
+            else
+            {
+                transition(before, own, intoRight);
+                transition(own, before, intoLeft);
+            }
+            if (above)
+                transition(above[std::min(x, lastWindow)], own, intoBelow);
+
+            ++column;
+            firstOfLow += 2;
+            firstOfHigh += 2;
+            prior -= Window::candidates;
+            intoRight -= Window::candidates;
+            intoLeft -= Window::candidates;
+            intoBelow -= Window::candidates;
+            before = own;
+            wasContiguous = isContiguous;
+        }
     }
 
-    //! What is stored for each pixel of the layer above, of the pixels that a step is at
+    //! What is stored for a pixel of the layer above; from right to left, as in the groups of a step
+    uchar* ofUpper(std::vector<uchar>& stored, int x) const
+    {
+        return &stored[0] + (ptrdiff_t)(pairs_ - 1 - x + margin) * Window::candidates;
+    }
     ByteLanes ofStep(const std::vector<uchar>& stored, int step) const
     {
-        const uchar* bytes[groups];
-        for (int r = 0; r < groups; ++r)
-            bytes[r] = &stored[0] + (ptrdiff_t)(step - r + margin) * Window::candidates;
-        return ByteLanes::load(bytes);
+        return ByteLanes::load(&stored[0] + (ptrdiff_t)(pairs_ - 1 - step + margin) * Window::candidates);
     }
 
-    //! The candidates' costs C(p, d) at both columns of a step
-    template <int planes> void costs(int step, ByteLanes (&cost)[2]) const
+    //! The candidates' costs C(p, d) + large at both columns of a step
+    template <int planes> CV_ALWAYS_INLINE void costs(int step, ByteLanes (&cost)[2]) const
     {
         const uchar *left[groups], *low[groups], *high[groups];
         for (int r = 0; r < groups; ++r)
         {
             const Column& column = s_.columns[step - r + margin];
             const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
-            left[r] = left_[r] + x;
+            left[r] = left_[r] + 4 * x;
             low[r] = right_[r] - x + column.first[0];
             high[r] = right_[r] - x + column.first[1];
         }
         const ByteLanes prior = ofStep(s_.priors, step);
-        cost[0] = prior + costs<planes>(left, low, high);
-        for (int r = 0; r < groups; ++r)
+        if (s_.columns[step + margin].isContiguous)
         {
-            ++left[r];
-            --low[r];
-            --high[r];
+            const auto load = [&](ptrdiff_t offset) { return ByteLanes::load(low, offset); };
+            cost[0] = prior + costs<planes, 0>(left, load);
+            cost[1] = prior + costs<planes, 1>(left, load);
         }
-        cost[1] = prior + costs<planes>(left, low, high);
+        else
+        {
+            const auto load = [&](ptrdiff_t offset) { return ByteLanes::loadHalves(low, high, offset); };
+            cost[0] = prior + costs<planes, 0>(left, load);
+            cost[1] = prior + costs<planes, 1>(left, load);
+        }
     }
 
-    template <int planes>
-    ByteLanes costs(const uchar* const (&left)[groups], const uchar* const (&low)[groups],
-                    const uchar* const (&high)[groups]) const
+    template <int planes, int column, class Load>
+    CV_ALWAYS_INLINE ByteLanes costs(const uchar* const (&left)[groups], const Load& load) const
     {
-        const ByteLanes grey = ByteLanes::repeat(left, planes * leftStride_);
-        const ByteLanes candidates = ByteLanes::loadHalves(low, high, planes * rightStride_);
+        const int at = 4 * column;
+        const auto ofPlane = [&](int plane) { return load((ptrdiff_t)(plane * planeStride_) - column); };
+        const ByteLanes grey = ByteLanes::repeatByte<at + MatchingCost::greyByte>(left), candidates = ofPlane(planes);
         const ByteLanes contrast = ((grey - candidates) | (candidates - grey)).min(ByteLanes::repeat(31)).quarter();
-        ByteLanes bits[planes];
-        for (int plane = 0; plane < planes; ++plane)
-            bits[plane] =
-                ByteLanes::loadHalves(low, high, plane * rightStride_) ^ ByteLanes::repeat(left, plane * leftStride_);
+        const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ofPlane(0);
         if (planes == 1)
-            return contrast + bits[0].countBits();
+            return contrast + first.countBits();
+        const ByteLanes second = ByteLanes::repeatByte<at + 1>(left) ^ ofPlane(1);
         if (planes == 2)
-            return contrast + bits[0].countBits() + bits[planes - 1].countBits();
+            return contrast + first.countBits() + second.countBits();
+        const ByteLanes third = ByteLanes::repeatByte<at + 2>(left) ^ ofPlane(2);
         // Sum and carry of three bits: two counts instead of three
-        const ByteLanes second = bits[planes > 1 ? 1 : 0], third = bits[planes - 1], difference = bits[0] ^ second;
-        const ByteLanes carries = ((bits[0] & second) | (difference & third)).countBits();
+        const ByteLanes difference = first ^ second;
+        const ByteLanes carries = ((first & second) | (difference & third)).countBits();
         return contrast + (difference ^ third).countBits() + (carries + carries);
     }
 
-    //! L(p, d) - m of a direction; h: H of the pixel before, which becomes that of this one.
+    //! L(p, d) - m of a direction; cost: C(p, d) + large; h: H of the pixel before, which becomes that of this one.
     ByteLanes advance(ByteLanes& h, const ByteLanes& cost) const
     {
         const ByteLanes gain = h.max(h.toNext().max(h.toPrevious()) - small_);
-        const ByteLanes sum = cost + large_ - gain;
+        const ByteLanes sum = cost - gain;
         const ByteLanes aboveMinimum = sum - sum.minimum();
         h = large_ - aboveMinimum;
         return aboveMinimum;
@@ -295,7 +326,7 @@ private:
             const int x = 2 * (step - r) + column;
             mask[r] = x >= 0 && x < width_ ? inside : outside;
         }
-        return h & ByteLanes::load(mask);
+        return h & ByteLanes::load(mask, 0);
     }
 
     template <int planes> void fromRight()
@@ -324,7 +355,7 @@ private:
         uchar* above = &s_.fromAbove[0] + (ptrdiff_t)(2 * t + column + margin) * Window::candidates;
         ByteLanes h = ByteLanes::shiftIn(above, before);
         if (entersUpperRow_) // only the block's first row may
-            h = h.permute(ByteLanes::first(&s_.intoBelow[0] + (ptrdiff_t)(t + margin) * Window::candidates));
+            h = h.permute(ByteLanes::first(ofUpper(s_.intoBelow, t)));
         const ByteLanes direction = advance(h, cost);
         before = h;
         h.storeLast(above - 2 * (groups - 1) * Window::candidates);
@@ -363,51 +394,45 @@ private:
         }
     }
 
-    //! The winners in whole pixels, and the two lines of opposite slope through their sums and those beside them: their
-    //! slope and how much the sum before is above the one after.
+    //! The winners' lanes, sums with those beside them, and costs
     void takeWinners(const ByteLanes& sum, int t, int column, const uchar* costs)
     {
-        unsigned lowest[groups];
-        sum.findEqual(sum.minimum(), lowest);
-        uchar stored[lanes + 2]; // one more on each side to read
-        sum.store(stored + 1);
+        unsigned lane[groups];
+        sum.findMinimum(lane);
+        uchar sums[lanes + 4];
+        sum.store(sums + 1);
         for (int r = 0; r < groups; ++r)
         {
-            const int lane = firstBit(lowest[r]), upperX = t - r, x = 2 * upperX + column;
-            const Column& candidates = s_.columns[upperX + margin];
-            const uchar* sums = stored + 1 + r * 16 + lane;
-            const int before = sums[-1], after = sums[1];
-            disparities_[r][x] = (ushort)((candidates.first[lane / Window::runLength] + lane % Window::runLength) *
-                                          ScanlineProblem::scale);
-            rises_[r][x] = (short)((before - after) & -(candidates.inner >> lane & 1));
-            slopes_[r][x] = (short)(std::max(before, after) - sums[0]);
-            residuals_[r][x] = costs[r * 16 + lane];
+            const int x = 2 * (t - r) + column;
+            winners_[r][x] = (uchar)lane[r];
+            std::memcpy(&sums_[r][x], sums + r * 16 + lane[r], sizeof(unsigned));
+            costs_[r][x] = costs[r * 16 + lane[r]];
         }
     }
 
-    void addSubpixel(int group, ushort* disparity) const
+    //! A row's disparities, each at the tip of two lines of opposite slope through the sums of the winner and of those
+    //! beside it, and residuals
+    void finishRow(int group, ushort* disparity, uchar* residual) const
     {
         const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers, rounded to the nearest
-        const ushort* disparities = disparities_[group];
-        const short *rises = rises_[group], *slopes = slopes_[group];
+        const int last = std::min<int>(Window::candidates, p_.numDisparities) - 1, large = p_.penalties.large;
+        const short *firstOfLow = &s_.first[0][0], *firstOfHigh = &s_.first[1][0];
+        const uchar *winners = winners_[group], *costs = costs_[group];
+        const unsigned* sums = sums_[group];
         HDP_VECTORIZED for (int x = 0; x < width_; ++x)
         {
-            const float slope = (float)std::max<short>(slopes[x], 1);
-            const float offset = (float)rises[x] * (ScanlineProblem::scale / 2) / slope;
-            disparity[x] = (ushort)(disparities[x] + (int)((offset + wholes) - wholes));
+            const int lane = winners[x], low = firstOfLow[x], high = firstOfHigh[x] - Window::runLength;
+            const int whole = lane + (lane < Window::runLength ? low : high);
+            const int before = sums[x] & 255, sum = sums[x] >> 8 & 255, after = sums[x] >> 16 & 255;
+            // Whether there are candidates on both sides
+            const int isInner =
+                ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
+            const float slope = (float)std::max(std::max(before, after) - sum, 1);
+            const float rise = (float)((before - after) & -isInner);
+            const float offset = rise * (ScanlineProblem::scale / 2) / slope;
+            disparity[x] = (ushort)(whole * ScanlineProblem::scale + (int)((offset + wholes) - wholes));
         }
-    }
-
-    static int firstBit(unsigned bits)
-    {
-#if defined(__GNUC__)
-        return __builtin_ctz(bits);
-#else
-        int bit = 0;
-        while ((bits >> bit & 1) == 0)
-            ++bit;
-        return bit;
-#endif
+        HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - large);
     }
 
     enum
@@ -417,16 +442,15 @@ private:
 
     const ScanlineProblem& p_;
     ScanlineScratch& s_;
-    const int width_, pairs_, steps_;       // columns, pairs of them, and steps over all groups
-    const size_t leftStride_, rightStride_; // from a plane of the cost to the next
+    const int width_, pairs_, steps_; // columns, pairs of them, and steps over all groups
+    const size_t planeStride_;        // from a plane of the cost to the next
     const ByteLanes small_, large_, zero_;
     const Window* windows_; // of the block's row of the upper layer
     int upperRow_;          // that row
     bool entersUpperRow_;   // whether it is not that of the block before
     const uchar *left_[groups], *right_[groups];
-    ushort* disparities_[groups];
-    short *rises_[groups], *slopes_[groups];
-    uchar* residuals_[groups];
+    uchar *winners_[groups], *costs_[groups];
+    unsigned* sums_[groups];
     uchar priorTable_[2 * priorRange][Window::candidates];
     uchar pairOrder_[3 * Window::candidates], runOrder_[Window::runs][3 * Window::candidates];
 };

@@ -577,13 +577,13 @@ public:
     {
     }
 
-    //! CV_16UC1. In stripes of at least 128 rows; from above each path begins 16 rows above its stripe. residual receives
+    //! CV_16UC1. In an even number of stripes of about 128 rows; from above each path begins 16 rows above its stripe. residual receives
     //! the winners' own costs, CV_8UC1.
     Mat match(Mat& residual) const
     {
         Mat disparity(size_, CV_16UC1);
         residual.create(size_, CV_8U);
-        const int stripes = std::max(1, size_.height / 128);
+        const int stripes = size_.height < 64 ? 1 : 2 * std::max(1, cvRound(size_.height / 256.));
         for (int i = 0; i < stripes; ++i)
         {
             const int first = firstRow(i, stripes), end = i + 1 < stripes ? firstRow(i + 1, stripes) : size_.height;

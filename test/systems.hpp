@@ -39,12 +39,12 @@ const System paperSystems[] = {
 };
 
 const System presetPaper = paperSystems[0];
-const System presetFast = { "PRESET_FAST", "fast", createPaperMST, true, false, HDPTreeMatcher::PRESET_FAST };
+const System presetFast = { "PRESET_FAST", "fast", createPaperST, true, false, HDPTreeMatcher::PRESET_FAST };
 const System presetUltrafast = {
-    "PRESET_ULTRAFAST", "ultrafast", createPaperMST, true, false, HDPTreeMatcher::PRESET_ULTRAFAST
+    "PRESET_ULTRAFAST", "ultrafast", createPaperST, true, false, HDPTreeMatcher::PRESET_ULTRAFAST
 };
 const System presetQuality = {
-    "PRESET_QUALITY", "quality", createPaperMST, true, false, HDPTreeMatcher::PRESET_QUALITY
+    "PRESET_QUALITY", "quality", createPaperST, true, false, HDPTreeMatcher::PRESET_QUALITY
 };
 const System presetTree = { "PRESET_TREE", "tree", createPaperMST, true, false, HDPTreeMatcher::PRESET_TREE };
 
@@ -77,7 +77,9 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : 5);
     matcher.setDisparityMedianPasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
-    matcher.setNumLayers(hasScanlines ? (int)HDPTreeMatcher::AUTO : 3);
+    matcher.setNumLayers(!hasScanlines                              ? 3
+                         : preset == HDPTreeMatcher::PRESET_QUALITY ? (int)HDPTreeMatcher::FEWEST_LAYERS
+                                                                    : (int)HDPTreeMatcher::AUTO);
     matcher.setFinestLayer(preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 1 : 0);
     matcher.setDisparityPrior(isTree ? HDPTreeMatcher::PRIOR_UPPER_LAYER : HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
     matcher.setIntervalMargin(isTree ? 1 : 0);

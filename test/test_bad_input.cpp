@@ -124,7 +124,7 @@ TEST(HDPStereo_BadInput, setters)
         expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleWindowSize(bad); }, "speckleWindowSize");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleRange(bad); }, "speckleRange");
     }
-    for (int bad : { 0, -2, 17, INT_MAX, INT_MIN })
+    for (int bad : { 0, -3, 17, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setNumLayers(bad); }, "numLayers");
     for (int bad : { 0, -1, 5, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setScanlinePasses(bad); }, "scanlinePasses");

@@ -32,7 +32,7 @@ Mat patchesAbove(RNG& rng, Size size, int numDisparities, int patch)
 Mat predict(const Mat& upper, int numDisparities)
 {
     Mat smallest(3, 3, CV_16UC1), largest, windows(7, 2, CV_16UC4); // buffers of other sizes
-    hdp::predictWindows(upper, scale, numDisparities, smallest, largest, windows);
+    hdp::predictWindows(upper, numDisparities, smallest, largest, windows);
     return windows;
 }
 

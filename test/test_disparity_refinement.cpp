@@ -149,6 +149,17 @@ TEST(HDPStereo_DisparityRefinement, occluded_pixels_get_the_farther_disparity)
     expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 3 }, { 4, 5, 6 })), filled({ 4, 5, 6 }, { 0, 0, 0 }));
 }
 
+TEST(HDPStereo_DisparityRefinement, what_is_left_of_a_surface_at_the_border_is_not_visible)
+{
+    // A surface of disparity 4 begins in column 0 of the right image. Two of the pixels on its left match better there,
+    // but it is seen from column 2 on.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 12 }, { 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4 })),
+                    filled({ 0, 0, 0, 0, 4, 4, 4, 4, 4, 4, 4, 4 }, { 0, 0, 9, 9, 5, 5, 5, 5, 5, 5, 5, 5 }));
+    // Three columns of disparity 6 stand in front of a background that is seen on both sides of them.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 12 }, { 1, 1, 1, 1, 1, 1, 1, 6, 6, 6, 1, 1 })),
+                    filled({ 1, 1, 1, 1, 1, 1, 1, 6, 6, 6, 1, 1 }, { 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1 }));
+}
+
 TEST(HDPStereo_DisparityRefinement, visible_pixels_are_not_filled)
 {
     RNG rng(47);

@@ -117,7 +117,7 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS(matcher, Disp12MaxDiff, 1, 0, -1, INT_MAX);
     EXPECT_KEEPS(matcher, UsePrediction, false, true);
     EXPECT_KEEPS(matcher, UseMedianPrefilter, true, false);
-    EXPECT_KEEPS(matcher, NumLayers, 1, 2, 16, (int)HDPTreeMatcher::AUTO);
+    EXPECT_KEEPS(matcher, NumLayers, 1, 2, 16, (int)HDPTreeMatcher::AUTO, (int)HDPTreeMatcher::FEWEST_LAYERS);
     EXPECT_KEEPS(matcher, Delta0, 0., 0.064, 0.999, (double)HDPTreeMatcher::AUTO);
     EXPECT_KEEPS(matcher, Beta, 0., 0.6, 1., (double)HDPTreeMatcher::AUTO);
     EXPECT_KEEPS(matcher, Gamma, 1e-3, 25.5, 1e6);
@@ -167,6 +167,13 @@ struct Change
     void (*set)(HDPTreeMatcher&);
 };
 
+void setOtherTree(HDPTreeMatcher& matcher)
+{
+    const Ptr<TreeStrategy> segments = createSegmentTree();
+    const bool isSegments = matcher.getTreeStrategy()->getDefaultName() == segments->getDefaultName();
+    matcher.setTreeStrategy(isSegments ? createMinimumSpanningTree() : segments);
+}
+
 // clang-format off
 const Change commonChanges[] = {
     { "minDisparity", [](HDPTreeMatcher& m) { m.setMinDisparity(2); } },
@@ -174,7 +181,7 @@ const Change commonChanges[] = {
     { "blockSize", [](HDPTreeMatcher& m) { m.setBlockSize(3); } },
     { "disp12MaxDiff", [](HDPTreeMatcher& m) { m.setDisp12MaxDiff(1); } },
     { "speckles", [](HDPTreeMatcher& m) { m.setSpeckleWindowSize(100), m.setSpeckleRange(1); } },
-    { "treeStrategy: ST", [](HDPTreeMatcher& m) { m.setTreeStrategy(createSegmentTree()); } },
+    { "treeStrategy: MST or ST", setOtherTree },
     { "treeStrategy: RT", [](HDPTreeMatcher& m) { m.setTreeStrategy(createRandomTree()); } },
     { "usePrediction", [](HDPTreeMatcher& m) { m.setUsePrediction(false); } },
     { "useMedianPrefilter", [](HDPTreeMatcher& m) { m.setUseMedianPrefilter(true); } },
@@ -684,14 +691,17 @@ TEST(HDPStereo_MatcherContract, search_ratios)
     EXPECT_EQ(std::vector<double>(1, 1.), ratios);
 }
 
-//! The fewest layers, but at least two, that leave the top one 64 disparities or less, and have a pixel
+//! The fewest layers, but at least two, that leave the top one 64 disparities or less, and have a pixel; AUTO takes a
+//! third one if it leaves 16 disparities.
 TEST(HDPStereo_MatcherContract, automatic_number_of_layers)
 {
-    const int expected[][2] = { { 1, 2 },   { 5, 2 },   { 64, 2 },   { 128, 2 },  { 129, 3 },
-                                { 256, 3 }, { 257, 4 }, { 1024, 5 }, { 1025, 6 }, { 2048, 6 } };
+    const int fewest[][2] = { { 1, 2 },   { 5, 2 },   { 64, 2 },   { 128, 2 },  { 129, 3 },
+                              { 256, 3 }, { 257, 4 }, { 1024, 5 }, { 1025, 6 }, { 2048, 6 } };
+    const int automatic[][2] = { { 1, 2 },   { 5, 2 },   { 60, 2 },   { 61, 3 },   { 129, 3 },
+                                 { 256, 3 }, { 257, 4 }, { 1024, 5 }, { 1025, 6 }, { 2048, 6 } };
     const Mat image(33, 40, CV_8UC1, Scalar(7)), small(9, 8, CV_8UC1, Scalar(7));
     for (const System& system : { presetFast, presetUltrafast, presetQuality })
-        for (const int* e : expected)
+        for (const int* e : system.preset == HDPTreeMatcher::PRESET_QUALITY ? fewest : automatic)
         {
             SCOPED_TRACE(testing::Message() << system.name << ", " << e[0] << " disparities");
             const Ptr<HDPTreeMatcher> matcher = createSystem(system, e[0]);

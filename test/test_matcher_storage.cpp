@@ -229,7 +229,7 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "disp12MaxDiff", { "0.5", 0 } },
         { "usePrediction", { "0.5", 0 } },
         { "useMedianPrefilter", { "0.5", 0 } },
-        { "numLayers", { "0", "-2", "17", "2147483647", "1.5", 0 } },
+        { "numLayers", { "0", "-3", "17", "2147483647", "1.5", 0 } },
         { "disparityMedianSize", { "1", "2", "-2", "33", "2147483647", 0 } },
         { "disparityMedianPasses", { "0", "-1", "9", "2147483647", "1.5", 0 } },
         { "matchingCost", { "-1", "2", "2147483647", "0.5", 0 } },

@@ -201,7 +201,7 @@ TEST_P(HDPStereo_CensusCost, planes)
                     for (int plane = 0; plane < cost.planes(); ++plane)
                     {
                         const int differences =
-                            cost.leftPlane(plane, y)[x] ^ cost.rightPlane(plane, y)[size.width - 1 - x + d];
+                            cost.leftPixels(y)[4 * x + plane] ^ cost.rightPlane(plane, y)[size.width - 1 - x + d];
                         for (int bit = 0; bit < 8; ++bit)
                             different += differences >> bit & 1;
                     }
@@ -210,7 +210,7 @@ TEST_P(HDPStereo_CensusCost, planes)
                     {
                         ASSERT_EQ(formula(y, x, d), different) << "y " << y << " x " << x << " candidate " << d;
                         ASSERT_EQ(right.at<ushort>(y, std::max(x - d, 0)) / 4, level) << "y " << y << " x " << x - d;
-                        ASSERT_EQ(left.at<ushort>(y, x) / 4, cost.leftPlane(cost.planes(), y)[x]);
+                        ASSERT_EQ(left.at<ushort>(y, x) / 4, cost.leftPixels(y)[4 * x + MatchingCost::greyByte]);
                     }
                 }
     }

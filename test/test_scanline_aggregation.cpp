@@ -53,7 +53,7 @@ struct Layer
                             right.at<ushort>(y, x - d) = left.at<ushort>(y, x);
             }
         Mat smallest, largestOf;
-        hdp::predictWindows(upper, scale, numDisparities, smallest, largestOf, windows);
+        hdp::predictWindows(upper, numDisparities, smallest, largestOf, windows);
     }
 
     Size size() const { return left.size(); }

@@ -83,10 +83,16 @@ public:
         PRIOR_UPPER_LAYER = 1     //!< the disparities of the layer above, which are there already
     };
 
-    //! Value of delta0, beta and the disparity median that leaves the choice to the matcher
+    //! Value of the number of layers, delta0, beta and the disparity median that leaves the choice to the matcher
     enum
     {
         AUTO = -1
+    };
+
+    //! Value of the number of layers, see setNumLayers()
+    enum
+    {
+        FEWEST_LAYERS = -2
     };
 
     /** @brief Rule 1 and Rule 2 of the spanning trees; createMinimumSpanningTree() by default.
@@ -112,8 +118,10 @@ public:
     CV_WRAP virtual bool getUseMedianPrefilter() const = 0;
 
     /** @brief Number of pyramid layers, the image itself included: 1..16, 3 by default. Layers that would have no
-    pixel are left out. HDPTreeMatcher::AUTO: the fewest, but at least 2, that leave the top layer 64 disparities or
-    less. Without effect if prediction is off. */
+    pixel are left out. HDPTreeMatcher::FEWEST_LAYERS: as few as leave the top layer 64 disparities or less, but at
+    least 2. HDPTreeMatcher::AUTO: the same, but 3 instead of 2 if these leave the top layer 16 disparities or more:
+    takes less time on images of less than a megapixel, and loses some fine structures there. Without effect if
+    prediction is off. */
     CV_WRAP virtual void setNumLayers(int numLayers) = 0;
     /** @copybrief setNumLayers @sa setNumLayers */
     CV_WRAP virtual int getNumLayers() const = 0;

@@ -1,0 +1,242 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "disparity_refinement.hpp"
+#include "vectorized.hpp"
+#include <cstring>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+//! fillOccluded() for one row. shift: log2 of the units of a disparity in one pixel.
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch);
+
+/** A row of the median of size x size pixels.
+@param rows The `size` rows around it.
+@param size 5 or 7.
+@param width Of the rows.
+@param sorted As many rows to work in, with size / 2 more columns on each side.
+@param filtered Receives the row. */
+void medianRow(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+//! The first byte from begin on that has this value, or end
+inline int findByte(const uchar* bytes, int begin, int end, uchar value)
+{
+    const void* found = std::memchr(bytes + begin, value, end - begin);
+    return found ? (int)((const uchar*)found - bytes) : end;
+}
+
+//! The last of the pixels at the border of the right image with which a visible surface begins: what is on its left is
+//! not in the right image.
+int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width, int pixel)
+{
+    const int surface = 4; // columns, at least
+    const uchar* visible = scratch.visible.data();
+    int border = 0;
+    for (int x = findByte(scratch.atBorder.data(), 0, width, 1); x < width;
+         x = findByte(scratch.atBorder.data(), x + 1, width, 1))
+    {
+        int end = x + 1;
+        while (end < std::min(x + surface, width) && visible[end] &&
+               std::abs(disparity[end] - disparity[end - 1]) <= pixel)
+            ++end;
+        if (end == x + surface)
+            border = x;
+    }
+    return border;
+}
+
+} // namespace
+
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch)
+{
+    scratch.there.assign(width + 1, UINT_MAX);
+    scratch.columns.resize(width);
+    scratch.keys.resize(width);
+    scratch.visible.resize(width);
+    scratch.atBorder.resize(width);
+    unsigned *there = scratch.there.data(), *keys = scratch.keys.data();
+    int* columns = scratch.columns.data();
+    uchar *visible = scratch.visible.data(), *atBorder = scratch.atBorder.data();
+    const int half = (1 << shift) / 2, pixel = 1 << shift;
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        columns[x] = std::max(x + 1 - ((disparity[x] + half) >> shift), 0);
+        keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
+    }
+    for (int x = 0; x < width; ++x)
+        there[columns[x]] = std::min(there[columns[x]], keys[x]);
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) keys[x] = there[columns[x]];
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        const int difference = (int)(0xffff - (keys[x] & 0xffff)) - disparity[x];
+        visible[x] = (uchar)((columns[x] > 0) & (difference <= pixel) & (difference >= -pixel));
+        atBorder[x] = (uchar)(visible[x] & (columns[x] <= 1 + 2));
+    }
+    std::fill(visible, visible + findBorder(disparity, scratch, width, pixel), (uchar)0);
+    for (int begin = findByte(visible, 0, width, 0); begin < width;)
+    {
+        const int end = findByte(visible, begin, width, 1);
+        if (begin > 0 || end < width)
+        {
+            const ushort before = disparity[begin > 0 ? begin - 1 : end],
+                         after = disparity[end < width ? end : begin - 1];
+            std::fill(disparity + begin, disparity + end, std::min(before, after));
+        }
+        begin = findByte(visible, end, width, 0);
+    }
+}
+
+namespace {
+
+// In what follows pixels are less 32768: the smaller of two signed words is one instruction of SSE2, of unsigned ones two.
+
+inline void sortPair(short& a, short& b)
+{
+    const short smaller = std::min(a, b);
+    b = std::max(a, b);
+    a = smaller;
+}
+
+inline void sortThree(short& a, short& b, short& c)
+{
+    sortPair(a, b);
+    sortPair(b, c);
+    sortPair(a, b);
+}
+
+inline void sortFour(short& a, short& b, short& c, short& d)
+{
+    sortPair(a, b);
+    sortPair(c, d);
+    sortPair(a, c);
+    sortPair(b, d);
+    sortPair(b, c);
+}
+
+inline void sort(short (&v)[5])
+{
+    sortFour(v[0], v[1], v[2], v[3]);
+    sortPair(v[3], v[4]);
+    sortPair(v[2], v[3]);
+    sortPair(v[1], v[2]);
+    sortPair(v[0], v[1]);
+}
+
+inline void sort(short (&v)[7])
+{
+    sortFour(v[0], v[1], v[2], v[3]);
+    sortThree(v[4], v[5], v[6]);
+    // Batcher's merging of four and three
+    sortPair(v[0], v[4]);
+    sortPair(v[1], v[5]);
+    sortPair(v[2], v[6]);
+    sortPair(v[2], v[4]);
+    sortPair(v[3], v[5]);
+    sortPair(v[1], v[2]);
+    sortPair(v[3], v[4]);
+    sortPair(v[5], v[6]);
+}
+
+inline short medianOfThree(short a, short b, short c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
+
+//! The median of kept[0 .. count - 1] and rest[0 .. count - 4]: the smallest and the largest of kept cannot be it.
+template <int count> struct Forgetful
+{
+    static CV_ALWAYS_INLINE short median(short* kept, const short* rest)
+    {
+        HDP_UNROLLED for (int i = 0; i < count / 2; ++i) sortPair(kept[i], kept[count - 1 - i]);
+        HDP_UNROLLED for (int i = 1; i < (count + 1) / 2; ++i) sortPair(kept[0], kept[i]);
+        HDP_UNROLLED for (int i = count / 2; i < count - 1; ++i) sortPair(kept[i], kept[count - 1]);
+        kept[0] = *rest;
+        return Forgetful<count - 1>::median(kept, rest + 1);
+    }
+};
+template <> struct Forgetful<3>
+{
+    static CV_ALWAYS_INLINE short median(short* kept, const short*) { return medianOfThree(kept[0], kept[1], kept[2]); }
+};
+
+// The median of a window, sorted by rows and columns. The element in row i and column j is not smaller than
+// (i + 1) (j + 1) elements, itself included, and not larger than (size - i) (size - j), which leaves some diagonals. Of
+// two on the outer ones the smaller, or larger, may have too many above, or below, it.
+
+inline short medianOfSorted(const short (&d)[5][5])
+{
+    const short low = std::max(d[1][2], d[2][1]), high = std::min(d[2][3], d[3][2]);
+    // The median of nine: low <= d[2][2] <= high and two groups of three
+    short a = std::max(d[0][3], d[3][0]), b = d[0][4], c = d[4][0];
+    short e = std::min(d[1][4], d[4][1]), f = d[1][3], g = d[3][1];
+    sortThree(a, b, c);
+    sortThree(e, f, g);
+    return medianOfThree(std::max(std::max(a, e), low), medianOfThree(b, f, d[2][2]), std::min(std::min(c, g), high));
+}
+
+inline short medianOfSorted(const short (&d)[7][7])
+{
+    short kept[12] = { std::max(d[0][4], d[4][0]), std::max(d[1][3], d[3][1]), d[2][2],
+                       std::max(d[0][5], d[4][1]), std::max(d[5][0], d[1][4]), d[2][3],
+                       std::min(d[2][6], d[6][2]), std::min(d[3][5], d[5][3]), d[4][4],
+                       std::min(d[6][1], d[2][5]), std::min(d[1][6], d[5][2]), d[4][3] };
+    const short rest[9] = { d[3][2], d[3][4], d[0][6], d[6][0], d[1][5], d[5][1], d[2][4], d[4][2], d[3][3] };
+    return Forgetful<12>::median(kept, rest);
+}
+
+template <int size> void medianRow(const ushort* const* rows, int width, short* const* sorted, ushort* filtered)
+{
+    const int radius = size / 2;
+    const ushort* r[size];
+    short* s[size];
+    for (int i = 0; i < size; ++i)
+    {
+        r[i] = rows[i];
+        s[i] = sorted[i];
+    }
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        short column[size];
+        HDP_UNROLLED for (int i = 0; i < size; ++i) column[i] = (short)(r[i][x] ^ SHRT_MIN);
+        sort(column);
+        HDP_UNROLLED for (int i = 0; i < size; ++i) s[i][x] = column[i];
+    }
+    for (int i = 0; i < size; ++i) // the border is replicated
+    {
+        std::fill(s[i] - radius, s[i], s[i][0]);
+        std::fill(s[i] + width, s[i] + width + radius, s[i][width - 1]);
+    }
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        short window[size][size];
+        HDP_UNROLLED for (int i = 0; i < size; ++i)
+        {
+            HDP_UNROLLED for (int j = 0; j < size; ++j) window[i][j] = s[i][x + j - radius];
+            sort(window[i]); // the columns remain sorted; the compiler leaves out what is not used
+        }
+        filtered[x] = (ushort)(medianOfSorted(window) ^ SHRT_MIN);
+    }
+}
+
+} // namespace
+
+void medianRow(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
+{
+    if (size == 5)
+        medianRow<5>(rows, width, sorted, filtered);
+    else
+        medianRow<7>(rows, width, sorted, filtered);
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
