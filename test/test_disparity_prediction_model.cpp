@@ -64,11 +64,11 @@ Mixture narrowAndWide() { return Mixture{ { 0.5, -9 }, { 1, 6 }, { 0.7, 0.3 } };
 TEST(HDPStereo_ModelTraining, offsets_by_hand)
 {
     const float u = unknown, n = std::numeric_limits<float>::quiet_NaN();
-    const Mat lower = (Mat_<float>(4, 5) << 7, 6, 10, u, 3, //
-                       5, -1, 10, 11, 4,                    //
-                       0, 1, 8, 8, 9,                       //
-                       n, 2, 8, 8.4f, 9);
-    const Mat upper = (Mat_<float>(2, 2) << 3, 6, 0, u);
+    const Mat lower = Mat_<float>({ 4, 5 }, { 7, 6,  10, u,    3, //
+                                              5, -1, 10, 11,   4, //
+                                              0, 1,  8,  8,    9, //
+                                              n, 2,  8,  8.4f, 9 });
+    const Mat upper = Mat_<float>({ 2, 2 }, { 3, 6, 0, u });
     // Above the pixels of the first two rows 3, 3, 6, 6 and again 6 (the last column is odd), of the others 0 and unknown:
     //   3 - {3, 3, 2} = {0, 0, 1}, 6 - {5, 5, 5, 1, 2} = {1, 1, 1, 5, 4}, 0 - {0, 0, 1} = {0, 0, -1}
     std::vector<int> offsets;
@@ -84,7 +84,7 @@ TEST(HDPStereo_ModelTraining, offsets_by_hand)
 
 TEST(HDPStereo_ModelTraining, rounding)
 {
-    const Mat lower = (Mat_<float>(2, 2) << 6.6f, 7.4f, 6.f, 7.9f), upper = (Mat_<float>(1, 1) << 2.6f);
+    const Mat lower = Mat_<float>({ 2, 2 }, { 6.6f, 7.4f, 6.f, 7.9f }), upper = Mat_<float>(1, 1, 2.6f);
     std::vector<int> offsets;
     Numbers counts;
     DisparityPredictionModel::countOffsets(std::vector<Mat>(1, lower), std::vector<Mat>(1, upper), offsets, counts);

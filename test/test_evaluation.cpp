@@ -30,10 +30,10 @@ Pair makePair(Pair::Protocol protocol, const Mat& truth, const Mat& judged)
 
 TEST(HDPStereo_Evaluation, middlebury_by_hand)
 {
-    const Mat truth = (Mat_<float>(2, 5) << 10, 10, 10, 10, 10, 20, 20, 20, none, 20);
-    const Mat judged = (Mat_<uchar>(2, 5) << 255, 255, 255, 255, 255, 255, 255, 255, 0, 0);
+    const Mat truth = Mat_<float>({ 2, 5 }, { 10, 10, 10, 10, 10, 20, 20, 20, none, 20 });
+    const Mat judged = Mat_<uchar>({ 2, 5 }, { 255, 255, 255, 255, 255, 255, 255, 255, 0, 0 });
     // Errors: 0, 0.9375, 1, 1.9375, 2; none, 100, -0.5; not judged: 5 and none
-    const Mat map = (Mat_<float>(2, 5) << 10, 10.9375f, 9, 11.9375f, 12, none, 120, 19.5f, 5, none);
+    const Mat map = Mat_<float>({ 2, 5 }, { 10, 10.9375f, 9, 11.9375f, 12, none, 120, 19.5f, 5, none });
     const Score score = scoreMap(map, makePair(Pair::MIDDLEBURY, truth, judged));
     EXPECT_DOUBLE_EQ(100. * 5 / 8, score.error1);
     EXPECT_DOUBLE_EQ(100. * 3 / 8, score.error2);
@@ -44,11 +44,11 @@ TEST(HDPStereo_Evaluation, middlebury_by_hand)
 
 TEST(HDPStereo_Evaluation, kitti_by_hand)
 {
-    const Mat truth = (Mat_<float>(1, 7) << 100, 100, 100, 20, 20, none, 20);
+    const Mat truth = Mat_<float>({ 1, 7 }, { 100, 100, 100, 20, 20, none, 20 });
     // Errors: 4 (below 5 %), 5 (not above), 5.5, 3 (not above), 3.25, of unknown truth, none
-    const Mat map = (Mat_<float>(1, 7) << 104, 95, 105.5f, 23, 16.75f, 3, none);
+    const Mat map = Mat_<float>({ 1, 7 }, { 104, 95, 105.5f, 23, 16.75f, 3, none });
     Pair pair = makePair(Pair::KITTI, truth, knownPixels(truth));
-    pair.judgedNonOccluded = (Mat_<uchar>(1, 7) << 255, 255, 255, 255, 0, 0, 0);
+    pair.judgedNonOccluded = Mat_<uchar>({ 1, 7 }, { 255, 255, 255, 255, 0, 0, 0 });
     const Score score = scoreMap(map, pair);
     EXPECT_DOUBLE_EQ(100. * 3 / 6, score.d1);
     EXPECT_DOUBLE_EQ(100. * 1 / 4, score.d1NonOccluded);
@@ -67,11 +67,11 @@ TEST(HDPStereo_Evaluation, no_truth_no_score)
 
 TEST(HDPStereo_Evaluation, occlusion_by_hand)
 {
-    const Mat left = (Mat_<float>(1, 6) << 1, 2, 2, 2.5f, none, 3),
-              right = (Mat_<float>(1, 6) << 2, 2.5f, 4, none, 2, 1);
+    const Mat left = Mat_<float>({ 1, 6 }, { 1, 2, 2, 2.5f, none, 3 }),
+              right = Mat_<float>({ 1, 6 }, { 2, 2.5f, 4, none, 2, 1 });
     // x - floor(d): -1, -1, 0 (2 = 2), 1 (2.5 = 2.5), unknown, 2 (3, 4)
-    expectIdentical((Mat_<uchar>(1, 6) << 0, 0, 255, 255, 0, 0), nonOccludedPixels(left, right));
-    expectIdentical((Mat_<uchar>(1, 6) << 0, 0, 255, 255, 0, 255), nonOccludedPixels(left, right, 1));
+    expectIdentical(Mat_<uchar>({ 1, 6 }, { 0, 0, 255, 255, 0, 0 }), nonOccludedPixels(left, right));
+    expectIdentical(Mat_<uchar>({ 1, 6 }, { 0, 0, 255, 255, 0, 255 }), nonOccludedPixels(left, right, 1));
 }
 
 TEST(HDPStereo_Evaluation, means_leave_out_what_is_missing)
@@ -115,7 +115,7 @@ TEST(HDPStereo_Evaluation, base64_of_rfc_4648)
 
 TEST(HDPStereo_Evaluation, truth_of_a_layer)
 {
-    const Mat truth = (Mat_<float>(3, 5) << 8, 1, none, 3, 20, 1, 1, 1, 1, 1, 6, 1, 10, 1, 1);
+    const Mat truth = Mat_<float>({ 3, 5 }, { 8, 1, none, 3, 20, 1, 1, 1, 1, 1, 6, 1, 10, 1, 1 });
     const Mat first = truthOfLayer(truth, 1), second = truthOfLayer(truth, 2);
     ASSERT_EQ(Size(2, 1), first.size());
     EXPECT_EQ(4.f, first.at<float>(0, 0));
@@ -126,7 +126,7 @@ TEST(HDPStereo_Evaluation, truth_of_a_layer)
 
 TEST(HDPStereo_Evaluation, sampled_matrix_counts_pairs)
 {
-    const Mat truth = (Mat_<float>(2, 4) << 6, 6, 7, none, 5, 6, 20, 2), upper = (Mat_<float>(1, 2) << 3, 1);
+    const Mat truth = Mat_<float>({ 2, 4 }, { 6, 6, 7, none, 5, 6, 20, 2 }), upper = Mat_<float>({ 1, 2 }, { 3, 1 });
     const Mat_<double> matrix = sampledMatrix(truth, upper, 9);
     ASSERT_EQ(Size(9, 5), matrix.size());
     EXPECT_EQ(3, matrix(3, 6));
