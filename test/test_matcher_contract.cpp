@@ -470,7 +470,7 @@ TEST(HDPStereo_MatcherContract, more_than_256_disparities)
 {
     RNG rng(29);
     const int shift = 300;
-    const Mat canvas = patchyImage(rng, Size(640 + shift, 48), CV_8UC3, 8);
+    const Mat canvas = patchyImage(rng, Size(640 + shift, 96), CV_8UC3, 16); // patches of two pixels in the fourth layer
     const Mat left = canvas.colRange(0, 640), right = canvas.colRange(shift, 640 + shift);
     for (const System& system : someSystems)
     {
