@@ -35,6 +35,9 @@ inline int firstOf(int disparity, int candidates, int numDisparities)
     return std::max(std::min(disparity - (candidates / 2 - 1), numDisparities - candidates), 0);
 }
 
+//! condition ? a : b, condition being 0 or 1, without a branch
+inline int select(int condition, int a, int b) { return b ^ ((a ^ b) & -condition); }
+
 } // namespace
 
 void predictRow(const ushort* own, const ushort* least, const ushort* most, int width, int numDisparities,
@@ -52,13 +55,13 @@ void predictRow(const ushort* own, const ushort* least, const ushort* most, int 
         // Two runs would overlap: one window over both
         const int between = std::max(std::min((first + beyond + length - all) >> 1, numDisparities - all), 0);
 
-        const bool hasOther = std::abs(other - here) >= discontinuity * scale;
-        const bool overlaps = std::abs(first - beyond) < length;
-        const int low = !hasOther ? around : overlaps ? between : first;
+        const int hasOther = std::abs(other - here) >= discontinuity * scale;
+        const int overlaps = hasOther & (std::abs(first - beyond) < length), isApart = hasOther - overlaps;
+        const int low = select(isApart, first, select(overlaps, between, around));
         windows[4 * x] = (ushort)low;
-        windows[4 * x + 1] = (ushort)(hasOther & !overlaps ? beyond : low + length);
-        windows[4 * x + 2] = (ushort)(hasOther & overlaps ? std::min(here, other) : here);
-        windows[4 * x + 3] = (ushort)(!hasOther ? here : overlaps ? std::max(here, other) : other);
+        windows[4 * x + 1] = (ushort)select(isApart, beyond, low + length);
+        windows[4 * x + 2] = (ushort)select(overlaps, std::min(here, other), here);
+        windows[4 * x + 3] = (ushort)select(overlaps, std::max(here, other), select(isApart, other, here));
     }
 }
 

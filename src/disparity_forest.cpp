@@ -730,6 +730,7 @@ void joinInAnyOrder(const TreeStrategy& strategy, const Mat& pixelIntv, double b
 void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link,
                  ForestBuffers& buffers, DisparityForest& forest)
 {
+    forest.trees.clear(); // those of other links must not be walked if the strategy throws
     weighEdges(image, forest.weights);
     forest.links.create(image.size(), CV_8U);
     forest.links.setTo(Scalar::all(0));
@@ -743,7 +744,6 @@ void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& str
         joinByWeight(*segmentTree, pixelIntv, beta, links, buffers, forest);
     else
         joinInAnyOrder(strategy, pixelIntv, beta, links, buffers, forest);
-    forest.trees.clear();
     for (size_t i = 0; i < buffers.nodes.size(); ++i)
         if (buffers.nodes[i].parent < 0)
         {
@@ -754,7 +754,7 @@ void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& str
 
 void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk& walk)
 {
-    if (walk.pixels.size() < (size_t)tree.size)
+    if (walk.weights.size() < (size_t)tree.size) // the last to grow: if there was no memory, the others may be larger
     {
         walk.pixels.resize(tree.size);
         walk.parents.resize(tree.size);

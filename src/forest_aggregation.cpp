@@ -201,7 +201,7 @@ void processLarge(const Aggregation<Problem>& aggregation, const DisparityTree& 
 EdgeSimilarity::EdgeSimilarity(double gamma)
 {
     for (int w = 0; w < 256; ++w)
-        table[w] = (float)std::exp(-w / gamma);
+        table[w] = w > 0 ? (float)std::exp(-w / gamma) : 1.f; // 0 / gamma is none if it is too small for a number
 }
 
 int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity, int first,

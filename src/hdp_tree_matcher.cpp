@@ -26,6 +26,12 @@ using namespace hdp;
 namespace {
 
 const int largeImageWidth = 1000;
+
+// Two edges a pixel are numbered by int, and what is counted by pixels of a side or by bytes of the image fits into one,
+// too, in OpenCV's filters as well. cv::filterSpeckles has 16-bit coordinates.
+const int maxSide = SHRT_MAX;
+const int speckleBytes = 9; // a pixel, of the memory of cv::filterSpeckles, which counts them by int
+
 const int maxBlockSize = 31;
 const int maxMedianSize = 31;
 const int maxLayers = 16;
@@ -339,7 +345,8 @@ public:
 
     void getForest(OutputArray treesArray, OutputArray intervalsArray) const CV_OVERRIDE
     {
-        Mat trees(forest_.links.size(), CV_32S, Scalar(-1)), intervals(trees.size(), CV_16UC2);
+        const Size size = forest_.trees.empty() ? Size() : forest_.links.size();
+        Mat trees(size, CV_32S), intervals(size, CV_16UC2);
         TreeWalk walk;
         for (size_t t = 0; t < forest_.trees.size(); ++t)
         {
@@ -522,8 +529,11 @@ private:
             CV_Error(Error::StsUnmatchedSizes, "right must have the size of left");
         if (right.type() != left.type())
             CV_Error(Error::StsUnmatchedFormats, "right must have the type of left");
-        if (left.total() > (size_t)INT_MAX / 2)
-            CV_Error(Error::StsOutOfRange, "left must have less than 2^30 pixels");
+        if (std::max(left.cols, left.rows) > maxSide)
+            CV_Error(Error::StsOutOfRange, format("left must be at most %d pixels wide and high, not %d x %d", maxSide,
+                                                  left.cols, left.rows));
+        if (left.total() * left.elemSize() > (size_t)INT_MAX)
+            CV_Error(Error::StsOutOfRange, "left must have less than 2^31 bytes");
     }
 
     //! Of the disparities: what the caller's array has, if its type is fixed
@@ -553,6 +563,10 @@ private:
 
         if (p_.fillOcclusions && p_.matchingCost != COST_CENSUS)
             CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for fillOcclusions");
+
+        if (p_.speckleWindowSize > 0 && size.area() > INT_MAX / speckleBytes)
+            CV_Error(Error::StsOutOfRange,
+                     format("speckleWindowSize must be 0 for images of more than %d pixels", INT_MAX / speckleBytes));
 
         const bool isLarge = size.width >= largeImageWidth;
         LayerSettings settings;
@@ -771,7 +785,13 @@ private:
         if (p_.disp12MaxDiff > 0)
             rejectOccluded(fixedPoint, p_.disp12MaxDiff, invalid);
         if (p_.speckleWindowSize > 0)
+        {
+            // One byte more than cv::filterSpeckles allocates: it writes there if no two pixels belong together.
+            const int bytes = (int)disparity.total() * speckleBytes + 1;
+            if (speckles_.cols < bytes)
+                speckles_.create(1, bytes, CV_8U);
             filterSpeckles(fixedPoint, invalid, p_.speckleWindowSize, DISP_SCALE * p_.speckleRange, speckles_);
+        }
         compare(fixedPoint, Scalar(invalid), rejected_, CMP_EQ);
         if (isFloat)
             disparity.setTo(Scalar(p_.minDisparity - 1), rejected_);

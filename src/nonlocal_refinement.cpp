@@ -39,14 +39,13 @@ int NonLocalRefinement::disparity(int pixel, const RunWinner& winner) const
     const int own = disparity_[pixel];
     if (winner.lowest == 0 && winner.last == 0) // no cost at all
         return own;
+    // The first and the last candidate are above their neighbours but for costs so close to 0 that few bits are left.
+    if (winner.before < 0 || winner.after < 0)
+        return own;
     if (stable_[pixel] && (own + scale_ / 2) / scale_ == winner.disparity)
         return own;
-    float steeper = 0, difference = 0; // of the slopes on both sides
-    if (winner.before >= 0 && winner.after >= 0)
-    {
-        steeper = std::max(winner.before, winner.after) - winner.lowest;
-        difference = winner.before - winner.after;
-    }
+    const float steeper = std::max(winner.before, winner.after) - winner.lowest; // of the slopes on both sides
+    const float difference = winner.before - winner.after;
     return winner.disparity * scale_ + (steeper > 0 ? cvRound(difference / steeper * (scale_ / 2)) : 0);
 }
 

@@ -64,6 +64,37 @@ TEST(HDPStereo_BadInput, pairs_that_do_not_match)
     expectBadPair(image, Mat(12, 16, CV_8UC1), "right");
 }
 
+//! What would overflow an index, here or in OpenCV's filters, is refused before anything is read or allocated: there are
+//! no such pixels.
+TEST(HDPStereo_BadInput, too_large_images)
+{
+    uchar pixel[3] = { 0 };
+    const auto image = [&](int width, int height, int type) {
+        return Mat(height, width, type, pixel, (size_t)width * CV_ELEM_SIZE(type));
+    };
+    const auto expectTooLarge = [&](int width, int height, int type, int speckleWindowSize, const char* argument) {
+        SCOPED_TRACE(testing::Message() << width << " x " << height << ", type " << type);
+        for (const System& preset : presets)
+        {
+            const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 2048);
+            matcher->setSpeckleWindowSize(speckleWindowSize);
+            const Mat large = image(width, height, type);
+            Mat disparity;
+            expectRejected([&] { matcher->compute(large, large, disparity); }, argument);
+            EXPECT_TRUE(disparity.empty());
+        }
+    };
+    for (int type : { CV_8UC1, CV_8UC3 })
+    {
+        for (const Size& size : { Size(32768, 1), Size(1, 32768), Size(INT_MAX / 3, 1), Size(1, INT_MAX) })
+            expectTooLarge(size.width, size.height, type, 0, "left");
+        expectTooLarge(26000, 26000, type, 100, "speckleWindowSize");
+    }
+    expectTooLarge(65536, 65536, CV_8UC1, 0, "left"); // their product is 0 in an int
+    expectTooLarge(32767, 32767, CV_8UC3, 0, "left");
+    expectTooLarge(26755, 26755, CV_8UC3, 0, "left"); // 2^31 bytes and some
+}
+
 TEST(HDPStereo_BadInput, output_of_a_fixed_other_type)
 {
     const Mat image(12, 16, CV_8UC3, Scalar::all(7));

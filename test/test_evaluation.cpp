@@ -8,6 +8,8 @@
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 
+#include <set>
+
 #include "../samples/hdp_report.hpp"
 
 namespace opencv_test {
@@ -134,25 +136,97 @@ TEST(HDPStereo_Evaluation, sampled_matrix_counts_pairs)
     EXPECT_EQ(6, sum(matrix)[0]); // not those of unknown truth, and of 20 disparities
 }
 
+TEST(HDPStereo_Evaluation, wrong_pixels_are_red_and_occluded_ones_black)
+{
+    const Vec3b red(0, 0, 255), black(0, 0, 0);
+    const Mat truth = (Mat_<float>(1, 6) << 10, 10, 60, none, 40, 60),
+              map = (Mat_<float>(1, 6) << 11.9375f, 12, 55.5f, 10, 40, none);
+    const struct
+    {
+        Pair::Protocol protocol;
+        bool wrong[6], blank[6];
+    } cases[] = {
+        { Pair::MIDDLEBURY, { false, true, true, false, false, true }, { false, false, false, true, true, false } },
+        { Pair::KITTI, { false, false, true, false, false, true }, { false, false, false, false, false, false } },
+        { Pair::NO_TRUTH, { false, false, false, false, false, false }, { false, false, false, false, false, true } },
+    };
+    for (const auto& c : cases)
+    {
+        // The last but one is occluded; KITTI's pictures do not show what is not judged.
+        const Mat judged = (Mat_<uchar>(1, 6) << 255, 255, 255, 0, 0, 255);
+        const Mat picture = resultPicture(map, makePair(c.protocol, truth, judged));
+        for (int x = 0; x < truth.cols; ++x)
+        {
+            EXPECT_EQ(c.wrong[x], picture.at<Vec3b>(0, x) == red) << "protocol " << c.protocol << ", pixel " << x;
+            EXPECT_EQ(c.blank[x], picture.at<Vec3b>(0, x) == black) << "protocol " << c.protocol << ", pixel " << x;
+        }
+    }
+}
+
+TEST(HDPStereo_Evaluation, every_tree_has_a_color)
+{
+    Mat trees(40, 50, CV_32S);
+    for (int i = 0; i < 2000; ++i)
+        trees.ptr<int>()[i] = i / 2;
+    const Mat picture = forestPicture(trees);
+    std::set<int> colors;
+    for (int i = 0; i < 2000; ++i)
+    {
+        const Vec3b color = picture.ptr<Vec3b>()[i];
+        EXPECT_EQ(picture.ptr<Vec3b>()[i / 2 * 2], color);
+        colors.insert(color[0] | color[1] << 8 | color[2] << 16);
+    }
+    EXPECT_EQ(1000u, colors.size());
+}
+
+TEST(HDPStereo_Evaluation, widths_in_steps_of_the_logarithm)
+{
+    const Mat intervals = (Mat_<Vec2w>(1, 4) << Vec2w(7, 7), Vec2w(0, 3), Vec2w(16, 23), Vec2w(0, 255));
+    const Mat levels = (Mat_<uchar>(1, 4) << 0, 64, 96, 255); // of 1, 4, 8 and all 256 candidates
+    Mat colors;
+    cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
+    expectIdentical(colors, widthPicture(intervals, 256));
+}
+
+TEST(HDPStereo_Evaluation, predicted_matrix_by_hand)
+{
+    const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
+    model->addLayer({ 0.5 }, { 2 }, { 1 });
+    const Mat_<double> matrix = predictedMatrix(*model, 0, { 1, 0, 3, 4, 0.5 });
+    ASSERT_EQ(Size(5, 3), matrix.size());
+    // exp(-(i - floor(j / 2) - 0.5)^2 / 8) / (2 sqrt(2 pi)) P(j)
+    EXPECT_NEAR(0.193334 * 1, matrix(0, 0), 1e-5); // offset 0
+    EXPECT_EQ(0, matrix(1, 1));
+    EXPECT_NEAR(0.193334 * 3, matrix(2, 2), 1e-5);   // offset 1
+    EXPECT_NEAR(0.150569 * 4, matrix(0, 3), 1e-5);   // offset -1
+    EXPECT_NEAR(0.091325 * 0.5, matrix(0, 4), 1e-5); // offset -2
+}
+
 //! The matcher of a layer finds what the whole matcher has found there on its way: the search of the layer below is the
 //! same by either.
 TEST(HDPStereo_Evaluation, matcher_of_a_layer)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 11);
     const Ptr<DisparityPredictionModel> model = publishedModel(160);
-    const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32, HDPTreeMatcher::PRESET_PAPER);
-    expectIdentical(match(*whole, pair.left, pair.right),
-                    match(*matcherOfLayer(0, 3, 32, 160, model), pair.left, pair.right));
-    std::vector<double> wholeRatios, ratios;
-    whole->getSearchRatios(wholeRatios);
+    for (int preset : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE })
+    {
+        SCOPED_TRACE(preset);
+        const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32, preset),
+                                  adapted = HDPTreeMatcher::create(0, 32, preset),
+                                  upper = HDPTreeMatcher::create(0, disparitiesOfLayer(32, 1), preset);
+        adaptToLayer(*adapted, 0, 3, 160, model);
+        expectIdentical(match(*whole, pair.left, pair.right), match(*adapted, pair.left, pair.right));
+        std::vector<double> wholeRatios, ratios;
+        whole->getSearchRatios(wholeRatios);
 
-    const Ptr<HDPTreeMatcher> upper = matcherOfLayer(1, 3, 32, 160, upperPart(*model, 1));
-    EXPECT_EQ(16, upper->getNumDisparities());
-    match(*upper, nextLayer(pair.left), nextLayer(pair.right));
-    upper->getSearchRatios(ratios);
-    ASSERT_EQ(2u, ratios.size());
-    EXPECT_NEAR(wholeRatios[1], ratios[0], 0.02); // the means of 2 x 2 pixels are rounded in another way
-    EXPECT_EQ(1, ratios[1]);
+        EXPECT_EQ(16, upper->getNumDisparities());
+        adaptToLayer(*upper, 1, 3, 160, upperPart(*model, 1));
+        match(*upper, nextLayer(pair.left), nextLayer(pair.right));
+        upper->getSearchRatios(ratios);
+        ASSERT_EQ(2u, ratios.size());
+        EXPECT_NEAR(wholeRatios[1], ratios[0], 0.02); // the means of 2 x 2 pixels are rounded in another way
+        EXPECT_EQ(1, ratios[1]);
+    }
 }
 
 //! What getForest() gives agrees with the other results of the same compute().

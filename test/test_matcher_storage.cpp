@@ -331,5 +331,90 @@ TEST(HDPStereo_MatcherStorage, truncated_text)
     }
 }
 
+//! One of many ways to spoil a file.
+std::string spoilt(std::string text, RNG& rng)
+{
+    const char* const pieces[] = { "-1",
+                                   "99999999999999999999",
+                                   "1e999",
+                                   ".Nan",
+                                   "\"",
+                                   "[",
+                                   "]",
+                                   "{",
+                                   "}",
+                                   ":",
+                                   ",",
+                                   "\n",
+                                   "\0",
+                                   "<",
+                                   "</",
+                                   ">",
+                                   "<!--",
+                                   "&",
+                                   "*",
+                                   "- ",
+                                   "null",
+                                   "!!",
+                                   "type_id=\"binary\"",
+                                   "%YAML" };
+    const int count = (int)(sizeof(pieces) / sizeof(pieces[0]));
+    for (int i = rng.uniform(1, 4); i > 0 && !text.empty(); --i)
+    {
+        const size_t at = (size_t)rng.uniform(0, (int)text.size());
+        switch (rng.uniform(0, 4))
+        {
+        case 0:
+            text[at] = (char)rng.uniform(1, 256);
+            break;
+        case 1:
+            text.erase(at, (size_t)rng.uniform(1, 40));
+            break;
+        case 2:
+            text.insert(at, pieces[rng.uniform(0, count)]);
+            break;
+        default:
+            text.replace(at, (size_t)rng.uniform(1, 5), pieces[rng.uniform(0, count)]);
+        }
+    }
+    return text;
+}
+
+//! Reading takes all of a file or nothing, of a matcher and of a model, and both work afterwards.
+TEST(HDPStereo_MatcherStorage, spoilt_files_of_every_format)
+{
+    RNG rng(91);
+    int refused = 0;
+    for (const char* extension : { "yml", "xml", "json" })
+    {
+        const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
+        const Ptr<DisparityPredictionModel> model =
+            DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE);
+        const std::vector<Algorithm*> algorithms{ matcher.get(), model.get() };
+        for (Algorithm* algorithm : algorithms)
+        {
+            const std::string good = serialized(*algorithm, extension);
+            for (int i = 0; i < 300; ++i)
+            {
+                const std::string text = spoilt(good, rng), before = serialized(*algorithm);
+                SCOPED_TRACE(text);
+                try
+                {
+                    deserialize(text, *algorithm);
+                    deserialize(good, *algorithm);
+                }
+                catch (const cv::Exception&)
+                {
+                    EXPECT_EQ(before, serialized(*algorithm));
+                    ++refused;
+                }
+                EXPECT_EQ(good, serialized(*algorithm, extension));
+            }
+        }
+        EXPECT_NO_THROW(matchTestPair(*matcher));
+    }
+    EXPECT_GT(refused, 500); // of 1800
+}
+
 } // namespace
 } // namespace opencv_test

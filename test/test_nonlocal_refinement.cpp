@@ -358,5 +358,29 @@ TEST(HDPStereo_NonLocalRefinement, stable_pixels_by_comparing_all_pairs)
         }
 }
 
+//! So far from all stable pixels that few bits are left of the costs, candidates tie: the result stays between them.
+TEST(HDPStereo_NonLocalRefinement, vanishing_similarities)
+{
+    const int width = 400, step = 5;
+    Mat image(1, width, CV_8UC1);
+    for (int x = 0; x < width; ++x)
+        image.at<uchar>(0, x) = (uchar)(x % 2 * step);
+    const Layer layer = oneTree(image);
+    for (int scale : { 1, 16 })
+        for (double gamma : { 2., 5., 7.5, 9. }) // the similarity becomes 0 in float within the row
+            for (int highest : { 0, 1, 7, numDisparities - 1 })
+            {
+                SCOPED_TRACE(testing::Message() << "scale " << scale << ", gamma " << gamma << ", to " << highest);
+                Mat disparity(1, width, CV_16UC1, Scalar(highest / 2 * scale)), stable(1, width, CV_8UC1, Scalar(0));
+                disparity.at<ushort>(0, 1) = (ushort)(highest * scale);
+                disparity.at<ushort>(0, 0) = 0;
+                stable.colRange(0, 2).setTo(255);
+                double lowest, largest;
+                cv::minMaxLoc(refine(layer, disparity, scale, stable, gamma), &lowest, &largest);
+                EXPECT_GE(lowest, 0);
+                EXPECT_LE(largest, highest * scale);
+            }
+}
+
 } // namespace
 } // namespace opencv_test

@@ -1,0 +1,572 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// A libFuzzer target: images, parameters, strategies, models and files made of the fuzzer's bytes. scripts/fuzz.sh builds
+// it with AddressSanitizer and UndefinedBehaviorSanitizer and runs it.
+//
+// Besides what these find, it stops if
+// - something else is thrown than a cv::Exception, or what the user's own strategy throws,
+// - a disparity is out of range, or the output is of another type or size,
+// - a setter or read() throws and has changed the matcher or model nevertheless,
+// - a matcher gives something else than one that was never used before, or than with another number of threads.
+#include "opencv2/core/utils/logger.hpp"
+#include "opencv2/hdpstereo.hpp"
+#include "opencv2/imgproc.hpp"
+
+#include <fuzzer/FuzzedDataProvider.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+using namespace cv;
+using namespace cv::stereo;
+
+namespace {
+
+typedef FuzzedDataProvider Input;
+
+void require(bool condition, const char* what)
+{
+    if (condition)
+        return;
+    std::fprintf(stderr, "%s\n", what);
+    std::abort();
+}
+
+//! What the user's strategy throws besides cv::Exception
+struct OutOfTrees
+{
+};
+
+template <typename T, size_t count> T pick(Input& input, const T (&values)[count])
+{
+    return values[input.ConsumeIntegralInRange<size_t>(0, count - 1)];
+}
+
+int anyInt(Input& input)
+{
+    const int corners[] = { 0, 1, -1, 2, 7, 16, 100, 101, 2047, 2048, 4095, INT_MAX, INT_MIN };
+    return input.ConsumeBool() ? pick(input, corners) : input.ConsumeIntegral<int>();
+}
+
+double anyDouble(Input& input)
+{
+    typedef std::numeric_limits<double> Limits;
+    const double corners[] = { 0,
+                               -1,
+                               0.5,
+                               1,
+                               Limits::denorm_min(),
+                               Limits::min(),
+                               Limits::max(),
+                               -Limits::max(),
+                               Limits::infinity(),
+                               -Limits::infinity(),
+                               Limits::quiet_NaN(),
+                               1e30,
+                               1e-30 };
+    switch (input.ConsumeIntegralInRange(0, 2))
+    {
+    case 0:
+        return pick(input, corners);
+    case 1:
+        return input.ConsumeProbability<double>();
+    default:
+        return input.ConsumeFloatingPoint<double>();
+    }
+}
+
+std::string serialized(const Algorithm& algorithm, const char* extension = ".yml")
+{
+    FileStorage fs(extension, FileStorage::WRITE | FileStorage::MEMORY);
+    algorithm.write(fs);
+    return fs.releaseAndGetString();
+}
+
+//////////////////////////////////////////////// images /////////////////////////////////////////////////
+
+//! Fills an image by one of several rules.
+void fill(Input& input, Mat& image)
+{
+    RNG rng(input.ConsumeIntegral<ushort>() + 1);
+    switch (input.ConsumeIntegralInRange(0, 5))
+    {
+    case 0:
+        image.setTo(Scalar::all(input.ConsumeIntegral<uchar>()));
+        break;
+    case 1:
+        rng.fill(image, RNG::UNIFORM, 0, 256);
+        break;
+    case 2: // few levels: many equal edges
+        rng.fill(image, RNG::UNIFORM, 0, 2 + rng.uniform(0, 6));
+        break;
+    case 3: // patches
+    {
+        Mat coarse(std::max(image.rows / 5, 1), std::max(image.cols / 5, 1), image.type());
+        rng.fill(coarse, RNG::UNIFORM, 0, 256);
+        resize(coarse, image, image.size(), 0, 0, INTER_NEAREST);
+        break;
+    }
+    case 4: // stripes and checkerboards
+    {
+        const int periodX = rng.uniform(1, 9), periodY = rng.uniform(1, 9);
+        for (int y = 0; y < image.rows; ++y)
+            for (int x = 0; x < image.cols; ++x)
+                for (int c = 0; c < image.channels(); ++c)
+                    image.ptr(y)[x * image.channels() + c] = (x / periodX + y / periodY) % 2 ? 255 : 0;
+        break;
+    }
+    default: // the fuzzer's own
+        image.setTo(Scalar::all(0));
+        const std::vector<uchar> bytes = input.ConsumeBytes<uchar>(64);
+        for (int y = 0; y < image.rows && !bytes.empty(); ++y)
+            for (size_t i = 0; i < image.cols * image.elemSize(); ++i)
+                image.ptr(y)[i] = bytes[(i + 7 * y) % bytes.size()];
+    }
+}
+
+//! The same image, or a part of a larger one with this content
+Mat placed(Input& input, const Mat& image)
+{
+    if (input.ConsumeBool())
+        return image;
+    const Rect part(Point(input.ConsumeIntegralInRange(0, 5), input.ConsumeIntegralInRange(0, 3)), image.size());
+    Mat canvas(image.rows + 5, image.cols + 7, image.type(), Scalar::all(17));
+    Mat region = canvas(part);
+    image.copyTo(region);
+    return region;
+}
+
+//! A pair of a number of pixels that keeps one call below a second; rarely one that does not go together.
+void makePair(Input& input, int numDisparities, Mat& left, Mat& right)
+{
+    const int types[] = { CV_8UC1, CV_8UC3 }, otherTypes[] = { CV_16UC1, CV_8SC3, CV_32FC1, CV_8UC4 };
+    const int most = std::max(48, std::min(8000, (1 << 18) / std::max(numDisparities, 1)));
+    const bool isStrip = input.ConsumeBool();
+    int width = input.ConsumeIntegralInRange(1, isStrip ? most : std::min(300, most));
+    int height = input.ConsumeIntegralInRange(1, std::max(most / width, 1));
+    if (input.ConsumeBool())
+        std::swap(width, height);
+    Mat content(height, width, pick(input, types));
+    fill(input, content);
+    left = placed(input, content);
+    Mat other(content.size(), content.type());
+    if (input.ConsumeBool())
+        fill(input, other);
+    else // shifted
+    {
+        const int shift = input.ConsumeIntegralInRange(-width, width);
+        for (int x = 0; x < width; ++x)
+            content.col(std::min(std::max(x + shift, 0), width - 1)).copyTo(other.col(x));
+    }
+    right = placed(input, other);
+    switch (input.ConsumeIntegralInRange(0, 40))
+    {
+    case 0:
+        right = Mat(height + 1, width, left.type(), Scalar::all(1));
+        break;
+    case 1:
+        left = Mat(height, width, pick(input, otherTypes), Scalar::all(1));
+        break;
+    case 2:
+        left.release();
+        break;
+    }
+}
+
+//////////////////////////////////////////////// strategies /////////////////////////////////////////////////
+
+//! A user's strategy that does what the fuzzer wants, within its contract or not
+class FuzzedTree : public TreeStrategy
+{
+public:
+    explicit FuzzedTree(Input& input)
+        : seed_(input.ConsumeIntegral<uchar>()), unites_(input.ConsumeBool()), links_(input.ConsumeBool()),
+          order_(input.ConsumeIntegralInRange(0, 9)), rule_(input.ConsumeIntegralInRange(0, 3)),
+          throwAt_(input.ConsumeBool() ? input.ConsumeIntegralInRange(0, 2000) : -1),
+          throwsException_(input.ConsumeBool())
+    {
+    }
+
+    void orderEdges(const Mat& weights, std::vector<int>& edges) const CV_OVERRIDE
+    {
+        count();
+        RNG rng(seed_ + 1);
+        switch (order_)
+        {
+        case 0:
+            std::reverse(edges.begin(), edges.end());
+            break;
+        case 1:
+            std::sort(edges.begin(), edges.end(), [&](int a, int b) {
+                return weights.ptr()[a] > weights.ptr()[b] || (weights.ptr()[a] == weights.ptr()[b] && a < b);
+            });
+            break;
+        case 2:
+            for (size_t i = edges.size(); i > 1; --i)
+                std::swap(edges[i - 1], edges[rng.uniform(0, (int)i)]);
+            break;
+        case 3:
+            edges.clear();
+            break;
+        case 4:
+            edges.push_back(rng.uniform(-5, 100000));
+            break;
+        case 5:
+            if (!edges.empty())
+                edges[rng.uniform(0, (int)edges.size())] = rng.uniform(0, 2) ? INT_MAX : -1;
+            break;
+        }
+    }
+
+    bool mayJoin(int weight, const TreeState& a, const TreeState& b) const CV_OVERRIDE
+    {
+        count();
+        require(a.size > 0 && b.size > 0 && weight >= 0 && weight <= 255, "mayJoin: no tree, or no weight");
+        switch (rule_)
+        {
+        case 0:
+            return false;
+        case 1:
+            return (a.size + b.size + weight + seed_) % 3 != 0;
+        case 2:
+            return weight <= a.maxWeight + seed_;
+        default:
+            return true;
+        }
+    }
+
+    bool unitesIntervals() const CV_OVERRIDE
+    {
+        count();
+        return unites_;
+    }
+
+    bool linksTrees() const CV_OVERRIDE
+    {
+        count();
+        return links_;
+    }
+
+    String getDefaultName() const CV_OVERRIDE { return "fuzzed_tree"; }
+
+    bool throws() const { return throwAt_ >= 0; }
+    void restart() const { calls_ = 0; }
+
+private:
+    void count() const
+    {
+        if (calls_++ != throwAt_)
+            return;
+        if (throwsException_)
+            CV_Error(Error::StsError, "no more trees");
+        throw OutOfTrees();
+    }
+
+    const int seed_;
+    const bool unites_, links_;
+    const int order_, rule_, throwAt_;
+    const bool throwsException_;
+    mutable int calls_ = 0;
+};
+
+//////////////////////////////////////////////// files /////////////////////////////////////////////////
+
+//! A file of an algorithm with some of its text replaced
+std::string mutated(Input& input, std::string text)
+{
+    const char* const values[] = { "0",    "-1",    "1",      "2147483647",   "-2147483648", "99999999999999999999",
+                                   "0.5",  "1e300", ".Nan",   ".Inf",         "-.Inf",       "\"text\"",
+                                   "[ ]",  "{ }",   "[ 1. ]", "[ 1., .Nan ]", "{ a: 1 }",    "!!binary |",
+                                   "null", "",      "[ [",    "*x",           "&x" };
+    for (int i = input.ConsumeIntegralInRange(0, 5); i > 0 && !text.empty(); --i)
+    {
+        const size_t at = input.ConsumeIntegralInRange<size_t>(0, text.size() - 1);
+        switch (input.ConsumeIntegralInRange(0, 4))
+        {
+        case 0:
+            text[at] = (char)input.ConsumeIntegral<uchar>();
+            break;
+        case 1:
+            text.erase(at, input.ConsumeIntegralInRange<size_t>(0, 80));
+            break;
+        case 2:
+            text.insert(at, input.ConsumeRandomLengthString(60));
+            break;
+        case 3:
+            text.resize(at);
+            break;
+        default: // the value of a line
+            const size_t colon = text.find(": ", at), end = text.find('\n', colon);
+            if (colon != std::string::npos && end != std::string::npos)
+                text.replace(colon + 2, end - colon - 2, pick(input, values));
+        }
+    }
+    return text;
+}
+
+//! read() of such a file. It takes all of the file or nothing.
+void readFile(Input& input, Algorithm& algorithm)
+{
+    const char* const extensions[] = { ".yml", ".xml", ".json" };
+    const std::string before = serialized(algorithm);
+    const std::string text = mutated(input, serialized(algorithm, pick(input, extensions)));
+    FileStorage fs;
+    try
+    {
+        if (!fs.open(text, FileStorage::READ | FileStorage::MEMORY))
+            return;
+    }
+    catch (const cv::Exception&) // OpenCV's parser
+    {
+        return;
+    }
+    try
+    {
+        algorithm.read(input.ConsumeBool() ? fs.root() : fs.getFirstTopLevelNode());
+    }
+    catch (const cv::Exception&)
+    {
+        require(serialized(algorithm) == before, "read() failed, and changed the object");
+    }
+}
+
+Ptr<DisparityPredictionModel> makeModel(Input& input)
+{
+    const Ptr<DisparityPredictionModel> model =
+        input.ConsumeBool() ? DisparityPredictionModel::createPublished(input.ConsumeIntegralInRange(0, 3))
+                            : DisparityPredictionModel::create();
+    for (int layers = input.ConsumeIntegralInRange(0, 4); layers > 0; --layers)
+    {
+        std::vector<double> means, sigmas, weights;
+        const int components = input.ConsumeIntegralInRange(1, 3);
+        for (int k = 0; k < components; ++k)
+        {
+            means.push_back(anyDouble(input));
+            sigmas.push_back(anyDouble(input));
+            weights.push_back(input.ConsumeBool() ? 1. / components : anyDouble(input));
+        }
+        const std::string before = serialized(*model);
+        try
+        {
+            model->addLayer(means, sigmas, weights);
+        }
+        catch (const cv::Exception&)
+        {
+            require(serialized(*model) == before, "addLayer() failed, and changed the model");
+        }
+    }
+    if (input.ConsumeBool())
+        readFile(input, *model);
+    return model;
+}
+
+//////////////////////////////////////////////// the matcher /////////////////////////////////////////////////
+
+template <typename Set> void change(HDPTreeMatcher& matcher, const Set& set)
+{
+    const std::string before = serialized(matcher);
+    try
+    {
+        set();
+    }
+    catch (const cv::Exception&)
+    {
+        require(serialized(matcher) == before, "a setter failed, and changed the matcher");
+    }
+}
+
+void setParameter(Input& input, HDPTreeMatcher& m)
+{
+    const auto oddUpTo = [&](int last) {
+        return input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(0, last / 2) * 2 + 1;
+    };
+    const auto upTo = [&](int last) {
+        return input.ConsumeBool() && input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-1, last + 1);
+    };
+    change(m, [&] {
+        switch (input.ConsumeIntegralInRange(0, 34))
+        {
+        case 0:
+            return m.setMinDisparity(input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-200, 200));
+        case 1:
+        case 2:
+            return m.setNumDisparities(input.ConsumeBool() ? upTo(4095) : upTo(100));
+        case 3:
+            return m.setBlockSize(oddUpTo(7));
+        case 4:
+            return m.setSpeckleWindowSize(anyInt(input));
+        case 5:
+            return m.setSpeckleRange(upTo(2047));
+        case 6:
+            return m.setDisp12MaxDiff(upTo(3));
+        case 7:
+            return m.setTreeStrategy(createSegmentTree(anyDouble(input)));
+        case 8:
+            return m.setTreeStrategy(createRandomTree(anyInt(input)));
+        case 9:
+            return m.setTreeStrategy(createMinimumSpanningTree());
+        case 10:
+        case 11:
+            return m.setTreeStrategy(Ptr<TreeStrategy>(new FuzzedTree(input)));
+        case 12:
+            return m.setUsePrediction(input.ConsumeBool());
+        case 13:
+            return m.setUseMedianPrefilter(input.ConsumeBool());
+        case 14:
+            return m.setNumLayers(upTo(16));
+        case 15:
+            return m.setDelta0(anyDouble(input));
+        case 16:
+            return m.setBeta(anyDouble(input));
+        case 17:
+            return m.setGamma(anyDouble(input));
+        case 18:
+            return m.setColorTruncation(anyDouble(input));
+        case 19:
+            return m.setGradientTruncation(anyDouble(input));
+        case 20:
+            return m.setColorWeight(anyDouble(input));
+        case 21:
+            return m.setDisparityMedianSize(input.ConsumeBool() ? oddUpTo(31) : upTo(5));
+        case 22:
+            return m.setDisparityMedianPasses(upTo(8));
+        case 23:
+            return m.setMatchingCost(upTo(1));
+        case 24:
+            return m.setDisparityPrior(upTo(1));
+        case 25:
+            return m.setIntervalMargin(upTo(64));
+        case 26:
+            return m.setUseSubpixel(input.ConsumeBool());
+        case 27:
+            return m.setAggregation(upTo(1));
+        case 28:
+            return m.setSmallPenalty(upTo(100));
+        case 29:
+            return m.setFinestLayer(upTo(15));
+        case 30:
+            return m.setScanlinePasses(upTo(4));
+        case 31:
+            return m.setDisparityDepth(input.ConsumeBool() ? CV_32F : anyInt(input));
+        case 32:
+            return m.setFillOcclusions(input.ConsumeBool());
+        case 33:
+            return m.setLargePenalty(upTo(100));
+        default:
+            return m.setUseNonLocalRefinement(input.ConsumeBool());
+        }
+    });
+}
+
+//! compute() of this matcher; false if it refuses.
+bool tryCompute(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, Mat& disparity)
+{
+    if (const FuzzedTree* tree = dynamic_cast<const FuzzedTree*>(matcher.getTreeStrategy().get()))
+        tree->restart();
+    try
+    {
+        matcher.compute(left, right, disparity);
+        return true;
+    }
+    catch (const cv::Exception&)
+    {
+    }
+    catch (const OutOfTrees&)
+    {
+    }
+    return false;
+}
+
+void checkOutput(const HDPTreeMatcher& matcher, Size size, const Mat& disparity)
+{
+    require(disparity.size() == size && disparity.type() == matcher.getDisparityDepth(),
+            "compute() gave another size or type");
+    const double first = matcher.getMinDisparity(), last = first + matcher.getNumDisparities() - 1;
+    const bool hasInvalid = matcher.getDisp12MaxDiff() > 0 || matcher.getSpeckleWindowSize() > 0;
+    Mat pixels;
+    disparity.convertTo(pixels, CV_64F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
+    for (int y = 0; y < pixels.rows; ++y)
+        for (int x = 0; x < pixels.cols; ++x)
+        {
+            const double d = pixels.at<double>(y, x);
+            require((d >= first && d <= last) || (hasInvalid && d == first - 1), "a disparity is out of range");
+        }
+}
+
+//! What a matcher tells of its last pair, if there is one
+void query(const HDPTreeMatcher& matcher, Size size, bool hasPair)
+{
+    Mat confidence, trees, intervals;
+    matcher.getConfidence(confidence);
+    require(confidence.size() == (hasPair ? size : Size()), "confidence of another size");
+    matcher.getForest(trees, intervals);
+    require(trees.size() == intervals.size() && (!hasPair || !trees.empty()), "no forest");
+    std::vector<double> values;
+    matcher.getLayerPrior(values);
+    matcher.getSearchRatios(values);
+    std::vector<String> names;
+    matcher.getStageTimes(names, values);
+}
+
+bool areEqual(const Mat& a, const Mat& b)
+{
+    Mat different;
+    compare(a, b, different, CMP_NE);
+    return countNonZero(different) == 0;
+}
+
+//! One that was never used, with the same parameters
+Ptr<HDPTreeMatcher> freshCopy(const HDPTreeMatcher& matcher)
+{
+    const Ptr<HDPTreeMatcher> copy = HDPTreeMatcher::create();
+    copy->setTreeStrategy(matcher.getTreeStrategy());
+    FileStorage fs(serialized(matcher), FileStorage::READ | FileStorage::MEMORY);
+    copy->read(fs.root());
+    return copy;
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***);
+extern "C" int LLVMFuzzerInitialize(int*, char***)
+{
+    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT);
+    redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
+    return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+{
+    Input input(data, size);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(
+        0, input.ConsumeIntegralInRange(1, 70), input.ConsumeIntegralInRange(0, (int)HDPTreeMatcher::PRESET_TREE));
+    for (int round = input.ConsumeIntegralInRange(1, 3); round > 0; --round)
+    {
+        for (int changes = input.ConsumeIntegralInRange(0, 8); changes > 0; --changes)
+            setParameter(input, *matcher);
+        if (input.ConsumeIntegralInRange(0, 3) == 0)
+            matcher->setPredictionModel(makeModel(input));
+        if (input.ConsumeIntegralInRange(0, 3) == 0)
+            readFile(input, *matcher);
+        setNumThreads(input.ConsumeIntegralInRange(1, 3));
+
+        Mat left, right, disparity, again;
+        makePair(input, matcher->getNumDisparities(), left, right);
+        const bool hasPair = tryCompute(*matcher, left, right, disparity);
+        query(*matcher, left.size(), hasPair);
+        if (!hasPair)
+            continue;
+        checkOutput(*matcher, left.size(), disparity);
+        if (!matcher->getPredictionModel().empty() && matcher->getPredictionModel()->empty())
+            continue; // it cannot be told from none in a file
+        setNumThreads(input.ConsumeIntegralInRange(1, 3));
+        const Ptr<HDPTreeMatcher> fresh = freshCopy(*matcher);
+        require(tryCompute(*fresh, left, right, again), "a fresh matcher refuses the pair");
+        require(areEqual(disparity, again), "a fresh matcher gives another map");
+    }
+    return 0;
+}

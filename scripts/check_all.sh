@@ -1,0 +1,146 @@
+#!/bin/bash
+# The long checks, one after the other, that continuous integration leaves out; a few hours in all on two processors.
+#   scripts/check_all.sh [--fuzz-seconds=N] [STEP...]   all of them, or these:
+#     warnings   everything built by Clang and by GCC with warnings as errors
+#     widths     the tests with each instruction set that the library is built for
+#     threads    the tests of threads under ThreadSanitizer
+#     memory     10,000 calls of compute() under LeakSanitizer, and what is allocated meanwhile
+#     fuzz       scripts/fuzz.sh, for 1800 s or N
+#     in-tree    scripts/build_in_tree.sh
+#     bookworm, trixie   scripts/test.sh from a clone in a fresh Debian 12 or 13 (as root; mmdebstrap makes it)
+# Each step's messages are in build/check_all/STEP.log; a summary comes last, and the status is that of the worst step.
+# HDPSTEREO_MMDEBSTRAP: further options of mmdebstrap.
+# shellcheck source-path=SCRIPTDIR source=common.sh disable=SC2317
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+fuzz_seconds=1800
+steps=()
+for argument in "$@"; do
+    case $argument in
+    --fuzz-seconds=*) fuzz_seconds=${argument#*=} ;;
+    warnings | widths | threads | memory | fuzz | in-tree | bookworm | trixie) steps+=("$argument") ;;
+    *) fail "no step $argument: $(sed -n 's/^#     \([a-z, -]*\)   .*/\1/p' "${BASH_SOURCE[0]}" | paste -sd ' ')" ;;
+    esac
+done
+[ ${#steps[@]} -gt 0 ] || steps=(warnings widths threads memory fuzz in-tree bookworm trixie)
+
+# build_tests DIRECTORY TARGET [OPTION...]: a build with tests, with these options of CMake.
+build_tests()
+{
+    local directory=$1 target=$2
+    shift 2
+    find_opencv_source
+    cmake -S "$checkout" -B "$directory" -DOPENCV_SOURCE_DIR="$OPENCV_SOURCE_DIR" "$@"
+    cmake --build "$directory" --parallel "$jobs" --target "$target"
+    export OPENCV_TEST_DATA_PATH=$checkout/testdata OPENCV_SAMPLES_DATA_PATH=$OPENCV_SOURCE_DIR/samples/data
+}
+
+# Slow enough to build with a sanitizer, and fast enough to run
+sanitized=(-DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1")
+
+check_warnings()
+{
+    install_packages build-essential cmake clang libopencv-dev
+    local compiler
+    for compiler in clang++ g++; do
+        say "Building with $compiler"
+        build_tests "$build/warnings-$compiler" all "-DCMAKE_CXX_COMPILER=$compiler" -DHDPSTEREO_WARNINGS_AS_ERRORS=ON
+    done
+}
+
+check_widths()
+{
+    local without
+    for without in "" AVX512-SKX AVX512-SKX,AVX2; do
+        say "OPENCV_CPU_DISABLE=$without"
+        OPENCV_CPU_DISABLE=$without "$checkout/scripts/test.sh" '--gtest_filter=-HDPStereo_Slow*'
+    done
+}
+
+check_threads()
+{
+    install_packages build-essential cmake libopencv-dev
+    build_tests "$build/threads" opencv_test_hdpstereo -DHDPSTEREO_SANITIZE=thread "${sanitized[@]}"
+    # Every stage, by each preset and by matchers in several threads
+    TSAN_OPTIONS=halt_on_error=1${TSAN_OPTIONS:+:$TSAN_OPTIONS} "$build/threads/bin/opencv_test_hdpstereo" \
+        '--gtest_filter=HDPStereo_Threads*:HDPStereo_Endurance*:HDPStereo_MatcherContract.*thread*:HDPStereo_MatcherContract.matchers*'
+}
+
+check_memory()
+{
+    install_packages build-essential cmake libopencv-dev
+    build_tests "$build/memory" opencv_test_hdpstereo -DHDPSTEREO_SANITIZE=leak "${sanitized[@]}"
+    HDPSTEREO_ENDURANCE=10000 "$build/memory/bin/opencv_test_hdpstereo" '--gtest_filter=HDPStereo_Endurance*'
+}
+
+check_fuzz()
+{
+    "$checkout/scripts/fuzz.sh" "$fuzz_seconds"
+}
+
+check_in-tree()
+{
+    "$checkout/scripts/build_in_tree.sh"
+}
+
+# check_debian SUITE: what is committed, on a machine that has nothing yet.
+check_debian()
+{
+    local suite=$1 root=$build/check_all/$1
+    [ "$(id -u)" -eq 0 ] || fail "only root can make a fresh $suite"
+    install_packages git mmdebstrap
+    rm -rf --one-file-system "$root" "$root.clone"
+    say "Making a fresh $suite in $root"
+    # shellcheck disable=SC2086  # options
+    mmdebstrap --variant=minbase ${HDPSTEREO_MMDEBSTRAP:-} "$suite" "$root"
+    git clone -q "file://$checkout" "$root.clone"
+    mv "$root.clone" "$root/root/hdpstereo"
+    # What is mounted is so for this command alone.
+    unshare --mount bash -e -s "$root" "$jobs" <<'COMMANDS'
+mount -t proc proc "$1/proc"
+mount --rbind /dev "$1/dev"
+exec chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 TERM=dumb \
+    CMAKE_BUILD_PARALLEL_LEVEL="$2" bash -c 'cat /etc/debian_version; cd ~/hdpstereo; exec scripts/test.sh' </dev/null
+COMMANDS
+    rm -rf --one-file-system "$root"
+}
+
+check_bookworm()
+{
+    check_debian bookworm
+}
+
+check_trixie()
+{
+    check_debian trixie
+}
+
+mkdir -p "$build/check_all"
+summary=
+worst=0
+for step in "${steps[@]}"; do
+    log=$build/check_all/$step.log
+    say "$step (messages: $log)"
+    begin=$SECONDS
+    # In a shell of its own and not as a condition, so that -e counts in it
+    set +e
+    (
+        set -e
+        "check_$step"
+    ) >"$log" 2>&1
+    status=$?
+    set -e
+    result=passed
+    if [ "$status" -ne 0 ]; then
+        result=FAILED
+        worst=1
+        tail -n 15 "$log"
+    fi
+    # What tells most of it
+    detail=$(grep -aE '^\[  (PASSED|FAILED)  \]|^[0-9]+ passed,|^[0-9]+ calls:|^Done [0-9]+ runs|^SUMMARY|WARNING: Thread' "$log" |
+        sed 's/^\[  //; s/  \]//' | paste -sd ';' | cut -c1-160) || true
+    summary+=$(printf '%-10s %s %6d s  %s' "$step" "$result" $((SECONDS - begin)) "$detail")$'\n'
+done
+say "Summary"
+printf '%s' "$summary"
+exit "$worst"

@@ -1,0 +1,292 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "systems.hpp"
+#include "synthetic_pair.hpp"
+
+#include <thread>
+
+namespace opencv_test {
+namespace {
+
+const int disparities = 24;
+
+//! Sets the number of threads, and restores it.
+class ThreadCount
+{
+public:
+    explicit ThreadCount(int count) : before_(cv::getNumThreads()) { cv::setNumThreads(count); }
+    ~ThreadCount() { cv::setNumThreads(before_); }
+
+private:
+    int before_;
+};
+
+//! Runs body(0) .. body(count - 1) at once, each in a thread of its own.
+template <typename Body> void runAtOnce(int count, const Body& body)
+{
+    std::vector<std::thread> threads;
+    for (int i = 0; i < count; ++i)
+        threads.push_back(std::thread([&body, i] { body(i); }));
+    for (std::thread& thread : threads)
+        thread.join();
+}
+
+//! Large enough for several stripes of each stage
+const std::vector<SyntheticPair>& testPairs()
+{
+    static const std::vector<SyntheticPair> pairs{ makeSyntheticPair(Size(131, 270), disparities, 71),
+                                                   makeSyntheticPair(Size(60, 41), disparities, 72),
+                                                   makeSyntheticPair(Size(233, 140), disparities, 73) };
+    return pairs;
+}
+
+const int matchers = 8;
+
+//! One of eight systems that use all of the stages, with a strategy and a model that all of them share
+Ptr<HDPTreeMatcher> createMatcher(int i)
+{
+    static const Ptr<TreeStrategy> strategies[] = { createMinimumSpanningTree(), createSegmentTree(),
+                                                    createRandomTree(3) };
+    static const Ptr<DisparityPredictionModel> model =
+        DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE);
+    const Ptr<HDPTreeMatcher> matcher = createSystem(presets[i % 5], disparities);
+    matcher->setTreeStrategy(strategies[i % 3]);
+    matcher->setPredictionModel(model);
+    matcher->setUsePrediction(i != 5);
+    matcher->setUseNonLocalRefinement(i >= 4);
+    matcher->setUseMedianPrefilter(i % 2 == 1);
+    matcher->setDisp12MaxDiff(i % 2);
+    matcher->setSpeckleWindowSize(i % 4 == 3 ? 20 : 0);
+    matcher->setSpeckleRange(1);
+    return matcher;
+}
+
+struct Result
+{
+    Mat disparity, confidence, trees, intervals;
+    std::vector<double> prior, ratios;
+};
+
+Result computeAll(HDPTreeMatcher& matcher, const SyntheticPair& pair)
+{
+    Result result;
+    matcher.compute(pair.left, pair.right, result.disparity);
+    matcher.getConfidence(result.confidence);
+    matcher.getForest(result.trees, result.intervals);
+    matcher.getLayerPrior(result.prior);
+    matcher.getSearchRatios(result.ratios);
+    return result;
+}
+
+void expectEqual(const Result& expected, const Result& actual)
+{
+    expectIdentical(expected.disparity, actual.disparity);
+    expectIdentical(expected.confidence, actual.confidence);
+    expectIdentical(expected.trees, actual.trees);
+    expectIdentical(expected.intervals, actual.intervals);
+    EXPECT_EQ(expected.prior, actual.prior);
+    EXPECT_EQ(expected.ratios, actual.ratios);
+}
+
+std::vector<Result> computePairs(int i)
+{
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(i);
+    std::vector<Result> results;
+    for (const SyntheticPair& pair : testPairs())
+        results.push_back(computeAll(*matcher, pair));
+    return results;
+}
+
+TEST(HDPStereo_Threads, eight_matchers_in_eight_threads)
+{
+    testPairs(); // made before threads ask for it
+    std::vector<std::vector<Result>> expected, actual(matchers);
+    for (int i = 0; i < matchers; ++i)
+        expected.push_back(computePairs(i));
+    runAtOnce(matchers, [&](int i) { actual[i] = computePairs(i); });
+    for (int i = 0; i < matchers; ++i)
+        for (size_t pair = 0; pair < testPairs().size(); ++pair)
+        {
+            SCOPED_TRACE(testing::Message() << "matcher " << i << ", pair " << pair);
+            expectEqual(expected[i][pair], actual[i][pair]);
+        }
+}
+
+//! The same map whatever cv::setNumThreads() was given, which stays as it is.
+TEST(HDPStereo_Threads, any_number)
+{
+    const ThreadCount restore(cv::getNumThreads());
+    for (int i = 0; i < matchers; ++i)
+    {
+        std::vector<Result> expected;
+        for (int count : { 1, 0, 2, 5, 64, -1 }) // 0: without any; negative: as many as OpenCV likes
+        {
+            SCOPED_TRACE(testing::Message() << "matcher " << i << ", threads " << count);
+            cv::setNumThreads(count);
+            const int before = cv::getNumThreads();
+            const std::vector<Result> results = computePairs(i);
+            EXPECT_EQ(before, cv::getNumThreads());
+            if (expected.empty())
+                expected = results;
+            for (size_t pair = 0; pair < results.size(); ++pair)
+                expectEqual(expected[pair], results[pair]);
+        }
+    }
+}
+
+//! What a strategy throws that is no exception of any library
+struct OutOfTrees
+{
+    int calls;
+};
+
+//! A tree strategy that throws from one of its methods
+class ThrowingTree : public TreeStrategy
+{
+public:
+    enum Method
+    {
+        ORDER_EDGES,
+        MAY_JOIN,
+        UNITES_INTERVALS,
+        LINKS_TREES,
+        NAME,
+        NONE
+    };
+    //! calls: of this method that do not throw; kind: of what is thrown, 0..2
+    ThrowingTree(Method method, int calls, int kind) : method_(method), left_(calls), kind_(kind) {}
+
+    void orderEdges(const Mat& weights, std::vector<int>& edges) const CV_OVERRIDE
+    {
+        countCall(ORDER_EDGES);
+        const uchar* weight = weights.ptr();
+        std::stable_sort(edges.begin(), edges.end(), [weight](int a, int b) { return weight[a] < weight[b]; });
+    }
+    bool mayJoin(int, const TreeState&, const TreeState&) const CV_OVERRIDE
+    {
+        countCall(MAY_JOIN);
+        return true;
+    }
+    bool unitesIntervals() const CV_OVERRIDE
+    {
+        countCall(UNITES_INTERVALS);
+        return true;
+    }
+    bool linksTrees() const CV_OVERRIDE
+    {
+        countCall(LINKS_TREES);
+        return true;
+    }
+    String getDefaultName() const CV_OVERRIDE
+    {
+        countCall(NAME);
+        return "test_ThrowingTree";
+    }
+
+private:
+    void countCall(Method method) const
+    {
+        if (method != method_ || left_-- > 0)
+            return;
+        if (kind_ == 0)
+            CV_Error(Error::StsError, "out of trees");
+        if (kind_ == 1)
+            throw std::runtime_error("out of trees");
+        throw OutOfTrees();
+    }
+
+    const Method method_;
+    mutable int left_;
+    const int kind_;
+};
+
+template <typename Action> bool throwsAnything(const Action& action)
+{
+    try
+    {
+        action();
+    }
+    catch (...)
+    {
+        return true;
+    }
+    return false;
+}
+
+//! A matcher whose strategy threw says that it has no pair, and is as good as new.
+void expectUsableAfterThrowing(int i, ThrowingTree::Method method, int calls, int kind)
+{
+    const SyntheticPair &pair = testPairs()[1], &before = testPairs()[0];
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(i);
+    const Ptr<TreeStrategy> harmless = makePtr<ThrowingTree>(ThrowingTree::NONE, 0, 0);
+    matcher->setTreeStrategy(harmless);
+    computeAll(*matcher, before); // something to be left over
+
+    matcher->setTreeStrategy(makePtr<ThrowingTree>(method, calls, kind));
+    Mat disparity;
+    const bool isThrown = throwsAnything([&] { matcher->compute(pair.left, pair.right, disparity); });
+    if (isThrown)
+    {
+        EXPECT_TRUE(disparity.empty());
+        Mat confidence, trees, intervals;
+        matcher->getConfidence(confidence);
+        EXPECT_TRUE(confidence.empty());
+        matcher->getForest(trees, intervals);
+        EXPECT_TRUE(trees.empty() && intervals.empty());
+    }
+    matcher->setTreeStrategy(harmless);
+    const Ptr<HDPTreeMatcher> fresh = createMatcher(i);
+    fresh->setTreeStrategy(harmless);
+    expectEqual(computeAll(*fresh, pair), computeAll(*matcher, pair));
+    // Not every layer asks every method, but the first call of the rules is always made.
+    EXPECT_TRUE(isThrown || calls > 0 || method == ThrowingTree::UNITES_INTERVALS ||
+                method == ThrowingTree::LINKS_TREES);
+}
+
+TEST(HDPStereo_Threads, strategy_that_throws)
+{
+    for (int i = 0; i < matchers; ++i)
+        for (ThrowingTree::Method method : { ThrowingTree::ORDER_EDGES, ThrowingTree::MAY_JOIN,
+                                             ThrowingTree::UNITES_INTERVALS, ThrowingTree::LINKS_TREES })
+            for (int calls : { 0, 1, 500 })
+            {
+                SCOPED_TRACE(testing::Message()
+                             << "matcher " << i << ", method " << (int)method << " after " << calls << " calls");
+                expectUsableAfterThrowing(i, method, calls, (i + calls) % 3);
+            }
+}
+
+TEST(HDPStereo_Threads, strategies_that_throw_in_eight_threads)
+{
+    testPairs();
+    runAtOnce(matchers, [](int i) {
+        for (int repetition = 0; repetition < 10; ++repetition)
+        {
+            const ThrowingTree::Method method = repetition % 2 ? ThrowingTree::ORDER_EDGES : ThrowingTree::MAY_JOIN;
+            expectUsableAfterThrowing(i, method, repetition % 2 ? 0 : 100 * repetition, i % 3);
+        }
+    });
+}
+
+//! A strategy that throws while a file is written leaves the matcher as it was.
+TEST(HDPStereo_Threads, strategy_that_throws_in_a_file)
+{
+    const SyntheticPair& pair = testPairs()[1];
+    for (int i = 0; i < matchers; ++i)
+    {
+        const Ptr<HDPTreeMatcher> matcher = createMatcher(i);
+        const std::string library = serialized(*matcher);
+        const Result expected = computeAll(*matcher, pair);
+        matcher->setTreeStrategy(makePtr<ThrowingTree>(ThrowingTree::NAME, 0, i % 3));
+        EXPECT_TRUE(throwsAnything([&] { serialized(*matcher); }));
+        deserialize(library, *matcher); // does not need to know what the strategy before is called
+        EXPECT_EQ(library, serialized(*matcher));
+        expectEqual(expected, computeAll(*matcher, pair));
+    }
+}
+
+} // namespace
+} // namespace opencv_test
