@@ -139,8 +139,8 @@ TEST(HDPStereo_Evaluation, sampled_matrix_counts_pairs)
 TEST(HDPStereo_Evaluation, wrong_pixels_are_red_and_occluded_ones_black)
 {
     const Vec3b red(0, 0, 255), black(0, 0, 0);
-    const Mat truth = (Mat_<float>(1, 6) << 10, 10, 60, none, 40, 60),
-              map = (Mat_<float>(1, 6) << 11.9375f, 12, 55.5f, 10, 40, none);
+    const Mat truth = Mat_<float>({ 1, 6 }, { 10, 10, 60, none, 40, 60 }),
+              map = Mat_<float>({ 1, 6 }, { 11.9375f, 12, 55.5f, 10, 40, none });
     const struct
     {
         Pair::Protocol protocol;
@@ -153,7 +153,7 @@ TEST(HDPStereo_Evaluation, wrong_pixels_are_red_and_occluded_ones_black)
     for (const auto& c : cases)
     {
         // The last but one is occluded; KITTI's pictures do not show what is not judged.
-        const Mat judged = (Mat_<uchar>(1, 6) << 255, 255, 255, 0, 0, 255);
+        const Mat judged = Mat_<uchar>({ 1, 6 }, { 255, 255, 255, 0, 0, 255 });
         const Mat picture = resultPicture(map, makePair(c.protocol, truth, judged));
         for (int x = 0; x < truth.cols; ++x)
         {
@@ -181,8 +181,8 @@ TEST(HDPStereo_Evaluation, every_tree_has_a_color)
 
 TEST(HDPStereo_Evaluation, widths_in_steps_of_the_logarithm)
 {
-    const Mat intervals = (Mat_<Vec2w>(1, 4) << Vec2w(7, 7), Vec2w(0, 3), Vec2w(16, 23), Vec2w(0, 255));
-    const Mat levels = (Mat_<uchar>(1, 4) << 0, 64, 96, 255); // of 1, 4, 8 and all 256 candidates
+    const Mat intervals = Mat_<Vec2w>({ 1, 4 }, { Vec2w(7, 7), Vec2w(0, 3), Vec2w(16, 23), Vec2w(0, 255) });
+    const Mat levels = Mat_<uchar>({ 1, 4 }, { 0, 64, 96, 255 }); // of 1, 4, 8 and all 256 candidates
     Mat colors;
     cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
     expectIdentical(colors, widthPicture(intervals, 256));
