@@ -4,9 +4,9 @@
 
 // What the samples share to read datasets. findScenes() recognises the scenes below a folder by the names of the files:
 //
-// - Middlebury 2005 and 2006 as published (SCENE/view1, view5, disp1, disp5) or with plain names (SCENE/left, right,
-//   disp_left, disp_right), 2003 (im2, im6, disp2, disp6), 2014 (im0, im1, disp0, disp1, calib.txt) and MiddEval3
-//   (im0, im1, disp0GT, disp1GT or mask0nocc, calib.txt);
+// - Middlebury 2005 and 2006 as published (SCENE/view1, view5, disp1, disp5; of the sets of 7 views, the images are in
+//   SCENE/Illum1/Exp0 and so on) or with plain names (SCENE/left, right, disp_left, disp_right), 2003 (im2, im6, disp2,
+//   disp6), 2014 (im0, im1, disp0, disp1, calib.txt) and MiddEval3 (im0, im1, disp0GT, disp1GT or mask0nocc, calib.txt);
 // - KITTI 2015 (image_2, image_3, disp_occ_0, disp_noc_0: a folder each, with a file for every frame) and 2012
 //   (colored_0, colored_1 or image_0, image_1, disp_occ, disp_noc), or a folder for every frame with left, right and
 //   disp_left in 16 bit;
@@ -120,7 +120,7 @@ inline String resolutionOfHeight(int height)
     return height == 1110 ? "full" : height == 555 ? "half" : height == 370 ? "third" : "";
 }
 
-//! The scene of a folder that has a left or right image by the names of Middlebury.
+//! The scene of a folder that has a left or right image by the names of Middlebury. Its set is the path of a folder.
 inline bool readSceneFolder(const String& folder, Scene& scene)
 {
     const struct
@@ -137,16 +137,26 @@ inline bool readSceneFolder(const String& folder, Scene& scene)
     {
         if (findPicture(folder, layout.left).empty() && findPicture(folder, layout.right).empty())
             continue;
-        const bool hasTruth =
-            !findPicture(folder, layout.truth).empty() || !findPicture(folder, layout.rightTruth).empty();
+        const auto knowsTruth = [&](const String& path) {
+            return !findPicture(path, layout.truth).empty() || !findPicture(path, layout.rightTruth).empty();
+        };
+        scene.name = fileName(folder);
+        String sceneFolder = folder; // with the truth
+        const String parent = fs::getParent(folder), grandparent = fs::getParent(parent);
+        if (layout.left == String("view1") && !knowsTruth(folder) && knowsTruth(grandparent))
+        {
+            sceneFolder = grandparent;
+            scene.name = fileName(grandparent) + "_" + fileName(parent) + "_" + scene.name;
+        }
+        const bool hasTruth = knowsTruth(sceneFolder);
         if (layout.calibration && !hasTruth && layout.truth == String("disp0GT"))
             continue; // 2014, or MiddEval3's test pairs, which are the same without truth
         scene.left = expectPicture(folder, layout.left);
         scene.right = expectPicture(folder, layout.right);
         if (hasTruth)
         {
-            scene.truth = expectPicture(folder, layout.truth);
-            scene.rightTruth = expectPicture(folder, layout.rightTruth);
+            scene.truth = expectPicture(sceneFolder, layout.truth);
+            scene.rightTruth = expectPicture(sceneFolder, layout.rightTruth);
         }
         if (layout.mask)
             scene.nonOccludedMask = findPicture(folder, layout.mask);
@@ -154,10 +164,10 @@ inline bool readSceneFolder(const String& folder, Scene& scene)
             scene.calibration = fs::join(folder, layout.calibration);
         scene.isFrame = false;
 
-        const String parent = fs::getParent(folder);
-        scene.resolution = resolutionOfName(fileName(parent));
+        scene.set = fs::getParent(sceneFolder);
+        scene.resolution = resolutionOfName(fileName(scene.set));
         if (scene.resolution.empty())
-            scene.resolution = resolutionOfName(fileName(fs::getParent(parent)));
+            scene.resolution = resolutionOfName(fileName(fs::getParent(scene.set)));
         if (scene.resolution.empty() && hasTruth && !layout.calibration)
         {
             const Mat truth = cv::imread(scene.truth, cv::IMREAD_UNCHANGED);
@@ -169,7 +179,19 @@ inline bool readSceneFolder(const String& folder, Scene& scene)
     return false;
 }
 
-//! The frames of a folder that has KITTI's folders, those of the first camera's first time only.
+//! Whether a picture is one of the others of a frame that KITTI knows the truth of at NUMBER_10.png: NUMBER_11.png is for
+//! optical flow, and the multi-view sets have 00 to 20.
+inline bool isOtherTime(const String& file)
+{
+    const String time = "_10.png";
+    if (file.size() < time.size())
+        return false;
+    const size_t end = file.size() - time.size();
+    return file[end] == '_' && std::isdigit(uchar(file[end + 1])) && std::isdigit(uchar(file[end + 2])) &&
+           file.substr(end) != time && fs::exists(file.substr(0, end) + time);
+}
+
+//! The frames of a folder that has KITTI's folders.
 inline std::vector<Scene> readFrameFolder(const String& folder)
 {
     const char* const layouts[][4] = { { "image_2", "image_3", "disp_occ_0", "disp_noc_0" },
@@ -188,8 +210,8 @@ inline std::vector<Scene> readFrameFolder(const String& folder)
         for (const String& file : files)
         {
             const String name = fileName(file);
-            if (name.size() > 7 && name.substr(name.size() - 7) == "_11.png")
-                continue; // the next picture of the same frame, for optical flow
+            if (isOtherTime(file))
+                continue;
             Scene scene;
             scene.name = name.substr(0, name.size() - 4);
             scene.left = file;
@@ -228,8 +250,7 @@ inline std::vector<Scene> findScenes(const String& root)
             Scene scene;
             if (readSceneFolder(folder, scene))
             {
-                scene.name = fileName(folder);
-                scene.set = setName(fs::getParent(folder));
+                scene.set = setName(scene.set);
                 scenes.push_back(scene);
                 return;
             }

@@ -60,6 +60,7 @@ struct SceneResult
     Size size;
     std::vector<Result> results; // by method
     String maps, predictions;    // figures of the report
+    std::vector<String> problems;
     bool isRead;
 };
 
@@ -209,6 +210,8 @@ static String printScore(const Score& score)
     return std::isnan(score.d1) ? String("no truth") : format("D1 %.2f", score.d1);
 }
 
+static String titleOf(const Scene& scene) { return scene.set + "/" + scene.name; }
+
 static void makeFolder(const String& path)
 {
     if (!fs::createDirectories(path))
@@ -236,16 +239,17 @@ static void evaluate(const Method& method, const Pair& pair, const Settings& set
     {
         scene.maps += figure(resultPicture(match.disparity, pair),
                              method.name + ": " + printScore(result.score) + format(", %.2f s", match.seconds));
-        if (hdp && !method.fullRange.empty())
-            scene.predictions += predictionFigures(method.name, *hdp, pair);
+        if (hdp && hdp->getUsePrediction() && hdp->getAggregation() == HDPTreeMatcher::AGGREGATION_TREES)
+            scene.predictions +=
+                "<div class=\"figures\">\n" + predictionFigures(method.name, *hdp, method.create, pair) + "</div>\n";
     }
     result.done = true;
 }
 
-//! Matches a scene with all methods. Returns whether nothing went wrong.
-static bool evaluateScene(const Settings& settings, SceneResult& result, Progress& progress)
+//! Matches a scene with all methods.
+static void evaluateScene(const Settings& settings, SceneResult& result, Progress& progress)
 {
-    const String title = result.scene.set + "/" + result.scene.name;
+    const String title = titleOf(result.scene);
     Pair pair;
     try
     {
@@ -253,9 +257,10 @@ static bool evaluateScene(const Settings& settings, SceneResult& result, Progres
     }
     catch (const std::exception& e)
     {
-        progress.message("skipped " + title + ": " + e.what());
+        result.problems.push_back("skipped " + title + ": " + e.what());
+        progress.message(result.problems.back());
         progress.skip(settings.methods.size());
-        return false;
+        return;
     }
     if (settings.numDisparities > 0)
         pair.numDisparities = settings.numDisparities;
@@ -269,7 +274,6 @@ static bool evaluateScene(const Settings& settings, SceneResult& result, Progres
             result.maps += figure(resultPicture(pair.truth, pair), "truth");
     }
 
-    bool isGood = true;
     for (size_t m = 0; m < settings.methods.size() && !interrupted; m++)
     {
         const String& name = settings.methods[m].name;
@@ -281,12 +285,11 @@ static bool evaluateScene(const Settings& settings, SceneResult& result, Progres
         }
         catch (const std::exception& e)
         {
-            progress.message("failed: " + title + " " + name + ": " + e.what());
+            result.problems.push_back("failed: " + title + " " + name + ": " + e.what());
+            progress.message(result.problems.back());
             progress.skip(1);
-            isGood = false;
         }
     }
-    return isGood;
 }
 
 //! Matches all scenes, several at a time. Returns how many of them have something wrong with them.
@@ -294,11 +297,9 @@ static int evaluateScenes(const Settings& settings, int jobs, std::vector<SceneR
 {
     Progress progress(results.size() * settings.methods.size());
     std::atomic<size_t> next(0);
-    std::atomic<int> bad(0);
     const auto work = [&] {
         for (size_t i = next++; i < results.size() && !interrupted; i = next++)
-            if (!evaluateScene(settings, results[i], progress))
-                bad++;
+            evaluateScene(settings, results[i], progress);
     };
     std::vector<std::thread> threads;
     for (int job = 1; job < jobs; job++)
@@ -307,7 +308,8 @@ static int evaluateScenes(const Settings& settings, int jobs, std::vector<SceneR
     for (std::thread& thread : threads)
         thread.join();
     progress.finish();
-    return bad;
+    return int(std::count_if(results.begin(), results.end(),
+                             [](const SceneResult& result) { return !result.problems.empty(); }));
 }
 
 // ---- Tables
@@ -599,34 +601,45 @@ static String reportPage(const std::vector<Table>& tables, const std::vector<Str
 {
     std::ostringstream body;
     body << "<p>" << htmlText(summary) << "</p>\n";
+    for (const SceneResult& result : results)
+        for (const String& problem : result.problems)
+            body << "<p class=\"problem\">" << htmlText(problem) << "</p>\n";
+    body << "<p>Pairs:";
+    for (size_t i = 0; i < results.size(); i++)
+        if (results[i].isRead)
+            body << " <a href=\"#pair" << i << "\">" << htmlText(titleOf(results[i].scene)) << "</a>";
+    body << "</p>\n";
     for (const Table& table : tables)
         body << toHtml(table);
+    body << "<div class=\"scroll\">\n";
     for (const String& set : sets)
         for (size_t m = 0; m < methods.size(); m++)
         {
             const int fullRange = fullRangeOf(methods, m);
             if (fullRange < 0)
                 continue;
-            const std::vector<const SceneResult*> complete = completeOnes(resultsOfSet(results, set, Pair::MIDDLEBURY));
-            body << runtimeChart("Runtime, " + set + ": " + methods[size_t(fullRange)].name + " (pale), " +
-                                     methods[m].name + " (dark), speed-up (red)",
-                                 runtimePairs(complete, m, size_t(fullRange)));
+            for (Pair::Protocol protocol : { Pair::MIDDLEBURY, Pair::KITTI })
+                body << runtimeChart(
+                    "Runtime, " + set + ": " + methods[size_t(fullRange)].name + " (pale), " + methods[m].name +
+                        " (dark), speed-up (red)",
+                    runtimePairs(completeOnes(resultsOfSet(results, set, protocol)), m, size_t(fullRange)));
         }
-    body << "<p>Maps: blue is far, orange near. Wrong pixels (Middlebury: errors of 2 pixels and more; KITTI: above 3 "
+    body << "</div>\n<p>Maps: blue is far, orange near. Wrong pixels (Middlebury: errors of 2 pixels and more; KITTI: "
+            "above 3 "
             "pixels and 5 %) are red. Of Middlebury's pairs, pixels that are occluded or of unknown truth are black, "
             "and so is everywhere what has no disparity. P(D_l | D_{l+1}): a row for every disparity of the layer "
-            "above, "
-            "from the top, a column for every disparity of the layer; the largest element of a row is the "
+            "above, from the top, a column for every disparity of the layer; the largest element of a row is the "
             "brightest.</p>\n";
-    for (const SceneResult& result : results)
+    for (size_t i = 0; i < results.size(); i++)
     {
+        const SceneResult& result = results[i];
         if (!result.isRead)
             continue;
-        body << "<h2>" << htmlText(result.scene.set + "/" + result.scene.name)
+        body << "<h2 id=\"pair" << i << "\">" << htmlText(titleOf(result.scene))
              << format(" (%d x %d)", result.size.width, result.size.height) << "</h2>\n<div class=\"figures\">\n"
              << result.maps << "</div>\n";
         if (!result.predictions.empty())
-            body << "<h3>Prediction</h3>\n<div class=\"figures\">\n" << result.predictions << "</div>\n";
+            body << "<h3>Prediction</h3>\n" << result.predictions;
     }
     return htmlPage("Hierarchical disparity prediction: evaluation", body.str());
 }
@@ -669,6 +682,8 @@ static int run(const CommandLineParser& parser)
         makeFolder(report);
         writeText(fs::join(report, "index.html"), htmlPage("Not finished", ""));
     }
+    if (!settings.maps.empty())
+        makeFolder(settings.maps);
     if (!csv.empty())
         writeText(csv, "");
 

@@ -63,19 +63,30 @@ inline Ptr<DisparityPredictionModel> upperPart(const DisparityPredictionModel& m
 //! How many candidates a layer has
 inline int disparitiesOfLayer(int numDisparities, int layer) { return ((numDisparities - 1) >> layer) + 1; }
 
-/** A matcher (PRESET_PAPER) for the images of a layer that does there what one of so many layers does in that layer
+/** Makes a new matcher do for the images of a layer what one with its parameters and so many layers does in that layer
 and those above, when it matches images of this width.
+@param matcher Of disparitiesOfLayer() candidates.
 @param above The model of this layer and those above; empty at the top layer. */
+inline void adaptToLayer(HDPTreeMatcher& matcher, int layer, int layers, int width,
+                         const Ptr<DisparityPredictionModel>& above)
+{
+    const bool isLarge = width >= 1000; // see HDPTreeMatcher::setDelta0() and setBeta()
+    if (matcher.getDelta0() == HDPTreeMatcher::AUTO)
+        matcher.setDelta0(isLarge ? 0.064 : 0.004);
+    if (matcher.getBeta() == HDPTreeMatcher::AUTO)
+        matcher.setBeta(isLarge ? 0.6 : 0.95);
+    matcher.setDelta0(std::min(matcher.getDelta0() * (1 << layer), 0.999));
+    matcher.setNumLayers(layers - layer);
+    matcher.setPredictionModel(above);
+}
+
+//! A matcher (PRESET_PAPER) that has been adapted to a layer of a pair with so many candidates.
 inline Ptr<HDPTreeMatcher> matcherOfLayer(int layer, int layers, int numDisparities, int width,
                                           const Ptr<DisparityPredictionModel>& above)
 {
-    const bool isLarge = width >= 1000; // see HDPTreeMatcher::setDelta0() and setBeta()
     const Ptr<HDPTreeMatcher> matcher =
         HDPTreeMatcher::create(0, disparitiesOfLayer(numDisparities, layer), HDPTreeMatcher::PRESET_PAPER);
-    matcher->setNumLayers(layers - layer);
-    matcher->setPredictionModel(above);
-    matcher->setDelta0(std::min((isLarge ? 0.064 : 0.004) * (1 << layer), 0.999));
-    matcher->setBeta(isLarge ? 0.6 : 0.95);
+    adaptToLayer(*matcher, layer, layers, width, above);
     return matcher;
 }
 

@@ -11,13 +11,6 @@
 #include <cctype>
 #include <functional>
 
-#include "opencv2/core/version.hpp"
-#if CV_VERSION_MAJOR >= 5
-#include "opencv2/stereo.hpp"
-#else
-#include "opencv2/calib3d.hpp"
-#endif
-
 #include "hdp_samples_common.hpp"
 
 namespace hdp_samples {

@@ -42,7 +42,7 @@ inline String figure(const Mat& picture, const String& caption, const String& ex
                    0, interpolation);
     std::vector<uchar> bytes;
     cv::imencode(extension, shown, bytes,
-                 extension == ".jpg" ? std::vector<int>{ cv::IMWRITE_JPEG_QUALITY, 85 } : std::vector<int>());
+                 extension == ".jpg" ? std::vector<int>{ cv::IMWRITE_JPEG_QUALITY, 75 } : std::vector<int>());
     std::ostringstream out;
     out << "<figure><img width=\"" << shown.cols << "\" height=\"" << shown.rows << "\" alt=\"" << htmlText(caption)
         << "\" src=\"data:image/" << (extension == ".jpg" ? "jpeg" : "png") << ";base64," << base64(bytes)
@@ -143,9 +143,11 @@ inline cv::Mat_<double> sampledMatrix(const Mat& truth, const Mat& upper, int nu
     return matrix;
 }
 
-//! Figures of the forest, of the intervals, and of P(D_l | D_{l+1}) by the model and by the truth, of a matcher that
-//! has just matched the pair.
-inline String predictionFigures(const String& name, const HDPTreeMatcher& matcher, const Pair& pair)
+/** Figures of the forest, of the intervals, and of P(D_l | D_{l+1}) by the model and by the truth.
+@param matcher One with predicted intervals that has just matched the pair.
+@param create Makes another one like it, of so many candidates. */
+inline String predictionFigures(const String& name, const HDPTreeMatcher& matcher,
+                                const std::function<Ptr<cv::StereoMatcher>(int)>& create, const Pair& pair)
 {
     std::ostringstream out;
     Mat trees, intervals;
@@ -174,15 +176,17 @@ inline String predictionFigures(const String& name, const HDPTreeMatcher& matche
         left = nextLayer(left);
         right = nextLayer(right);
         const Ptr<HDPTreeMatcher> above =
-            matcherOfLayer(layer + 1, layers, matcher.getNumDisparities(), width, upperPart(*model, layer + 1));
-        above->setTreeStrategy(matcher.getTreeStrategy());
+            create(disparitiesOfLayer(matcher.getNumDisparities(), layer + 1)).dynamicCast<HDPTreeMatcher>();
+        adaptToLayer(*above, layer + 1, layers, width, upperPart(*model, layer + 1));
         Mat upper;
         above->compute(left, right, upper);
         const int disparities = disparitiesOfLayer(matcher.getNumDisparities(), layer);
         const String of = cv::format("P(D%d | D%d), %s: ", layer, layer + 1, name.c_str());
-        out << figure(matrixPicture(predictedMatrix(*model, layer, prior)), of + "predicted", ".png");
-        out << figure(matrixPicture(sampledMatrix(truthOfLayer(pair.truth, layer), toPixels(upper, 0), disparities)),
-                      of + "sampled", ".png");
+        out << "<div class=\"pair\">\n"
+            << figure(matrixPicture(predictedMatrix(*model, layer, prior)), of + "predicted", ".png")
+            << figure(matrixPicture(sampledMatrix(truthOfLayer(pair.truth, layer), toPixels(upper, 0), disparities)),
+                      of + "sampled", ".png")
+            << "</div>\n";
         above->getLayerPrior(prior);
     }
     return out.str();
@@ -252,8 +256,10 @@ inline String htmlPage(const String& title, const String& body)
            "th, td { padding: 3px 8px; border-bottom: 1px solid #ddd; text-align: right; white-space: nowrap; }\n"
            "th:first-child, td:first-child { text-align: left; }\n"
            "td.best { font-weight: bold; }\n"
+           ".problem { color: #c0392b; }\n"
            ".scroll { overflow-x: auto; }\n"
-           ".figures { display: flex; flex-wrap: wrap; gap: 12px; align-items: flex-start; }\n"
+           ".figures { display: flex; flex-wrap: wrap; gap: 12px; align-items: flex-start; margin-bottom: 12px; }\n"
+           ".pair { display: flex; gap: 12px; }\n"
            "figure { margin: 0; max-width: 360px; }\n"
            "figcaption { font-size: 12px; color: #555; }\n"
            ".chart { display: inline-block; font-size: 11px; margin: 12px 0; }\n"
@@ -262,6 +268,7 @@ inline String htmlPage(const String& title, const String& body)
            ".chart .plain { fill: #9db4c8; }\n"
            ".chart .hdp { fill: #1f5a8c; }\n"
            ".chart circle { fill: #c0392b; }\n"
+           ".chart text { paint-order: stroke; stroke: #fff; stroke-width: 3px; }\n"
            "</style>\n</head>\n<body>\n<h1>" +
            htmlText(title) + "</h1>\n" + body + "</body>\n</html>\n";
 }

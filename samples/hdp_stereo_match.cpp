@@ -79,34 +79,45 @@ static Matx44d readCamera(const CommandLineParser& parser, Size size)
     return Matx44d(Q.ptr<double>());
 }
 
+static const char* const TREES[] = { "mst", "st", "rt" };
+
+static Ptr<stereo::TreeStrategy> createTree(const String& name)
+{
+    if (name == TREES[0])
+        return stereo::createMinimumSpanningTree();
+    if (name == TREES[1])
+        return stereo::createSegmentTree();
+    if (name == TREES[2])
+        return stereo::createRandomTree();
+    fail("--tree=" + name + ": unknown, there are: mst, st, rt");
+    return Ptr<stereo::TreeStrategy>();
+}
+
 static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, Size size)
 {
-    const String tree = parser.get<String>("tree");
     const Range disparities = getDisparities(parser, size);
     Ptr<HDPTreeMatcher> matcher =
         HDPTreeMatcher::create(disparities.start, disparities.size(), getPreset(parser, "preset"));
-
-    if (tree.empty())
-        ; // the preset's
-    else if (tree == "mst")
-        matcher->setTreeStrategy(stereo::createMinimumSpanningTree());
-    else if (tree == "st")
-        matcher->setTreeStrategy(stereo::createSegmentTree());
-    else if (tree == "rt")
-        matcher->setTreeStrategy(stereo::createRandomTree());
-    else
-        fail("--tree=" + tree + ": unknown, there are: mst, st, rt");
+    if (parser.has("tree"))
+        matcher->setTreeStrategy(createTree(parser.get<String>("tree")));
     matcher->setUsePrediction(!parser.has("no-prediction"));
     matcher->setUseMedianPrefilter(parser.has("median-prefilter"));
     return matcher;
 }
 
-//! The system's name in the paper's tables, such as HDP+MST.
-static String systemName(const CommandLineParser& parser)
+//! What the matcher is; a system of the paper by its name in the tables there, such as HDP+MST.
+static String systemName(const HDPTreeMatcher& matcher)
 {
-    String name = parser.get<String>("tree");
-    std::transform(name.begin(), name.end(), name.begin(), [](char c) { return char(std::toupper(uchar(c))); });
-    return (parser.has("median-prefilter") ? "M+" : "") + String(parser.has("no-prediction") ? "" : "HDP+") + name;
+    String tree;
+    for (const char* name : TREES)
+        if (createTree(name)->getDefaultName() == matcher.getTreeStrategy()->getDefaultName())
+            tree = name;
+    std::transform(tree.begin(), tree.end(), tree.begin(), [](char c) { return char(std::toupper(uchar(c))); });
+    const String prefilter = matcher.getUseMedianPrefilter() ? "M+" : "";
+    if (matcher.getUsePrediction() && matcher.getAggregation() == HDPTreeMatcher::AGGREGATION_SCANLINES)
+        return "scanlines, " + prefilter + tree + " on the top layer";
+    return prefilter + (matcher.getUsePrediction() ? "HDP+" : "") + tree +
+           (matcher.getMatchingCost() == HDPTreeMatcher::COST_CENSUS ? ", census cost" : "");
 }
 
 static void printWork(const HDPTreeMatcher& matcher, double totalMilliseconds)
@@ -174,7 +185,7 @@ static void run(const CommandLineParser& parser)
     const int minDisparity = matcher->getMinDisparity();
     std::cout << format("images     %d x %d, disparities %d to %d\n", left.cols, left.rows, minDisparity,
                         minDisparity + matcher->getNumDisparities() - 1)
-              << "system     " << systemName(parser) << " (preset " << parser.get<String>("preset") << ", threads "
+              << "system     " << systemName(*matcher) << " (preset " << parser.get<String>("preset") << ", threads "
               << getNumThreads() << ")" << std::endl;
 
     Mat disparity16;

@@ -6,6 +6,7 @@
 // matcher finds the disparities of a layer, with the part of the model that is there already; they and the truth of the
 // layer below give the next mixture. So the model learns from what it will be given.
 
+#include <cstdio>
 #include <iostream>
 #include <numeric>
 
@@ -77,8 +78,9 @@ struct Offsets
     }
 };
 
-//! Pairs with truth of the only set that is left by the resolution, in random order, those to be held out last.
-static std::vector<TrainingScene> readScenes(const CommandLineParser& parser)
+//! Pairs with truth of the only set that is left by the resolution, in random order, those to be held out last. Pairs that
+//! cannot be read are named, left out and counted.
+static std::vector<TrainingScene> readScenes(const CommandLineParser& parser, int& bad)
 {
     const String resolution = parser.get<String>("resolution");
     std::vector<Scene> scenes = findScenes(parser.get<String>("@root"));
@@ -100,17 +102,26 @@ static std::vector<TrainingScene> readScenes(const CommandLineParser& parser)
     for (size_t i = scenes.size() - 1; i > 0; i--)
         std::swap(scenes[i], scenes[size_t(rng.uniform(0, int(i) + 1))]);
     const double fraction = getNumber(parser, "fraction", 0, 1);
-    const int count = std::max(cvRound(fraction * double(scenes.size())), 1);
 
     std::vector<TrainingScene> result;
-    for (size_t i = 0; i < scenes.size(); i++)
+    for (const Scene& scene : scenes)
     {
-        TrainingScene scene;
-        scene.name = scenes[i].name;
-        scene.pair = readPair(scenes[i]);
-        scene.isHeldOut = int(i) >= count;
-        result.push_back(scene);
+        try
+        {
+            const TrainingScene read = { scene.name, readPair(scene), true, Mat(), Mat() };
+            result.push_back(read);
+        }
+        catch (const std::exception& e)
+        {
+            std::cerr << "skipped " << scene.name << ": " << e.what() << std::endl;
+        }
     }
+    bad = int(scenes.size() - result.size());
+    if (result.empty())
+        fail("none of the pairs can be read");
+    const size_t count = size_t(std::max(cvRound(fraction * double(result.size())), 1));
+    for (size_t i = 0; i < count; i++)
+        result[i].isHeldOut = false;
     return result;
 }
 
@@ -245,11 +256,15 @@ static Table errorTable(const std::vector<TrainingScene>& scenes,
     return table;
 }
 
-static void run(const CommandLineParser& parser)
+//! The exit status
+static int run(const CommandLineParser& parser)
 {
     if (!parser.has("@root") || !parser.has("output"))
         fail("a folder and -o MODEL.yml are needed, see --help");
     const String output = parser.get<String>("output"), picture = parser.get<String>("picture");
+    if (!hasExtension(output, ".yml") && !hasExtension(output, ".yaml") && !hasExtension(output, ".xml") &&
+        !hasExtension(output, ".json"))
+        fail("-o " + output + ": neither a .yml nor an .xml nor a .json file");
     if (!picture.empty() && !haveImageWriter(picture))
         fail("--picture=" + picture + ": not a kind of image that can be written");
     if (parser.has("threads"))
@@ -258,9 +273,13 @@ static void run(const CommandLineParser& parser)
     const int layers = getInteger(parser, "layers", 2, 8);
     const int maxComponents = getInteger(parser, "max-components", 1, 64);
 
-    std::vector<TrainingScene> scenes = readScenes(parser);
+    int bad = 0;
+    std::vector<TrainingScene> scenes = readScenes(parser, bad);
+    const bool isNew = !fs::exists(output);
     if (!std::ofstream(output.c_str(), std::ios::app)) // before the work, not after it
         fail("cannot write '" + output + "'");
+    if (isNew)
+        std::remove(output.c_str());
     const bool hasHeldOut = scenes.back().isHeldOut;
     std::cout << "trained on " << listNames(scenes, false) << "\nheld out   " << listNames(scenes, true) << "\n\n";
 
@@ -323,6 +342,9 @@ static void run(const CommandLineParser& parser)
     }
     if (hasHeldOut && published->getNumLayers() >= layers - 1)
         std::cout << "\n" << toMarkdown(errorTable(scenes, { model, published }, layers)) << std::endl;
+    if (bad > 0)
+        std::cerr << bad << " of " << scenes.size() + size_t(bad) << " pairs were skipped, see above" << std::endl;
+    return bad > 0 ? 2 : 0;
 }
 
 int main(int argc, char** argv)
@@ -343,12 +365,12 @@ int main(int argc, char** argv)
             pointers.push_back(argument.c_str());
 
         CommandLineParser parser(int(pointers.size()), &pointers[0], KEYS);
-        parser.about("Trains a disparity prediction model on stereo pairs with known truth.\n");
+        parser.about("Trains a disparity prediction model on stereo pairs with known truth.\n"
+                     "Exit status: 0 if all is well, 2 if a pair was skipped, 1 on other errors.\n");
         checkArguments(int(pointers.size()), &pointers[0], parser, FLAGS, 1);
-        if (parser.has("help"))
-            parser.printMessage();
-        else
-            run(parser);
+        if (!parser.has("help"))
+            return run(parser);
+        parser.printMessage();
         return 0;
     }
     catch (const cv::Exception& e)

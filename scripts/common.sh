@@ -62,6 +62,10 @@ install_packages()
     say "Going on with what is installed"
 }
 
+# The Python that Debian's headers and numpy are for
+# shellcheck disable=SC2034
+python=/usr/bin/python3
+
 # The source of the installed OpenCV, from Debian's source package. Debian's binary packages have neither OpenCV's test
 # framework nor its build files nor the pictures of its samples. apt-get is given a source list of its own, so this needs
 # neither root nor any change to the system.
@@ -104,28 +108,33 @@ fetch_tarball()
     mv "$tarball.part" "$tarball"
 }
 
-# unpack_tarball DIRECTORY [PATTERN...]: the files of these names, or all.
+# unpack_tarball DIRECTORY [PATTERN...]: the files of these names, or all. They keep their times: nothing is built anew.
 unpack_tarball()
 {
     local directory=$1
     shift
-    [ ! -d "$directory" ] || return 0
+    [ ! -e "$directory/.unpacked" ] || [ "$(cat "$directory/.unpacked")" != "$*" ] || return 0
     say "Unpacking ${tarball##*/}"
     rm -rf "$directory.part"
     mkdir -p "$directory.part"
     tar -xf "$tarball" -C "$directory.part" --strip-components=1 --wildcards "$@" ||
         fail "$tarball does not unpack; remove it to fetch it again"
+    echo "$*" >"$directory.part/.unpacked"
+    rm -rf "$directory"
     mv "$directory.part" "$directory"
 }
 
-# find_opencv_source: sets OPENCV_SOURCE_DIR, if it is not set, to a directory with what tests and demo read of it.
+# find_opencv_source: sets OPENCV_SOURCE_DIR, if it is not set, to a directory with what tests, demo and the Python bindings
+# read of it.
 find_opencv_source()
 {
     if [ -z "${OPENCV_SOURCE_DIR:-}" ]; then
         fetch_tarball || return 1
         local directory=${tarball##*/}
         directory=$build/${directory%.orig.tar.xz}
-        unpack_tarball "$directory" '*/modules/ts/*' '*/modules/core/include/*' '*/samples/data/aloe*'
+        unpack_tarball "$directory" '*/modules/ts/*' '*/modules/core/include/*' '*/modules/python/*' \
+            '*/modules/*/misc/python/*' '*/samples/cpp/stereo_*' '*/samples/python/stereo_*' \
+            '*/samples/data/aloe*' '*/samples/data/left*.jpg' '*/samples/data/right*.jpg' '*/samples/data/*trinsics.yml'
         OPENCV_SOURCE_DIR=$directory
     fi
 }

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Installs what is missing, builds the module with its tests against the installed OpenCV, and runs them.
-#   scripts/test.sh                       tests, and one short round of the performance tests
+#   scripts/test.sh                       tests, those from Python too, OpenCV's samples with this matcher, one short round
+#                                         of the performance tests, and the documentation
 #   scripts/test.sh --sanitize            tests but the slow ones, under AddressSanitizer and UndefinedBehaviorSanitizer,
 #                                         and the samples: one on a full-size pair, the benchmark on a small one
 #   scripts/test.sh [--sanitize] OPTION...  the tests alone, with these options of theirs, e.g. --gtest_filter=...
@@ -56,10 +57,38 @@ compare_instruction_sets()
     fi
 }
 
-install_packages build-essential cmake libopencv-dev
+# run_python_tests: adds to the counts, as run_tests does.
+run_python_tests()
+{
+    local log=$directory/python.log status=0 total bad skipped
+    time PYTHONPATH=$directory/lib/python3 OPENCV_LOG_LEVEL=FATAL \
+        "$python" "$checkout/misc/python/test/test_hdpstereo.py" --verbose 2>&1 | tee "$log" || status=$?
+    total=$(sed -n -E 's/^Ran ([0-9]+) tests? in .*/\1/p' "$log")
+    bad=$(sed -n -E 's/^FAILED \((.*)\)$/\1/p' "$log" | tr ',' '\n' | sed -n -E 's/^ *(failures|errors)=//p' | paste -sd+)
+    skipped=$(sed -n -E 's/^(OK|FAILED) \(.*skipped=([0-9]+).*\)$/\2/p' "$log")
+    bad=$((${bad:-0}))
+    if [ -z "$total" ] || { [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; }; then
+        say "the Python tests died, or ended wrongly, with status $status"
+        total=$((${total:-0} + 1))
+        bad=$((bad + 1))
+    fi
+    [ "${skipped:-0}" -eq 0 ] || say "$skipped Python tests skipped themselves"
+    passed=$((passed + total - bad - ${skipped:-0}))
+    failed=$((failed + bad))
+}
+
+install_packages build-essential cmake libopencv-dev python3-dev python3-numpy
 
 directory=$build/release
 options=()
+python_options=()
+if [ -z "$sanitize" ]; then
+    if "$python" -c 'import numpy, os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null; then
+        python_options=(-DHDPSTEREO_PYTHON=ON "-DPython3_EXECUTABLE=$python")
+    else
+        say "No python3-dev or no python3-numpy: NOT testing from Python"
+    fi
+fi
 targets=(all)
 if [ -n "$sanitize" ]; then
     directory=$build/sanitize
@@ -77,7 +106,7 @@ fi
 
 say "Building in $directory"
 time {
-    cmake -S "$checkout" -B "$directory" -DOPENCV_SOURCE_DIR="$OPENCV_SOURCE_DIR" "${options[@]}"
+    cmake -S "$checkout" -B "$directory" -DOPENCV_SOURCE_DIR="$OPENCV_SOURCE_DIR" "${options[@]}" "${python_options[@]}"
     cmake --build "$directory" --parallel "$jobs" --target "${targets[@]}"
 }
 
@@ -104,6 +133,17 @@ else
 fi
 run_tests "$directory/bin/opencv_test_hdpstereo" "$@"
 if [ -z "$sanitize" ] && [ $# -eq 0 ]; then
+    if [ ${#python_options[@]} -gt 0 ]; then
+        say "Running the Python tests"
+        run_python_tests
+        say "Running OpenCV's stereo_match samples with this matcher"
+        if time "$checkout/scripts/check_drop_in.sh"; then
+            passed=$((passed + 1))
+        else
+            say "scripts/check_drop_in.sh failed"
+            failed=$((failed + 1))
+        fi
+    fi
     say "Comparing the reference maps between instruction sets"
     compare_instruction_sets "$directory/bin/opencv_test_hdpstereo"
 fi
@@ -111,6 +151,18 @@ if [ -z "$sanitize" ] && [ $# -eq 0 ] && [ -x "$directory/bin/opencv_perf_hdpste
     say "Running the performance tests, one round of the smallest images"
     run_tests "$directory/bin/opencv_perf_hdpstereo" "--gtest_param_filter=*640x480*" \
         --perf_min_samples=1 --perf_force_samples=1
+fi
+if [ -z "$sanitize" ] && [ $# -eq 0 ]; then
+    say "Making the documentation"
+    install_packages doxygen texlive-binaries
+    if ! command -v doxygen >/dev/null || ! command -v bibtex >/dev/null; then
+        say "NOT checked: there is no doxygen, or no bibtex"
+    elif "$checkout/scripts/docs.sh"; then
+        passed=$((passed + 1))
+    else
+        say "the documentation has warnings"
+        failed=$((failed + 1))
+    fi
 fi
 
 echo "$passed passed, $failed failed"

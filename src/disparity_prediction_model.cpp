@@ -498,11 +498,18 @@ Ptr<DisparityPredictionModel> DisparityPredictionModel::createPublished(int whic
 
 Ptr<DisparityPredictionModel> DisparityPredictionModel::load(const String& filename)
 {
-    FileStorage fs(filename, FileStorage::READ);
-    if (!fs.isOpened())
-        CV_Error(Error::StsObjectNotFound, "filename: cannot read " + filename);
     Ptr<DisparityPredictionModel> model = create();
-    model->read(fs.getFirstTopLevelNode());
+    try
+    {
+        FileStorage fs(filename, FileStorage::READ);
+        if (!fs.isOpened())
+            CV_Error(Error::StsObjectNotFound, "cannot read it");
+        model->read(fs.getFirstTopLevelNode());
+    }
+    catch (const cv::Exception& e) // the parser's do not name the file
+    {
+        CV_Error(e.code, "filename: '" + filename + "' does not hold a model: " + e.err);
+    }
     return model;
 }
 

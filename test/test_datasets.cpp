@@ -127,6 +127,30 @@ TEST(HDPStereo_Datasets, middlebury_2006_trees)
     }
 }
 
+//! The sets of 7 views have the truth once, above the images of every illumination and exposure.
+TEST(HDPStereo_Datasets, middlebury_2006_of_seven_views)
+{
+    DatasetFolder folder;
+    for (const char* name : { "disp1.png", "disp5.png" })
+        folder.write(String("HalfSize/Aloe/") + name, DatasetFolder::halves(pairSize, CV_8U, 8, 16));
+    for (const char* images :
+         { "HalfSize/Aloe/Illum1/Exp0/", "HalfSize/Aloe/Illum3/Exp2/", "HalfSize/Art/Illum1/Exp0/" })
+    {
+        folder.writePicture(String(images) + "view1.png", 50);
+        folder.writePicture(String(images) + "view5.png", 60);
+    }
+    const std::vector<Scene> scenes = findScenes(folder.root);
+    EXPECT_EQ((std::vector<String>{ "HalfSize/Aloe_Illum1_Exp0", "HalfSize/Aloe_Illum3_Exp2",
+                                    "HalfSize/Art/Illum1/Exp0" }), // as published, without truth
+              setsAndNames(scenes));
+    for (int i = 0; i < 2; ++i)
+    {
+        EXPECT_EQ("half", scenes[i].resolution);
+        expectHalves(readPair(scenes[i]));
+    }
+    EXPECT_EQ(Pair::NO_TRUTH, readPair(scenes[2]).protocol);
+}
+
 TEST(HDPStereo_Datasets, plain_names_and_roots_of_any_depth)
 {
     DatasetFolder folder;
@@ -254,8 +278,11 @@ TEST(HDPStereo_Datasets, kitti)
             folder.write(file(layout.all), all);
             folder.write(file(layout.some), some);
         }
-    folder.writePicture("2015/training/image_2/000000_11.png"); // the next time
-    folder.writePicture("2015/training/image_3/000000_11.png");
+    for (const char* other : { "000000_11.png", "000001_00.png", "000001_20.png" }) // of other times
+    {
+        folder.writePicture(String("2015/training/image_2/") + other);
+        folder.writePicture(String("2015/training/image_3/") + other);
+    }
     folder.writePicture("2015/testing/image_2/000000_10.png");
     folder.writePicture("2015/testing/image_3/000000_10.png");
 
@@ -281,6 +308,18 @@ TEST(HDPStereo_Datasets, kitti)
     std::remove(folder.path("2015/training/disp_occ_0/000000_10.png").c_str());
     expectFailure([&] { readPair(both[1]); }, "disp_occ_0/000000_10.png");
     expectFailure([&] { readPair(both[2]); }, "image_3/000001_10.png");
+}
+
+//! Pictures of one's own in KITTI's folders may have any number.
+TEST(HDPStereo_Datasets, kitti_folders_without_truth)
+{
+    DatasetFolder folder;
+    for (const char* frame : { "walk_01.png", "walk_11.png", "x.png" })
+    {
+        folder.writePicture(String("mine/image_0/") + frame);
+        folder.writePicture(String("mine/image_1/") + frame);
+    }
+    EXPECT_EQ((std::vector<String>{ "mine/walk_01", "mine/walk_11", "mine/x" }), setsAndNames(findScenes(folder.root)));
 }
 
 TEST(HDPStereo_Datasets, kitti_by_scene)

@@ -227,7 +227,7 @@ TEST(HDPStereo_DisparityForest, disjoint_intervals_keep_edges_of_weight_7)
 {
     for (int weight = 0; weight < 20; ++weight)
     {
-        const Mat image = (Mat_<uchar>(1, 2) << 100, 100 + weight);
+        const Mat image = Mat_<uchar>({ 1, 2 }, { 100, (uchar)(100 + weight) });
         Mat pixelIntv(1, 2, CV_16UC2);
         pixelIntv.at<Vec2w>(0, 0) = Vec2w(0, 4);
         pixelIntv.at<Vec2w>(0, 1) = Vec2w(5, 9);

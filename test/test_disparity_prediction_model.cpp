@@ -8,6 +8,9 @@
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 
+#include <fstream>
+#include <set>
+
 #include "opencv2/opencv_modules.hpp"
 
 namespace opencv_test {
@@ -61,11 +64,11 @@ Mixture narrowAndWide() { return Mixture{ { 0.5, -9 }, { 1, 6 }, { 0.7, 0.3 } };
 TEST(HDPStereo_ModelTraining, offsets_by_hand)
 {
     const float u = unknown, n = std::numeric_limits<float>::quiet_NaN();
-    const Mat lower = (Mat_<float>(4, 5) << 7, 6, 10, u, 3, //
-                       5, -1, 10, 11, 4,                    //
-                       0, 1, 8, 8, 9,                       //
-                       n, 2, 8, 8.4f, 9);
-    const Mat upper = (Mat_<float>(2, 2) << 3, 6, 0, u);
+    const Mat lower = Mat_<float>({ 4, 5 }, { 7, 6,  10, u,    3, //
+                                              5, -1, 10, 11,   4, //
+                                              0, 1,  8,  8,    9, //
+                                              n, 2,  8,  8.4f, 9 });
+    const Mat upper = Mat_<float>({ 2, 2 }, { 3, 6, 0, u });
     // Above the pixels of the first two rows 3, 3, 6, 6 and again 6 (the last column is odd), of the others 0 and unknown:
     //   3 - {3, 3, 2} = {0, 0, 1}, 6 - {5, 5, 5, 1, 2} = {1, 1, 1, 5, 4}, 0 - {0, 0, 1} = {0, 0, -1}
     std::vector<int> offsets;
@@ -81,7 +84,7 @@ TEST(HDPStereo_ModelTraining, offsets_by_hand)
 
 TEST(HDPStereo_ModelTraining, rounding)
 {
-    const Mat lower = (Mat_<float>(2, 2) << 6.6f, 7.4f, 6.f, 7.9f), upper = (Mat_<float>(1, 1) << 2.6f);
+    const Mat lower = Mat_<float>({ 2, 2 }, { 6.6f, 7.4f, 6.f, 7.9f }), upper = Mat_<float>(1, 1, 2.6f);
     std::vector<int> offsets;
     Numbers counts;
     DisparityPredictionModel::countOffsets(std::vector<Mat>(1, lower), std::vector<Mat>(1, upper), offsets, counts);
@@ -238,6 +241,49 @@ TEST(HDPStereo_ModelTraining, chooses_enough_components)
     EXPECT_NEAR(worse / total, fewLikelihood, 0.05);
 }
 
+//! More Gaussians are only taken if they make the half that they were not fitted to more likely.
+TEST(HDPStereo_ModelTraining, components_are_chosen_by_the_other_half)
+{
+    bool isFewerEnough = false;
+    for (int set = 0; set < 3; ++set)
+    {
+        RNG rng(20 + set);
+        std::vector<Mat> lower, upper; // so small that each has chance peaks that the other one has not
+        for (int i = 0; i < 2; ++i)
+        {
+            const MapPair pair = sampleMixture(Mixture{ { 0 }, { 4 }, { 1 } }, Size(8, 6), rng);
+            lower.push_back(pair.lower);
+            upper.push_back(pair.upper);
+        }
+        const Ptr<DisparityPredictionModel> few = DisparityPredictionModel::create(), more = few->create();
+        const double fewLikelihood = few->train(lower, upper, 1), likelihood = more->train(lower, upper, 2);
+        EXPECT_GE(likelihood, fewLikelihood);
+        if (likelihood == fewLikelihood)
+        {
+            isFewerEnough = true;
+            EXPECT_EQ(getLayer(*few, 0).means, getLayer(*more, 0).means);
+        }
+    }
+    EXPECT_TRUE(isFewerEnough);
+}
+
+//! The seed chooses the half that the Gaussians are fitted to, and so the likelihood of the other one.
+TEST(HDPStereo_ModelTraining, seed_counts)
+{
+    RNG rng(10);
+    std::vector<Mat> lower, upper;
+    for (int i = 0; i < 4; ++i)
+    {
+        const MapPair pair = sampleMixture(Mixture{ { 2. * i }, { 1. + i }, { 1 } }, Size(20, 15), rng);
+        lower.push_back(pair.lower);
+        upper.push_back(pair.upper);
+    }
+    std::set<double> likelihoods;
+    for (int seed = 0; seed < 8; ++seed)
+        likelihoods.insert(DisparityPredictionModel::create()->train(lower, upper, 1, seed));
+    EXPECT_GT(likelihoods.size(), 1u);
+}
+
 //! Offsets of two values only, which a Gaussian could follow to a width of 0
 TEST(HDPStereo_ModelTraining, never_a_singular_model)
 {
@@ -374,14 +420,18 @@ TEST(HDPStereo_ModelFiles, hostile_ones_change_nothing)
 
     for (int version : { 0, 2, -1, 2147483647 })
         expectHostile(modelText(version, good));
-    std::string huge = "[ 0.", layers = "[ ";
+    // Nothing is wrong with these but their number.
+    std::string zeros, ones, layers = "[ ";
     for (int k = 0; k < 5000; ++k)
-        huge += ", 0.";
-    huge += " ]";
+    {
+        zeros += ", 0.";
+        ones += ", 1.";
+    }
     for (int l = 0; l < 200; ++l)
         layers += std::string(l ? ", " : "") + "{ means: [ 0. ], sigmas: [ 1. ], weights: [ 1. ] }";
     layers += " ]";
-    expectHostile(modelText(1, "[ { means: " + huge + ", sigmas: " + huge + ", weights: " + huge + " } ]"));
+    expectHostile(
+        modelText(1, "[ { means: [ 0." + zeros + " ], sigmas: [ 1." + ones + " ], weights: [ 1." + zeros + " ] } ]"));
     expectHostile(modelText(1, layers, 200));
     for (int layerCount : { 0, 2, -1, 2147483647 })
         expectHostile(modelText(1, good, layerCount));
@@ -406,6 +456,15 @@ TEST(HDPStereo_ModelFiles, truncated_ones_change_nothing)
     const size_t last = text.find_last_of("0123456789");
     for (size_t length = 0; length < last - 40; length += 7)
         expectHostile(text.substr(0, length));
+}
+
+TEST(HDPStereo_ModelFiles, exceptions_name_the_file)
+{
+    const TemporaryFile foreign(".yml"), other(".yml");
+    std::ofstream(foreign.name.c_str()) << "root:x:0:0\n";
+    HDPTreeMatcher::create()->save(other.name);
+    for (const std::string& name : { foreign.name, other.name, foreign.name + ".none" })
+        expectRejected([&] { DisparityPredictionModel::load(name); }, "filename: '" + name + "'");
 }
 
 //! A matcher says that a model is too small before it works, and is as it was.

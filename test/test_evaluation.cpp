@@ -8,6 +8,8 @@
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 
+#include <set>
+
 #include "../samples/hdp_report.hpp"
 
 namespace opencv_test {
@@ -28,10 +30,10 @@ Pair makePair(Pair::Protocol protocol, const Mat& truth, const Mat& judged)
 
 TEST(HDPStereo_Evaluation, middlebury_by_hand)
 {
-    const Mat truth = (Mat_<float>(2, 5) << 10, 10, 10, 10, 10, 20, 20, 20, none, 20);
-    const Mat judged = (Mat_<uchar>(2, 5) << 255, 255, 255, 255, 255, 255, 255, 255, 0, 0);
+    const Mat truth = Mat_<float>({ 2, 5 }, { 10, 10, 10, 10, 10, 20, 20, 20, none, 20 });
+    const Mat judged = Mat_<uchar>({ 2, 5 }, { 255, 255, 255, 255, 255, 255, 255, 255, 0, 0 });
     // Errors: 0, 0.9375, 1, 1.9375, 2; none, 100, -0.5; not judged: 5 and none
-    const Mat map = (Mat_<float>(2, 5) << 10, 10.9375f, 9, 11.9375f, 12, none, 120, 19.5f, 5, none);
+    const Mat map = Mat_<float>({ 2, 5 }, { 10, 10.9375f, 9, 11.9375f, 12, none, 120, 19.5f, 5, none });
     const Score score = scoreMap(map, makePair(Pair::MIDDLEBURY, truth, judged));
     EXPECT_DOUBLE_EQ(100. * 5 / 8, score.error1);
     EXPECT_DOUBLE_EQ(100. * 3 / 8, score.error2);
@@ -42,11 +44,11 @@ TEST(HDPStereo_Evaluation, middlebury_by_hand)
 
 TEST(HDPStereo_Evaluation, kitti_by_hand)
 {
-    const Mat truth = (Mat_<float>(1, 7) << 100, 100, 100, 20, 20, none, 20);
+    const Mat truth = Mat_<float>({ 1, 7 }, { 100, 100, 100, 20, 20, none, 20 });
     // Errors: 4 (below 5 %), 5 (not above), 5.5, 3 (not above), 3.25, of unknown truth, none
-    const Mat map = (Mat_<float>(1, 7) << 104, 95, 105.5f, 23, 16.75f, 3, none);
+    const Mat map = Mat_<float>({ 1, 7 }, { 104, 95, 105.5f, 23, 16.75f, 3, none });
     Pair pair = makePair(Pair::KITTI, truth, knownPixels(truth));
-    pair.judgedNonOccluded = (Mat_<uchar>(1, 7) << 255, 255, 255, 255, 0, 0, 0);
+    pair.judgedNonOccluded = Mat_<uchar>({ 1, 7 }, { 255, 255, 255, 255, 0, 0, 0 });
     const Score score = scoreMap(map, pair);
     EXPECT_DOUBLE_EQ(100. * 3 / 6, score.d1);
     EXPECT_DOUBLE_EQ(100. * 1 / 4, score.d1NonOccluded);
@@ -65,11 +67,11 @@ TEST(HDPStereo_Evaluation, no_truth_no_score)
 
 TEST(HDPStereo_Evaluation, occlusion_by_hand)
 {
-    const Mat left = (Mat_<float>(1, 6) << 1, 2, 2, 2.5f, none, 3),
-              right = (Mat_<float>(1, 6) << 2, 2.5f, 4, none, 2, 1);
+    const Mat left = Mat_<float>({ 1, 6 }, { 1, 2, 2, 2.5f, none, 3 }),
+              right = Mat_<float>({ 1, 6 }, { 2, 2.5f, 4, none, 2, 1 });
     // x - floor(d): -1, -1, 0 (2 = 2), 1 (2.5 = 2.5), unknown, 2 (3, 4)
-    expectIdentical((Mat_<uchar>(1, 6) << 0, 0, 255, 255, 0, 0), nonOccludedPixels(left, right));
-    expectIdentical((Mat_<uchar>(1, 6) << 0, 0, 255, 255, 0, 255), nonOccludedPixels(left, right, 1));
+    expectIdentical(Mat_<uchar>({ 1, 6 }, { 0, 0, 255, 255, 0, 0 }), nonOccludedPixels(left, right));
+    expectIdentical(Mat_<uchar>({ 1, 6 }, { 0, 0, 255, 255, 0, 255 }), nonOccludedPixels(left, right, 1));
 }
 
 TEST(HDPStereo_Evaluation, means_leave_out_what_is_missing)
@@ -113,7 +115,7 @@ TEST(HDPStereo_Evaluation, base64_of_rfc_4648)
 
 TEST(HDPStereo_Evaluation, truth_of_a_layer)
 {
-    const Mat truth = (Mat_<float>(3, 5) << 8, 1, none, 3, 20, 1, 1, 1, 1, 1, 6, 1, 10, 1, 1);
+    const Mat truth = Mat_<float>({ 3, 5 }, { 8, 1, none, 3, 20, 1, 1, 1, 1, 1, 6, 1, 10, 1, 1 });
     const Mat first = truthOfLayer(truth, 1), second = truthOfLayer(truth, 2);
     ASSERT_EQ(Size(2, 1), first.size());
     EXPECT_EQ(4.f, first.at<float>(0, 0));
@@ -124,7 +126,7 @@ TEST(HDPStereo_Evaluation, truth_of_a_layer)
 
 TEST(HDPStereo_Evaluation, sampled_matrix_counts_pairs)
 {
-    const Mat truth = (Mat_<float>(2, 4) << 6, 6, 7, none, 5, 6, 20, 2), upper = (Mat_<float>(1, 2) << 3, 1);
+    const Mat truth = Mat_<float>({ 2, 4 }, { 6, 6, 7, none, 5, 6, 20, 2 }), upper = Mat_<float>({ 1, 2 }, { 3, 1 });
     const Mat_<double> matrix = sampledMatrix(truth, upper, 9);
     ASSERT_EQ(Size(9, 5), matrix.size());
     EXPECT_EQ(3, matrix(3, 6));
@@ -134,25 +136,97 @@ TEST(HDPStereo_Evaluation, sampled_matrix_counts_pairs)
     EXPECT_EQ(6, sum(matrix)[0]); // not those of unknown truth, and of 20 disparities
 }
 
+TEST(HDPStereo_Evaluation, wrong_pixels_are_red_and_occluded_ones_black)
+{
+    const Vec3b red(0, 0, 255), black(0, 0, 0);
+    const Mat truth = (Mat_<float>(1, 6) << 10, 10, 60, none, 40, 60),
+              map = (Mat_<float>(1, 6) << 11.9375f, 12, 55.5f, 10, 40, none);
+    const struct
+    {
+        Pair::Protocol protocol;
+        bool wrong[6], blank[6];
+    } cases[] = {
+        { Pair::MIDDLEBURY, { false, true, true, false, false, true }, { false, false, false, true, true, false } },
+        { Pair::KITTI, { false, false, true, false, false, true }, { false, false, false, false, false, false } },
+        { Pair::NO_TRUTH, { false, false, false, false, false, false }, { false, false, false, false, false, true } },
+    };
+    for (const auto& c : cases)
+    {
+        // The last but one is occluded; KITTI's pictures do not show what is not judged.
+        const Mat judged = (Mat_<uchar>(1, 6) << 255, 255, 255, 0, 0, 255);
+        const Mat picture = resultPicture(map, makePair(c.protocol, truth, judged));
+        for (int x = 0; x < truth.cols; ++x)
+        {
+            EXPECT_EQ(c.wrong[x], picture.at<Vec3b>(0, x) == red) << "protocol " << c.protocol << ", pixel " << x;
+            EXPECT_EQ(c.blank[x], picture.at<Vec3b>(0, x) == black) << "protocol " << c.protocol << ", pixel " << x;
+        }
+    }
+}
+
+TEST(HDPStereo_Evaluation, every_tree_has_a_color)
+{
+    Mat trees(40, 50, CV_32S);
+    for (int i = 0; i < 2000; ++i)
+        trees.ptr<int>()[i] = i / 2;
+    const Mat picture = forestPicture(trees);
+    std::set<int> colors;
+    for (int i = 0; i < 2000; ++i)
+    {
+        const Vec3b color = picture.ptr<Vec3b>()[i];
+        EXPECT_EQ(picture.ptr<Vec3b>()[i / 2 * 2], color);
+        colors.insert(color[0] | color[1] << 8 | color[2] << 16);
+    }
+    EXPECT_EQ(1000u, colors.size());
+}
+
+TEST(HDPStereo_Evaluation, widths_in_steps_of_the_logarithm)
+{
+    const Mat intervals = (Mat_<Vec2w>(1, 4) << Vec2w(7, 7), Vec2w(0, 3), Vec2w(16, 23), Vec2w(0, 255));
+    const Mat levels = (Mat_<uchar>(1, 4) << 0, 64, 96, 255); // of 1, 4, 8 and all 256 candidates
+    Mat colors;
+    cv::applyColorMap(levels, colors, cv::COLORMAP_VIRIDIS);
+    expectIdentical(colors, widthPicture(intervals, 256));
+}
+
+TEST(HDPStereo_Evaluation, predicted_matrix_by_hand)
+{
+    const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
+    model->addLayer({ 0.5 }, { 2 }, { 1 });
+    const Mat_<double> matrix = predictedMatrix(*model, 0, { 1, 0, 3, 4, 0.5 });
+    ASSERT_EQ(Size(5, 3), matrix.size());
+    // exp(-(i - floor(j / 2) - 0.5)^2 / 8) / (2 sqrt(2 pi)) P(j)
+    EXPECT_NEAR(0.193334 * 1, matrix(0, 0), 1e-5); // offset 0
+    EXPECT_EQ(0, matrix(1, 1));
+    EXPECT_NEAR(0.193334 * 3, matrix(2, 2), 1e-5);   // offset 1
+    EXPECT_NEAR(0.150569 * 4, matrix(0, 3), 1e-5);   // offset -1
+    EXPECT_NEAR(0.091325 * 0.5, matrix(0, 4), 1e-5); // offset -2
+}
+
 //! The matcher of a layer finds what the whole matcher has found there on its way: the search of the layer below is the
 //! same by either.
 TEST(HDPStereo_Evaluation, matcher_of_a_layer)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 11);
     const Ptr<DisparityPredictionModel> model = publishedModel(160);
-    const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32, HDPTreeMatcher::PRESET_PAPER);
-    expectIdentical(match(*whole, pair.left, pair.right),
-                    match(*matcherOfLayer(0, 3, 32, 160, model), pair.left, pair.right));
-    std::vector<double> wholeRatios, ratios;
-    whole->getSearchRatios(wholeRatios);
+    for (int preset : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE })
+    {
+        SCOPED_TRACE(preset);
+        const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32, preset),
+                                  adapted = HDPTreeMatcher::create(0, 32, preset),
+                                  upper = HDPTreeMatcher::create(0, disparitiesOfLayer(32, 1), preset);
+        adaptToLayer(*adapted, 0, 3, 160, model);
+        expectIdentical(match(*whole, pair.left, pair.right), match(*adapted, pair.left, pair.right));
+        std::vector<double> wholeRatios, ratios;
+        whole->getSearchRatios(wholeRatios);
 
-    const Ptr<HDPTreeMatcher> upper = matcherOfLayer(1, 3, 32, 160, upperPart(*model, 1));
-    EXPECT_EQ(16, upper->getNumDisparities());
-    match(*upper, nextLayer(pair.left), nextLayer(pair.right));
-    upper->getSearchRatios(ratios);
-    ASSERT_EQ(2u, ratios.size());
-    EXPECT_NEAR(wholeRatios[1], ratios[0], 0.02); // the means of 2 x 2 pixels are rounded in another way
-    EXPECT_EQ(1, ratios[1]);
+        EXPECT_EQ(16, upper->getNumDisparities());
+        adaptToLayer(*upper, 1, 3, 160, upperPart(*model, 1));
+        match(*upper, nextLayer(pair.left), nextLayer(pair.right));
+        upper->getSearchRatios(ratios);
+        ASSERT_EQ(2u, ratios.size());
+        EXPECT_NEAR(wholeRatios[1], ratios[0], 0.02); // the means of 2 x 2 pixels are rounded in another way
+        EXPECT_EQ(1, ratios[1]);
+    }
 }
 
 //! What getForest() gives agrees with the other results of the same compute().

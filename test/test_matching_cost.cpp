@@ -107,7 +107,7 @@ TEST(HDPStereo_MatchingCostInput, regions_of_interest)
 //! Edges at the border that differ are not alike, however strong they are.
 TEST(HDPStereo_MatchingCostInput, strong_edges_at_the_border)
 {
-    const Mat left = (Mat_<uchar>(1, 4) << 10, 210, 30, 130), right = (Mat_<uchar>(1, 4) << 10, 130, 30, 230);
+    const Mat left = Mat_<uchar>({ 1, 4 }, { 10, 210, 30, 130 }), right = Mat_<uchar>({ 1, 4 }, { 10, 130, 30, 230 });
     testCost(left, right, 4, paperParams);
 }
 

@@ -74,7 +74,7 @@ TEST(HDPStereo_SupportPoints, buffers_serve_pairs_of_any_size)
 
 TEST(HDPStereo_SupportPoints, histogram_leaves_out_0)
 {
-    const Mat points = (Mat_<short>(2, 4) << -1, 0, 3, 3, 1, -1, 0, 3);
+    const Mat points = Mat_<short>({ 2, 4 }, { -1, 0, 3, 3, 1, -1, 0, 3 });
     std::vector<double> histogram;
     hdp::disparityHistogram(points, 5, histogram);
     ASSERT_EQ(5u, histogram.size());

@@ -11,7 +11,7 @@
 /** @defgroup hdpstereo Non-local stereo matching with hierarchical disparity prediction
 
 Dense stereo matching of rectified pairs after "Fast Non-local Stereo Matching based on Hierarchical
-Disparity Prediction" @cite Luo2015HDP.
+Disparity Prediction" @cite Luo2015HDP .
 
 Tree-based (non-local) matching @cite Yang2012MST aggregates the matching cost over a spanning tree of
 the image instead of over a window. It is slow because it searches the whole disparity range, and greedy
@@ -30,6 +30,8 @@ cv::stereo::HDPTreeMatcher is a cv::StereoMatcher, so a program that uses cv::St
 
 The spanning tree is pluggable, see cv::stereo::TreeStrategy; the distribution that drives the prediction
 is a cv::stereo::DisparityPredictionModel.
+
+Tutorials: @ref tutorial_hdpstereo_matching, @ref tutorial_hdpstereo_own_tree
 */
 
 #endif

@@ -13,12 +13,16 @@ namespace stereo {
 //! @{
 
 /** @brief How the disparities of two consecutive pyramid layers go together: the Hierarchical Disparity
-Prediction Model of @cite Luo2015HDP, section 2.2.
+Prediction Model of @cite Luo2015HDP , section 2.2.
 
 For each layer l it holds a Gaussian mixture over the offset \f$o = D_{l+1} - \lfloor D_l / 2 \rfloor\f$ of
 a pixel's disparity in layer l + 1 from half its disparity in layer l, so that
 \f$P(D_{l+1} = i | D_l = j) = GMM_l(i - \lfloor j / 2 \rfloor)\f$. Layer 0 is the image itself. Offsets are
 in whole pixels of layer l + 1.
+
+A model is saved by cv::Algorithm::save() and read by load(); clear() takes its layers away. read() throws
+cv::Exception, and leaves the model as it was, for a file that does not hold a model of at most 64 layers of at most
+1024 Gaussians.
  */
 class CV_EXPORTS_W DisparityPredictionModel : public Algorithm
 {
@@ -47,13 +51,16 @@ public:
     /** @brief The mixture of a layer, see addLayer().
     @param layer 0 .. getNumLayers() - 1.
     @param means, sigmas, weights Receive K numbers each.
+    @throws cv::Exception if there is no such layer.
      */
     CV_WRAP virtual void getLayer(int layer, CV_OUT std::vector<double>& means, CV_OUT std::vector<double>& sigmas,
                                   CV_OUT std::vector<double>& weights) const = 0;
 
     /** @brief \f$GMM_l(o)\f$, the density of the mixture at an offset.
     @param layer 0 .. getNumLayers() - 1.
-    @param offset o in pixels of layer + 1.
+    @param offset o in pixels of layer + 1, of any sign.
+    @return A number >= 0 per pixel of offset.
+    @throws cv::Exception if there is no such layer.
      */
     CV_WRAP virtual double density(int layer, double offset) const = 0;
 
@@ -85,6 +92,7 @@ public:
     @param disparities, upperDisparities Maps as for train().
     @param offsets Receives the offsets that there are, ascending.
     @param counts Receives the number of pixels of each.
+    @throws cv::Exception if the maps are not as train() wants them.
      */
     CV_WRAP static void countOffsets(InputArrayOfArrays disparities, InputArrayOfArrays upperDisparities,
                                      CV_OUT std::vector<int>& offsets, CV_OUT std::vector<double>& counts);
@@ -96,6 +104,7 @@ public:
 
     The matcher takes the authors' by itself. testdata/cv/hdpstereo/models has all of them as files.
     @param which One of DisparityPredictionModel::Published.
+    @throws cv::Exception if it is none of them.
      */
     CV_WRAP static Ptr<DisparityPredictionModel> createPublished(int which);
 

@@ -15,11 +15,11 @@ namespace stereo {
 /** @brief What a spanning tree algorithm knows of a tree under construction. */
 struct TreeState
 {
-    int size;        //!< number of pixels, >= 1
-    uchar maxWeight; //!< the largest weight of the edges inside the tree, 0 for a single pixel
+    int size;        //!< number of pixels of the layer, >= 1
+    uchar maxWeight; //!< the largest weight of the edges inside the tree, in intensity levels; 0 for a single pixel
 };
 
-/** @brief How the spanning trees of a layer are built: Rule 1 and Rule 2 of @cite Luo2015HDP, section 3.2.
+/** @brief How the spanning trees of a layer are built: Rule 1 and Rule 2 of @cite Luo2015HDP , section 3.2.
 
 The edges of the layer's graph are tried one after another (Rule 1 gives the order); an edge joins the two
 trees at its ends, if they are different, when Rule 2 allows it. The rules that take disparity into account
@@ -44,7 +44,12 @@ Derive from this class to plug in a tree of your own:
 @endcode
 
 A strategy is only read while a pair is matched. Both rules must be pure functions of their arguments, or
-the results of the matcher are not reproducible. What they throw leaves compute() and the matcher usable.
+the results of the matcher are not reproducible. What they throw leaves compute(), and the matcher is usable
+afterwards. A strategy cannot be derived in Python, which has the three of the module.
+
+cv::Algorithm::write() of a matcher stores the strategy's getDefaultName(), and what its write() adds. Only
+the strategies of this module can be created from a file: see HDPTreeMatcher. @ref tutorial_hdpstereo_own_tree
+has a complete example.
  */
 class CV_EXPORTS_W TreeStrategy : public Algorithm
 {
@@ -53,44 +58,50 @@ public:
 
     An edge is a number: edge 2 * i joins pixel i = y * width + x to its right neighbour, edge 2 * i + 1 to the
     neighbour below.
-    @param weights The edges' weights: the largest absolute difference over the colour channels. CV_8UC2 of the
-    layer's size, continuous, so that weights.ptr()[e] is the weight of edge e.
+    @param weights The edges' weights: the largest absolute difference over the colour channels, 0..255. CV_8UC2
+    of the layer's size, continuous, so that weights.ptr()[e] is the weight of edge e. Those of the last column
+    to its right and of the last row below belong to no edge.
     @param edges The edges that DT-Rule 1 left (without prediction all edges of the image), by number. To be
-    brought into the order in which they are tried; none may be added, removed or repeated.
+    brought into the order in which they are tried; none may be added, removed or repeated, or compute() throws
+    cv::Exception.
      */
     virtual void orderEdges(const Mat& weights, std::vector<int>& edges) const = 0;
 
     /** @brief Rule 2: may this edge join these two trees?
 
-    Called only for ends that are in different trees.
+    Called only for ends that are in different trees, from one thread.
     @param weight The edge's weight, 0..255.
     @param a, b The trees at the edge's two ends, before they are joined.
+    @return Whether Rule 2 allows it; DT-Rule 2 may still forbid it.
      */
     virtual bool mayJoin(int weight, const TreeState& a, const TreeState& b) const = 0;
 
-    /** @brief Whether a joined tree searches the union of its parts' disparity intervals (true, the
-    paper's DT-Rule 2), or keeps the interval of its larger part. */
+    /** @brief Whether a joined tree searches the hull of its parts' disparity intervals (true, the paper's
+    DT-Rule 2; default), or keeps the interval of its larger part. */
     virtual bool unitesIntervals() const { return true; }
 
     /** @brief Whether, without prediction, the trees that Rule 2 left apart are joined into one spanning
-    tree by a second pass over the edges in the same order. */
+    tree by a second pass over the edges in the same order (true, default), or stay apart. */
     virtual bool linksTrees() const { return true; }
 };
 
-/** @brief Minimum spanning tree @cite Yang2012MST: edges by ascending weight, every edge may join. */
+/** @brief Minimum spanning tree @cite Yang2012MST : edges by ascending weight, every edge may join. */
 CV_EXPORTS_W Ptr<TreeStrategy> createMinimumSpanningTree();
 
-/** @brief Segment tree @cite Mei2013ST: edges by ascending weight; two trees a and b are joined by an edge
+/** @brief Segment tree @cite Mei2013ST : edges by ascending weight; two trees a and b are joined by an edge
 of weight w only if \f$w \le \min(w_{max}(a) + k/|a|,\; w_{max}(b) + k/|b|)\f$.
 
 A joined tree keeps the disparity interval of its larger part. Without prediction the segments are linked
 into one tree afterwards.
-@param k How readily small segments grow, finite, >= 0. The larger, the larger the segments.
+@param k How readily small segments grow, in intensity levels times pixels, finite, >= 0. The larger, the
+larger the segments.
+@throws cv::Exception if k is not so.
  */
 CV_EXPORTS_W Ptr<TreeStrategy> createSegmentTree(double k = 1200);
 
-/** @brief Random tree (@cite Luo2015HDP, section 4.1): edges in random order, every edge may join.
+/** @brief Random tree (section 4.1 of @cite Luo2015HDP ): edges in random order, every edge may join.
 @param seed Seed of the shuffle, >= 0. The same seed gives the same tree on every machine.
+@throws cv::Exception if seed is negative.
  */
 CV_EXPORTS_W Ptr<TreeStrategy> createRandomTree(int seed = 0);
 

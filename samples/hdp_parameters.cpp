@@ -1,0 +1,171 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// What each parameter of HDPTreeMatcher does to speed and accuracy: changes one at a time in PRESET_FAST and in
+// PRESET_TREE, matches all pairs of a dataset, and prints a table of the errors and of the time beside the preset's own.
+
+#include <iostream>
+
+#include "hdp_tables.hpp"
+
+using namespace cv;
+using namespace hdp_samples;
+using cv::stereo::HDPTreeMatcher;
+
+static const char* const KEYS =
+    "{help h ?  |           | print this and exit }"
+    "{@root     |           | folder of Middlebury pairs with truth, see hdp_evaluate }"
+    "{presets   | fast,tree | those to change: fast, tree or both }"
+    "{runs      | 3         | how often a pair is matched in each way, in turns; the shortest times count }"
+    "{threads   |           | number of threads; all processors if not given }";
+
+static const std::vector<String> FLAGS = { "help", "h", "?" };
+
+//! A preset, or a preset with one change
+struct Variant
+{
+    String name;
+    std::function<void(HDPTreeMatcher&)> change;
+    double error1, error2, relativeTime; // sums over the pairs
+};
+
+//! One for each value of a parameter
+template <typename Value>
+static void add(std::vector<Variant>& variants, const String& parameter, void (HDPTreeMatcher::*setter)(Value),
+                const std::vector<Value>& values)
+{
+    for (const Value value : values)
+    {
+        std::ostringstream name;
+        name << std::boolalpha << parameter << " = " << value;
+        variants.push_back({ name.str(), [=](HDPTreeMatcher& m) { (m.*setter)(value); }, 0, 0, 0 });
+    }
+}
+
+static void addTree(std::vector<Variant>& variants, const String& name, const Ptr<stereo::TreeStrategy>& strategy)
+{
+    variants.push_back({ "treeStrategy = " + name, [=](HDPTreeMatcher& m) { m.setTreeStrategy(strategy); }, 0, 0, 0 });
+}
+
+//! What a preset is changed to; the first one is the preset itself.
+static std::vector<Variant> variantsOf(int preset)
+{
+    typedef HDPTreeMatcher M;
+    std::vector<Variant> variants(1, { "PRESET_FAST", [](M&) {}, 0, 0, 0 });
+    add<int>(variants, "blockSize", &M::setBlockSize, { 3, 5 });
+    add<int>(variants, "disparityMedianSize", &M::setDisparityMedianSize, { 0, 3, 7 });
+    add<int>(variants, "disparityMedianPasses", &M::setDisparityMedianPasses, { 2 });
+    add<double>(variants, "gamma", &M::setGamma, { 10, 40 });
+    add<bool>(variants, "fillOcclusions", &M::setFillOcclusions, { false });
+    add<bool>(variants, "useSubpixel", &M::setUseSubpixel, { false });
+    add<bool>(variants, "useNonLocalRefinement", &M::setUseNonLocalRefinement, { true });
+    variants.push_back(
+        { "numDisparities twice as large", [](M& m) { m.setNumDisparities(2 * m.getNumDisparities()); }, 0, 0, 0 });
+    if (preset == M::PRESET_FAST) // each has one of the two
+        addTree(variants, "createMinimumSpanningTree()", stereo::createMinimumSpanningTree());
+    else
+        addTree(variants, "createSegmentTree()", stereo::createSegmentTree());
+    addTree(variants, "createRandomTree()", stereo::createRandomTree());
+    if (preset == M::PRESET_FAST)
+    {
+        add<int>(variants, "numLayers", &M::setNumLayers, { 2, 4 });
+        add<int>(variants, "finestLayer", &M::setFinestLayer, { 1, 2 });
+        add<int>(variants, "scanlinePasses", &M::setScanlinePasses, { 2, 3 });
+        add<int>(variants, "smallPenalty", &M::setSmallPenalty, { 6, 24 });
+        add<int>(variants, "largePenalty", &M::setLargePenalty, { 25, 100 });
+    }
+    else
+    {
+        variants[0].name = "PRESET_TREE";
+        add<int>(variants, "numLayers", &M::setNumLayers, { 2, 4 });
+        add<double>(variants, "delta0", &M::setDelta0, { 0.005, 0.08 });
+        add<double>(variants, "beta", &M::setBeta, { 0.6, 0.98 });
+        add<int>(variants, "intervalMargin", &M::setIntervalMargin, { 0, 4 });
+        add<int>(variants, "disparityPrior", &M::setDisparityPrior, { M::PRIOR_SUPPORT_POINTS });
+        add<bool>(variants, "usePrediction", &M::setUsePrediction, { false });
+        variants.push_back({ "matchingCost = COST_COLOR_GRADIENT, blockSize = 1",
+                             [](M& m) {
+            m.setMatchingCost(M::COST_COLOR_GRADIENT);
+            m.setBlockSize(1);
+            m.setFillOcclusions(false); // needs the census
+                            },
+                             0, 0, 0 });
+    }
+    return variants;
+}
+
+//! Matches a pair in all ways, in turns, so that what else the computer does slows all of them down alike.
+static void measure(const Pair& pair, int preset, int runs, std::vector<Variant>& variants)
+{
+    std::vector<Ptr<HDPTreeMatcher>> matchers;
+    for (const Variant& variant : variants)
+    {
+        matchers.push_back(HDPTreeMatcher::create(0, pair.numDisparities, preset));
+        variant.change(*matchers.back());
+    }
+    std::vector<double> seconds(variants.size(), DBL_MAX);
+    std::vector<Mat> maps(variants.size());
+    for (int run = 0; run < runs; run++)
+        for (size_t i = 0; i < variants.size(); i++)
+        {
+            TickMeter timer;
+            timer.start();
+            matchers[i]->compute(pair.left, pair.right, maps[i]);
+            timer.stop();
+            seconds[i] = std::min(seconds[i], timer.getTimeSec());
+        }
+    for (size_t i = 0; i < variants.size(); i++)
+    {
+        const Score score = scoreMap(toPixels(maps[i], 0), pair);
+        variants[i].error1 += score.error1;
+        variants[i].error2 += score.error2;
+        variants[i].relativeTime += seconds[i] / seconds[0];
+    }
+}
+
+static void run(const CommandLineParser& parser)
+{
+    if (parser.has("threads"))
+        setNumThreads(getInteger(parser, "threads", 1, 1024));
+    const int runs = getInteger(parser, "runs", 1, 1000);
+    std::vector<int> presets;
+    const String names = "," + lowerCase(parser.get<String>("presets")) + ",";
+    if (names.find(",fast,") != String::npos)
+        presets.push_back(HDPTreeMatcher::PRESET_FAST);
+    if (names.find(",tree,") != String::npos)
+        presets.push_back(HDPTreeMatcher::PRESET_TREE);
+    if (presets.empty())
+        fail("--presets=" + parser.get<String>("presets") + ": neither fast nor tree");
+
+    std::vector<Scene> scenes;
+    for (const Scene& scene : findScenes(parser.get<String>("@root")))
+        if (!scene.truth.empty() && !scene.isFrame)
+            scenes.push_back(scene);
+    if (scenes.empty())
+        fail(parser.get<String>("@root") + ": no Middlebury pairs with truth");
+
+    for (const int preset : presets)
+    {
+        std::vector<Variant> variants = variantsOf(preset);
+        for (const Scene& scene : scenes)
+        {
+            std::cerr << variants[0].name << ": " << scene.set << "/" << scene.name << std::endl;
+            measure(readPair(scene), preset, runs, variants);
+        }
+        const double pairs = double(scenes.size());
+        std::cout << "| " << variants[0].name << " with | err>=1 % | err>=2 % | time |\n|---|---|---|---|\n";
+        for (const Variant& v : variants)
+            std::cout << format("| %s | %.2f | %.2f | %.2f |\n", v.name.c_str(), v.error1 / pairs, v.error2 / pairs,
+                                v.relativeTime / pairs);
+        std::cout << std::endl;
+    }
+}
+
+int main(int argc, char** argv)
+{
+    return runSample(argc, argv, KEYS,
+                     "What each parameter does to speed and accuracy: mean errors over all pairs, and the time as a "
+                     "multiple of the preset's.\n",
+                     FLAGS, 1, run);
+}

@@ -1,0 +1,214 @@
+#!/usr/bin/env python
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
+'''
+Matches a rectified stereo pair by cv.stereo.HDPTreeMatcher, beside cv.StereoSGBM.
+
+usage:
+    hdp_stereo_match.py [LEFT RIGHT] [--preset=fast] [--num-disparities=128] [--compare]
+                        [--output=FILE.png|FILE.pfm] [--picture=FILE] [--point-cloud=FILE.ply] [--truth=FILE] [--show]
+
+Without LEFT and RIGHT it takes the Aloe pair of OpenCV's samples, with ground truth; --help lists all options.
+'''
+
+from __future__ import print_function
+
+import argparse
+import sys
+
+import numpy as np
+import cv2 as cv
+
+PRESETS = {
+    'ultrafast': cv.stereo.HDPTreeMatcher_PRESET_ULTRAFAST,
+    'fast': cv.stereo.HDPTreeMatcher_PRESET_FAST,
+    'quality': cv.stereo.HDPTreeMatcher_PRESET_QUALITY,
+    'tree': cv.stereo.HDPTreeMatcher_PRESET_TREE,
+    'paper': cv.stereo.HDPTreeMatcher_PRESET_PAPER,
+}
+
+TREES = {
+    'mst': cv.stereo.createMinimumSpanningTree,
+    'st': cv.stereo.createSegmentTree,
+    'rt': cv.stereo.createRandomTree,
+}
+
+PLY_HEADER = '''ply
+format binary_little_endian 1.0
+element vertex %d
+property float x
+property float y
+property float z
+property uchar red
+property uchar green
+property uchar blue
+end_header
+'''
+
+
+def read_image(filename, flags=cv.IMREAD_COLOR):
+    image = cv.imread(cv.samples.findFile(filename, required=False) or filename, flags)
+    if image is None:
+        sys.exit('cannot read the image ' + filename)
+    return image
+
+
+def read_disparity(filename, scale):
+    '''PNG of 8 bit, or of 16 bit (disparity * 256), both with 0 for unknown, or PFM. NaN where it is unknown.'''
+    image = read_image(filename, cv.IMREAD_UNCHANGED)
+    if image.ndim != 2:
+        sys.exit(filename + ' is a color image, not a disparity map')
+    scale = scale or (256.0 if image.dtype == np.uint16 else 1.0)
+    disparity = image.astype(np.float32) / scale
+    disparity[~np.isfinite(disparity) if image.dtype == np.float32 else image == 0] = np.nan
+    return disparity
+
+
+def write(filename, image):
+    try:
+        written = cv.imwrite(filename, image)
+    except cv.error:
+        written = False
+    if not written:
+        sys.exit('cannot write ' + filename)
+    print('written', filename)
+
+
+def write_disparity(filename, disparity):
+    if filename.lower().endswith('.pfm'):
+        write(filename, np.where(np.isnan(disparity), np.float32(np.inf), disparity))
+    else:
+        known = (disparity >= 0) & (disparity < 256)
+        write(filename, np.where(known, np.maximum(np.nan_to_num(disparity) * 256, 1), 0).astype(np.uint16))
+
+
+def color_picture(disparity):
+    '''From blue (far) to orange (near); black where there is no disparity.'''
+    known = ~np.isnan(disparity)
+    low, high = np.percentile(disparity[known], (1, 99))
+    levels = np.clip((disparity - low) / max(high - low, 1), 0, 1) * 150 + 20
+    picture = cv.applyColorMap(np.nan_to_num(levels).astype(np.uint8), cv.COLORMAP_TURBO)
+    picture[~known] = 0
+    return picture
+
+
+def write_point_cloud(filename, disparity, image, focal, baseline):
+    '''A binary .ply file; the principal point is the center of the image.'''
+    height, width = disparity.shape
+    Q = np.float64([[1, 0, 0, -0.5 * (width - 1)],
+                    [0, 1, 0, -0.5 * (height - 1)],
+                    [0, 0, 0, focal],
+                    [0, 0, 1 / baseline, 0]])
+    points = cv.reprojectImageTo3D(disparity, Q)
+    seen = np.isfinite(points).all(axis=2)
+    vertices = np.empty(np.count_nonzero(seen), [('position', '<f4', 3), ('color', 'u1', 3)])
+    vertices['position'] = points[seen]
+    vertices['color'] = image[seen][:, ::-1]
+    with open(filename, 'wb') as f:
+        f.write((PLY_HEADER % len(vertices)).encode('ascii'))
+        f.write(vertices.tobytes())
+    print('written %s (%d points)' % (filename, len(vertices)))
+
+
+def compute(matcher, left, right):
+    '''Disparities in pixels, NaN where there is none.'''
+    disparity = matcher.compute(left, right).astype(np.float32) / 16
+    disparity[disparity < matcher.getMinDisparity()] = np.nan
+    return disparity
+
+
+def time_in_turns(matchers, left, right, runs):
+    '''Median milliseconds of compute(): in turns, so that what else the machine does hits all of them.'''
+    times = {name: [] for name in matchers}
+    for _ in range(runs):
+        for name, matcher in matchers.items():
+            start = cv.getTickCount()
+            matcher.compute(left, right)
+            times[name].append((cv.getTickCount() - start) * 1000 / cv.getTickFrequency())
+    return {name: np.median(values) for name, values in times.items()}
+
+
+def main():
+    parser = argparse.ArgumentParser(description='Disparity of a rectified stereo pair by cv.stereo.HDPTreeMatcher.')
+    parser.add_argument('left', nargs='?', help='left image; without one, the Aloe pair of OpenCV\'s samples')
+    parser.add_argument('right', nargs='?', help='right image')
+    parser.add_argument('--preset', choices=PRESETS, default='fast', help='set of parameters (default: fast)')
+    parser.add_argument('--tree', choices=TREES,
+                        help='spanning tree: minimum, segment or random (default: the preset\'s)')
+    parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity in pixels (default: 0)')
+    parser.add_argument('--num-disparities', type=int, help='number of disparities (default: a fifth of the width)')
+    parser.add_argument('--output', help='disparity: .png (16 bit, times 256, 0 = none) or .pfm (float, inf = none)')
+    parser.add_argument('--picture', help='disparity in colors')
+    parser.add_argument('--point-cloud', help='colored points: .ply; needs --focal and --baseline')
+    parser.add_argument('--focal', type=float, help='focal length in pixels')
+    parser.add_argument('--baseline', type=float, help='distance of the cameras, in the unit of the points')
+    parser.add_argument('--truth', help='left disparity: PNG of 8 bit or 16 bit (times 256), 0 = unknown, or PFM')
+    parser.add_argument('--truth-scale', type=float, help='what a disparity of 1 is in the truth, if not 1 or 256')
+    parser.add_argument('--compare', action='store_true',
+                        help='time and error beside cv.StereoSGBM; pixels without disparity count as wrong')
+    parser.add_argument('--runs', type=int, default=5, help='runs that --compare takes the median of (default: 5)')
+    parser.add_argument('--show', action='store_true', help='show the pictures in windows')
+    args = parser.parse_args()
+    if (args.left is None) != (args.right is None):
+        parser.error('a left and a right image are needed')
+    if bool(args.point_cloud) != bool(args.focal and args.baseline):
+        parser.error('--point-cloud needs --focal and --baseline, and they need it')
+    if args.runs < 1:
+        parser.error('--runs must be at least 1')
+    if args.left is None:
+        args.left, args.right, args.truth = 'aloeL.jpg', 'aloeR.jpg', args.truth or 'aloeGT.png'
+
+    left, right = read_image(args.left), read_image(args.right)
+    truth = read_disparity(args.truth, args.truth_scale) if args.truth else None
+    if truth is not None and truth.shape != left.shape[:2]:
+        sys.exit('the truth has another size than the images')
+    num_disparities = args.num_disparities or max((left.shape[1] // 5 + 15) // 16 * 16, 16)
+
+    try:
+        matcher = cv.stereo.HDPTreeMatcher.create(args.min_disparity, num_disparities, PRESETS[args.preset])
+        if args.tree:
+            matcher.setTreeStrategy(TREES[args.tree]())
+        matchers = {args.preset: matcher}
+        if args.compare:
+            matchers['sgbm'] = cv.StereoSGBM.create(
+                args.min_disparity, (num_disparities + 15) // 16 * 16, blockSize=3, P1=8 * 27, P2=32 * 27,
+                mode=cv.StereoSGBM_MODE_SGBM_3WAY)
+        disparities = {name: compute(m, left, right) for name, m in matchers.items()}
+    except cv.error as e:
+        sys.exit('error: ' + e.err)
+
+    print('images %d x %d, disparities %d to %d' % (left.shape[1], left.shape[0], args.min_disparity,
+                                                  args.min_disparity + num_disparities - 1))
+    times = time_in_turns(matchers, left, right, args.runs) if args.compare else {}
+    for stage, milliseconds in zip(*matcher.getStageTimes()):
+        print('%-24s%10.1f ms' % (stage, milliseconds))
+    for name, disparity in disparities.items():
+        line = '%-12s' % name
+        if times:
+            line += '%8.1f ms' % times[name]
+        if truth is not None:
+            judged = ~np.isnan(truth)
+            error = np.nan_to_num(np.abs(disparity - truth)[judged], nan=np.inf)
+            wrong = [100 * np.mean(error >= threshold) for threshold in (1, 2)]
+            line += '%10.2f %% wrong by 1 and more, %6.2f %% by 2' % tuple(wrong)
+        print(line + '%10.2f %% without disparity' % (100 * np.mean(np.isnan(disparity))))
+
+    disparity = disparities[args.preset]
+    if args.output:
+        write_disparity(args.output, disparity)
+    if args.picture:
+        write(args.picture, color_picture(disparity))
+    if args.point_cloud:
+        write_point_cloud(args.point_cloud, disparity, left, args.focal, args.baseline)
+    if args.show:
+        cv.imshow('left', left)
+        for name in disparities:
+            cv.imshow(name, color_picture(disparities[name]))
+        cv.waitKey()
+
+
+if __name__ == '__main__':
+    main()
+    cv.destroyAllWindows()
