@@ -9,6 +9,8 @@ of: what a round writes is neither read nor written in another, and GCC does not
 it is one for vectors. HDP_FOR_LANES(k, lanes) is such a loop over 4, 8, 16 or 32 lanes, a number that is known to the
 compiler, in groups of 8 that are unrolled. */
 #if defined(__clang__)
+// Not every instruction set has what each of the loops needs, which is no reason to warn.
+#pragma clang diagnostic ignored "-Wpass-failed"
 #define HDP_VECTORIZED _Pragma("clang loop vectorize(assume_safety)")
 #define HDP_UNROLLED _Pragma("clang loop unroll(full)")
 #elif defined(__GNUC__)
