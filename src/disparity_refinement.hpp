@@ -24,7 +24,7 @@ struct OcclusionScratch
 
 /** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the pixels
 that map to one column of the right image the one with the lowest residual is there; those whose disparity is another
-one, and those that map to no column, are not. Nor is what is left of a surface that begins at the border of the right
+one, and those that map to no column, are not. Nor are single pixels between two that are not, nor what is left of a surface that begins at the border of the right
 image: the last run of four pixels it shows, without steps, of which the first one is in column 0, 1 or 2.
 @param disparity CV_16UC1, times scale; changed.
 @param residual Matching costs, CV_8UC1.

@@ -82,16 +82,20 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int sh
         atBorder[x] = (uchar)(visible[x] & (columns[x] <= 1 + 2));
     }
     std::fill(visible, visible + findBorder(disparity, scratch, width, pixel), (uchar)0);
-    for (int begin = findByte(visible, 0, width, 0); begin < width;)
+    uchar* shown = atBorder; // the memory is free
+    shown[0] = visible[0];
+    shown[width - 1] = visible[width - 1];
+    HDP_VECTORIZED for (int x = 1; x < width - 1; ++x) shown[x] = visible[x] & (visible[x - 1] | visible[x + 1]);
+    for (int begin = findByte(shown, 0, width, 0); begin < width;)
     {
-        const int end = findByte(visible, begin, width, 1);
+        const int end = findByte(shown, begin, width, 1);
         if (begin > 0 || end < width)
         {
             const ushort before = disparity[begin > 0 ? begin - 1 : end],
                          after = disparity[end < width ? end : begin - 1];
             std::fill(disparity + begin, disparity + end, std::min(before, after));
         }
-        begin = findByte(visible, end, width, 0);
+        begin = findByte(shown, end, width, 0);
     }
 }
 

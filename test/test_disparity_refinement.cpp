@@ -160,6 +160,13 @@ TEST(HDPStereo_DisparityRefinement, what_is_left_of_a_surface_at_the_border_is_n
                     filled({ 1, 1, 1, 1, 1, 1, 1, 6, 6, 6, 1, 1 }, { 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1 }));
 }
 
+TEST(HDPStereo_DisparityRefinement, a_match_by_chance_in_an_occlusion_is_not_visible)
+{
+    // Columns 5 to 7 lie behind disparity 4. Column 6 matches one that column 4 has.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 12 }, { 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 4 })),
+                    filled({ 1, 1, 1, 1, 1, 1, 3, 1, 4, 4, 4, 4 }, { 1, 1, 1, 1, 1, 9, 0, 9, 1, 1, 1, 1 }));
+}
+
 TEST(HDPStereo_DisparityRefinement, visible_pixels_are_not_filled)
 {
     RNG rng(47);
