@@ -416,7 +416,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         case 13:
             return m.setUseMedianPrefilter(input.ConsumeBool());
         case 14:
-            return m.setNumLayers(upTo(16));
+            return m.setNumLayers(input.ConsumeBool() ? input.ConsumeIntegralInRange(-3, 17) : anyInt(input));
         case 15:
             return m.setDelta0(anyDouble(input));
         case 16:

@@ -32,12 +32,12 @@ struct ByteLanes
         return of(_mm256_shuffle_epi8(load(bytes, 0).v, _mm256_set1_epi8(at)));
     }
     static ByteLanes load(const uchar* bytes) { return of(_mm256_loadu_si256((const __m256i*)bytes)); }
-    static ByteLanes load(const uchar* const* bytes, size_t offset)
+    static ByteLanes load(const uchar* const* bytes, ptrdiff_t offset)
     {
         return of(_mm_loadu_si128((const __m128i*)(bytes[0] + offset)),
                   _mm_loadu_si128((const __m128i*)(bytes[1] + offset)));
     }
-    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, size_t offset)
+    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, ptrdiff_t offset)
     {
         return of(halves(low[0] + offset, high[0] + offset), halves(low[1] + offset, high[1] + offset));
     }
@@ -134,8 +134,8 @@ struct ByteLanes
         return of(_mm_shuffle_epi32(fourTimes, at % 4 * 0x55));
     }
     static ByteLanes load(const uchar* bytes) { return of(_mm_loadu_si128((const __m128i*)bytes)); }
-    static ByteLanes load(const uchar* const* bytes, size_t offset) { return load(bytes[0] + offset); }
-    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, size_t offset)
+    static ByteLanes load(const uchar* const* bytes, ptrdiff_t offset) { return load(bytes[0] + offset); }
+    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, ptrdiff_t offset)
     {
         return of(_mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i*)(low[0] + offset)),
                                      _mm_loadl_epi64((const __m128i*)(high[0] + offset))));
@@ -221,8 +221,8 @@ struct ByteLanes
     {
         return each([=](int i) { return bytes[i]; });
     }
-    static ByteLanes load(const uchar* const* bytes, size_t offset) { return load(bytes[0] + offset); }
-    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, size_t offset)
+    static ByteLanes load(const uchar* const* bytes, ptrdiff_t offset) { return load(bytes[0] + offset); }
+    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, ptrdiff_t offset)
     {
         return each([=](int i) { return i < 8 ? low[0][offset + i] : high[0][offset + i - 8]; });
     }

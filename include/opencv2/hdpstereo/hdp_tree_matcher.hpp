@@ -30,7 +30,7 @@ what cv::StereoMatcher promises: the disparity of every pixel of the left image 
 the same point as (x - disparity, y) of the right one. Pixels that a filter rejects get (minDisparity - 1) * 16, or
 minDisparity - 1. Unlike cv::StereoSGBM the matcher
 leaves no border of invalid pixels: candidates outside of the right image are compared with its nearest
-column. Images of any size from 1 x 1 and any number of disparities are allowed, also more disparities than
+column. Images from 1 x 1 to 32767 x 32767 and any number of disparities are allowed, also more disparities than
 columns.
 
 @ref tutorial_hdpstereo_matching explains the algorithm, how to choose a preset, and what each parameter does to speed
@@ -75,7 +75,9 @@ values that their setters call the default.
 
 Setters throw cv::Exception for values out of their range and leave the matcher as it was. What depends on several
 parameters or on the images is checked by compute(), before it does any work. compute() throws if
-- an image is empty or neither CV_8UC1 nor CV_8UC3, if they differ in size or type, or have 2^30 pixels and more;
+- an image is empty or neither CV_8UC1 nor CV_8UC3, if they differ in size or type, are wider or higher than 32767
+  pixels, or have 2^31 bytes and more;
+- speckleWindowSize is not 0 and the images have more than 238609294 pixels;
 - minDisparity and numDisparities give disparities that CV_16S cannot hold;
 - blockSize is not 3, 5 or 7 with COST_CENSUS;
 - the cost is not COST_CENSUS with AGGREGATION_SCANLINES or fillOcclusions;
