@@ -868,6 +868,7 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities,
         parameters.setTreeStrategy(createSegmentTree());
         parameters.setNumLayers(FEWEST_LAYERS);
         parameters.setScanlinePasses(2);
+        parameters.setDisparityMedianSize(7);
         parameters.setDisparityMedianPasses(2);
         break;
     }

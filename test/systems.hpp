@@ -74,7 +74,8 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setBlockSize(isPaper ? 1 : 7);
     matcher.setGamma(isPaper ? 25.5 : 20);
     matcher.setUseSubpixel(!isPaper);
-    matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : 5);
+    const bool isQuality = preset == HDPTreeMatcher::PRESET_QUALITY;
+    matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : isQuality ? 7 : 5);
     matcher.setDisparityMedianPasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
     matcher.setNumLayers(!hasScanlines                              ? 3

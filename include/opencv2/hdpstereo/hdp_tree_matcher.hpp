@@ -65,7 +65,7 @@ The parameters that the presets differ in:
 | delta0, beta | AUTO | 0.02, 0.9 | without effect | without effect | without effect |
 | intervalMargin | 0 | 1 | without effect | without effect | without effect |
 | useSubpixel | false | true | true | true | true |
-| disparityMedianSize | AUTO | 5 | 5 | 5 | 5 |
+| disparityMedianSize | AUTO | 5 | 5 | 5 | 7 |
 | disparityMedianPasses | 1 | 1 | 1 | 1 | 2 |
 | scanlinePasses | without effect | without effect | 1 | 1 | 2 |
 | fillOcclusions | false | true | true | true | true |
