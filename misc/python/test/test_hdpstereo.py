@@ -527,7 +527,7 @@ class hdpstereo_test(TestCase):
         model = cv.stereo.DisparityPredictionModel.create()
         self.assertRejected('sigmas must be finite and > 0', model.addLayer, [0.0], [0.0], [1.0])
         self.assertRejected('the sum of weights must be 1', model.addLayer, [0.0], [1.0], [0.5])
-        self.assertRejected('filename: cannot read ' + self.path('none.yml'),
+        self.assertRejected("filename: '" + self.path('none.yml') + "' does not hold a model: cannot read it",
                             cv.stereo.DisparityPredictionModel.load, self.path('none.yml'))
         self.assertEqual(0, model.getNumLayers())
         for bad in ('wide', [1], {}):  # not a number: an error of the bindings
