@@ -194,38 +194,56 @@ inline short medianOfSorted(const short (&d)[7][7])
     return Forgetful<12>::median(kept, rest);
 }
 
+//! Sorts each column of the rows.
+template <int size>
+void sortColumns(const ushort* const (&rows)[size], const Range& columns, short* const (&sorted)[size])
+{
+    HDP_VECTORIZED for (int x = columns.start; x < columns.end; ++x)
+    {
+        short column[size];
+        HDP_UNROLLED for (int i = 0; i < size; ++i) column[i] = (short)(rows[i][x] ^ SHRT_MIN);
+        sort(column);
+        HDP_UNROLLED for (int i = 0; i < size; ++i) sorted[i][x] = column[i];
+    }
+}
+
+template <int size> void medianOfColumns(const short* const (&sorted)[size], const Range& columns, ushort* filtered)
+{
+    HDP_VECTORIZED for (int x = columns.start; x < columns.end; ++x)
+    {
+        short window[size][size];
+        HDP_UNROLLED for (int i = 0; i < size; ++i)
+        {
+            HDP_UNROLLED for (int j = 0; j < size; ++j) window[i][j] = sorted[i][x + j - size / 2];
+            sort(window[i]); // the columns remain sorted; the compiler leaves out what is not used
+        }
+        filtered[x] = (ushort)(medianOfSorted(window) ^ SHRT_MIN);
+    }
+}
+
 template <int size> void medianRow(const ushort* const* rows, int width, short* const* sorted, ushort* filtered)
 {
     const int radius = size / 2;
     const ushort* r[size];
     short* s[size];
+    const short* columns[size];
     for (int i = 0; i < size; ++i)
     {
         r[i] = rows[i];
-        s[i] = sorted[i];
+        columns[i] = s[i] = sorted[i];
     }
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
-    {
-        short column[size];
-        HDP_UNROLLED for (int i = 0; i < size; ++i) column[i] = (short)(r[i][x] ^ SHRT_MIN);
-        sort(column);
-        HDP_UNROLLED for (int i = 0; i < size; ++i) s[i][x] = column[i];
-    }
+    // Whole vectors, of which the last ones overlap: what is left over would take as long, pixel by pixel.
+    const int vectors = 32;
+    const Range whole(0, width / vectors * vectors), last(std::max(width - vectors, 0), width);
+    sortColumns(r, whole, s);
+    sortColumns(r, last, s);
     for (int i = 0; i < size; ++i) // the border is replicated
     {
         std::fill(s[i] - radius, s[i], s[i][0]);
         std::fill(s[i] + width, s[i] + width + radius, s[i][width - 1]);
     }
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
-    {
-        short window[size][size];
-        HDP_UNROLLED for (int i = 0; i < size; ++i)
-        {
-            HDP_UNROLLED for (int j = 0; j < size; ++j) window[i][j] = s[i][x + j - radius];
-            sort(window[i]); // the columns remain sorted; the compiler leaves out what is not used
-        }
-        filtered[x] = (ushort)(medianOfSorted(window) ^ SHRT_MIN);
-    }
+    medianOfColumns(columns, whole, filtered);
+    medianOfColumns(columns, last, filtered);
 }
 
 } // namespace
