@@ -253,7 +253,7 @@ public:
         const Mat left = leftArray.getMat(), right = rightArray.getMat();
         checkImages(left, right);
         const int depth = outputDepth(disparityArray);
-        const LayerSettings settings = resolve(left.size());
+        const LayerSettings settings = resolve(left);
         clock_.restart();
         forest_.trees.clear(); // what getForest() and getLayerPrior() give is of this pair, or nothing
         prior_.clear();
@@ -269,6 +269,7 @@ public:
         Mat disparity = disparityArray.getMat();
         clock_.run("output", [&] { finish(images, settings, disparity); });
         matched_.size = left.size();
+        matched_.extension = settings.extension;
         matched_.isFiltered = isFiltered();
         matched_.layer = settings.finestLayer;
         matched_.scale = settings.scale;
@@ -358,8 +359,9 @@ public:
                 intervals.ptr<DisparityInterval>()[walk.pixels[i]] = tree.interval;
             }
         }
-        trees.copyTo(treesArray);
-        intervals.copyTo(intervalsArray);
+        const Range columns(size.empty() ? 0 : forestExtension_, size.width);
+        trees.colRange(columns).copyTo(treesArray);
+        intervals.colRange(columns).copyTo(intervalsArray);
     }
 
     void getLayerPrior(std::vector<double>& prior) const CV_OVERRIDE { prior = prior_; }
@@ -371,11 +373,13 @@ public:
         confidenceArray.create(matched_.size, CV_8U);
         Mat confidence = confidenceArray.getMat();
         const LayerBuffers& b = buffers_[matched_.layer];
-        Mat coarse;
-        Mat& ofLayer = matched_.layer > 0 ? coarse : confidence;
+        Mat ofLayer, extended;
         disparityConfidence(b.disparity, matched_.scale, matched_.disparities, b.cost, ofLayer);
         if (matched_.layer > 0)
-            resize(coarse, confidence, matched_.size, 0, 0, INTER_LINEAR_EXACT);
+            resize(ofLayer, extended, matched_.size + Size(matched_.extension, 0), 0, 0, INTER_LINEAR_EXACT);
+        else
+            extended = ofLayer;
+        extended.colRange(matched_.extension, extended.cols).copyTo(confidence);
         if (matched_.isFiltered)
             confidence.setTo(Scalar(0), rejected_);
     }
@@ -485,6 +489,7 @@ private:
     struct LayerSettings
     {
         int layers, finestLayer;
+        int extension; // columns added on the left, for pixels there to have their matches, if disparities are negative
         Ptr<DisparityPredictionModel> model;
         double delta0, beta;
         int medianSize;
@@ -494,12 +499,13 @@ private:
     //! The finest layer of the last pair
     struct MatchedLayer
     {
-        Size size; // of the image; empty: no pair is matched
+        Size size;     // of the image; empty: no pair is matched
+        int extension; // columns on its left
         int layer;
         int scale;       // units of a disparity in one pixel
         int disparities; // of the layer
         bool isFiltered; // rejected_ says which pixels of the image are invalid
-        MatchedLayer() : layer(0), scale(0), disparities(0), isFiltered(false) {}
+        MatchedLayer() : extension(0), layer(0), scale(0), disparities(0), isFiltered(false) {}
     };
 
     //! What the stages see of a layer
@@ -545,8 +551,9 @@ private:
         return type;
     }
 
-    LayerSettings resolve(Size size) const
+    LayerSettings resolve(const Mat& left) const
     {
+        const Size size = left.size();
         const int64 lowest = ((int64)p_.minDisparity - 1) * DISP_SCALE;
         const int64 highest = ((int64)p_.minDisparity + p_.numDisparities - 1) * DISP_SCALE;
         if (lowest < SHRT_MIN || highest > SHRT_MAX)
@@ -572,6 +579,12 @@ private:
         LayerSettings settings;
         settings.layers = p_.usePrediction ? countLayers(size, numLayers()) : 1;
         settings.finestLayer = std::min(p_.finestLayer, settings.layers - 1);
+        settings.extension = p_.minDisparity < 0 ? (int)alignSize(-p_.minDisparity, 1 << (settings.layers - 1)) : 0;
+        const int64 width = (int64)size.width + settings.extension;
+        if (width > maxSide || width * size.height * (int64)left.elemSize() > INT_MAX)
+            CV_Error(Error::StsOutOfRange,
+                     format("minDisparity must not be %d for an image of %d x %d: as many columns are added to it",
+                            p_.minDisparity, size.width, size.height));
         settings.scale = p_.useSubpixel || p_.aggregation == AGGREGATION_SCANLINES ? subpixelScale : 1;
         settings.model = p_.predictionModel;
         if (!settings.model)
@@ -609,16 +622,21 @@ private:
                        std::vector<LayerImages>& images)
     {
         const bool census = p_.matchingCost == COST_CENSUS;
-        Mat shifted = right;
+        Mat extended = left, shifted = right;
         if (p_.minDisparity != 0)
         {
-            shiftColumns(right, p_.minDisparity, shiftedRight_);
+            shiftColumns(right, p_.minDisparity, settings.extension, shiftedRight_);
             shifted = shiftedRight_;
         }
-        buildPyramid(left, settings.layers, leftPyramid_);
+        if (settings.extension > 0)
+        {
+            copyMakeBorder(left, extendedLeft_, 0, 0, settings.extension, 0, BORDER_REPLICATE);
+            extended = extendedLeft_;
+        }
+        buildPyramid(extended, settings.layers, leftPyramid_);
         if (census)
         {
-            greyLevels(left, leftGrey_);
+            greyLevels(extended, leftGrey_);
             greyLevels(shifted, rightGrey_);
             buildPyramid(leftGrey_, settings.layers, leftGreyPyramid_);
             buildPyramid(rightGrey_, settings.layers, rightPyramid_);
@@ -651,7 +669,7 @@ private:
         else
             aggregateScanlines(layer, images, settings);
         if (p_.useNonLocalRefinement)
-            clock_.run("non-local refinement", [&] { refine(images, settings, b); });
+            clock_.run("non-local refinement", [&] { refine(layer, images, settings); });
         clock_.run("disparity median", [&] {
             swap(b.winner, b.disparity);
             for (int pass = 0; settings.medianSize > 0 && pass < p_.disparityMedianPasses; ++pass)
@@ -696,7 +714,7 @@ private:
             });
         }
         clock_.run("disparity forest", [&] {
-            buildLayerForest(images, settings, b);
+            buildLayerForest(layer, images, settings);
             searchRatios_[layer] = searchRatio(forest_, disparities);
         });
         clock_.run("cost aggregation",
@@ -709,8 +727,10 @@ private:
     }
 
     //! Section 3.2: forest_, from b.pixelIntv
-    void buildLayerForest(const LayerImages& images, const LayerSettings& settings, LayerBuffers& b)
+    void buildLayerForest(int layer, const LayerImages& images, const LayerSettings& settings)
     {
+        LayerBuffers& b = buffers_[layer];
+        forestExtension_ = settings.extension >> layer;
         if (p_.useMedianPrefilter)
             medianBlur(images.guide, b.guide, 3);
         buildForest(p_.useMedianPrefilter ? b.guide : images.guide, b.pixelIntv, *p_.treeStrategy, settings.beta,
@@ -718,13 +738,14 @@ private:
     }
 
     //! Refines b.winner over forest_.
-    void refine(const LayerImages& images, const LayerSettings& settings, LayerBuffers& b)
+    void refine(int layer, const LayerImages& images, const LayerSettings& settings)
     {
+        LayerBuffers& b = buffers_[layer];
         if (forest_.links.size() != b.winner.size()) // the layer has no trees of its own
         {
             b.pixelIntv.create(b.winner.size(), CV_16UC2);
             b.pixelIntv.setTo(Scalar::all(0)); // one tree
-            buildLayerForest(images, settings, b);
+            buildLayerForest(layer, images, settings);
         }
         swap(b.winner, b.disparity);
         findStable(b.disparity, settings.scale, stableMaxDiff, b.stable);
@@ -771,7 +792,8 @@ private:
         const bool toWhole = settings.scale > 1 && !p_.useSubpixel;
         if (toWhole)
             b.disparity.convertTo(b.winner, CV_16U, 1. / settings.scale);
-        const Mat& map = toWhole ? b.winner : b.disparity;
+        const Mat& extended = toWhole ? b.winner : b.disparity;
+        const Mat map = extended.colRange(settings.extension, extended.cols);
         const int scale = toWhole ? 1 : settings.scale;
         const bool isFloat = disparity.depth() == CV_32F;
         if (isFloat)
@@ -819,13 +841,14 @@ private:
 
     // Buffers that are kept between calls
     std::vector<Mat> leftPyramid_, leftGreyPyramid_, rightPyramid_;
-    Mat shiftedRight_, leftGrey_, rightGrey_;
+    Mat extendedLeft_, shiftedRight_, leftGrey_, rightGrey_;
     SupportPointBuffers supportPoints_;
     Mat points_;
     std::vector<double> prior_;
     std::vector<DisparityInterval> intervals_;
     ForestBuffers forestBuffers_;
     DisparityForest forest_;
+    int forestExtension_ = 0; // columns on the left of the layer's image
     AggregationBuffers aggregation_;
     ScanlineBuffers scanlines_;
     std::vector<LayerBuffers> buffers_; // one more than layers: there is nothing above the top one

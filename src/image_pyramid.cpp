@@ -72,19 +72,20 @@ void greyLevels(const Mat& image, Mat& grey)
     });
 }
 
-void shiftColumns(const Mat& right, int minDisparity, Mat& shifted)
+void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted)
 {
-    const int width = right.cols;
-    // Of the columns of the result, [begin, end) come from inside the image. 64 bit: minDisparity is any int.
-    const int begin = (int)std::min<int64>(std::max<int64>(minDisparity, 0), width);
-    const int end = (int)std::max<int64>(std::min<int64>((int64)width + minDisparity, width), 0);
-    shifted.create(right.size(), right.type());
+    const int width = right.cols + extension;
+    const int64 shift = (int64)minDisparity + extension; // minDisparity is any int
+    // Of the columns of the result, [begin, end) come from inside the image.
+    const int begin = (int)std::min<int64>(std::max<int64>(shift, 0), width);
+    const int end = (int)std::max<int64>(std::min<int64>(right.cols + shift, width), 0);
+    shifted.create(right.rows, width, right.type());
     if (begin < end)
-        right.colRange(begin - minDisparity, end - minDisparity).copyTo(shifted.colRange(begin, end));
-    for (int x = 0; x < std::min(begin, width); ++x)
+        right.colRange((int)(begin - shift), (int)(end - shift)).copyTo(shifted.colRange(begin, end));
+    for (int x = 0; x < begin; ++x)
         right.col(0).copyTo(shifted.col(x));
-    for (int x = std::max(end, 0); x < width; ++x)
-        right.col(width - 1).copyTo(shifted.col(x));
+    for (int x = end; x < width; ++x)
+        right.col(right.cols - 1).copyTo(shifted.col(x));
 }
 
 } // namespace hdp

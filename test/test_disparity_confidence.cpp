@@ -348,12 +348,12 @@ TEST(HDPStereo_DisparityConfidence, invalid_pixels_have_none)
 TEST(HDPStereo_DisparityConfidence, minDisparity_does_not_matter)
 {
     const int shift = 7;
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-shift, 48 + shift);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(shift, 48 - shift);
     match(*matcher, testPair().left, testPair().right);
     // Where the left pixels have matches inside, these are the same ones as of a right image moved by minDisparity.
     Mat moved;
-    hdp::shiftColumns(testPair().right, -shift, moved);
-    const Ptr<HDPTreeMatcher> fromZero = HDPTreeMatcher::create(0, 48 + shift);
+    hdp::shiftColumns(testPair().right, shift, 0, moved);
+    const Ptr<HDPTreeMatcher> fromZero = HDPTreeMatcher::create(0, 48 - shift);
     match(*fromZero, testPair().left, moved);
     expectIdentical(confidenceOf(*fromZero), confidenceOf(*matcher));
 }

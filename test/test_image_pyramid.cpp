@@ -96,18 +96,19 @@ TEST(HDPStereo_ImagePyramid, shifts_columns_and_repeats_the_nearest)
 {
     RNG rng(3);
     const Mat right = randomImage(rng, Size(9, 4), CV_8UC3);
-    for (int shift : { 0, 1, 5, 8, 9, 10, 1000, INT_MAX, -1, -8, -9, -10, -1000, INT_MIN })
-    {
-        SCOPED_TRACE(shift);
-        Mat expected(right.size(), right.type()), shifted;
-        for (int x = 0; x < right.cols; ++x)
+    for (int extension : { 0, 1, 7, 20 })
+        for (int shift : { 0, 1, 5, 8, 9, 10, 1000, INT_MAX, -1, -8, -9, -10, -1000, INT_MIN })
         {
-            const int64 from = std::max<int64>(0, std::min<int64>((int64)x - shift, right.cols - 1));
-            right.col((int)from).copyTo(expected.col(x));
+            SCOPED_TRACE(testing::Message() << shift << ", extension " << extension);
+            Mat expected(right.rows, right.cols + extension, right.type()), shifted;
+            for (int x = 0; x < expected.cols; ++x)
+            {
+                const int64 from = std::max<int64>(0, std::min<int64>((int64)x - extension - shift, right.cols - 1));
+                right.col((int)from).copyTo(expected.col(x));
+            }
+            hdp::shiftColumns(right, shift, extension, shifted);
+            expectIdentical(expected, shifted);
         }
-        hdp::shiftColumns(right, shift, shifted);
-        expectIdentical(expected, shifted);
-    }
 }
 
 } // namespace

@@ -470,7 +470,8 @@ TEST(HDPStereo_MatcherContract, more_than_256_disparities)
 {
     RNG rng(29);
     const int shift = 300;
-    const Mat canvas = patchyImage(rng, Size(640 + shift, 96), CV_8UC3, 16); // patches of two pixels in the fourth layer
+    const Mat canvas =
+        patchyImage(rng, Size(640 + shift, 96), CV_8UC3, 16); // patches of two pixels in the fourth layer
     const Mat left = canvas.colRange(0, 640), right = canvas.colRange(shift, 640 + shift);
     for (const System& system : someSystems)
     {
@@ -503,11 +504,35 @@ TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
             expectDisparities(disparity, *matcher);
             const Range inside(disparities + 20, moved.cols - 36);
             const Mat difference = disparity.colRange(inside) - expected.colRange(inside);
-            // The columns that only one of the pairs has count in P(D_l), and so reach every pixel.
-            const int share = !system.usePrediction ? 200 : matcher->getUseSubpixel() ? 25 : 50;
+            // The columns that only one of the pairs has, or that are added, count in P(D_l), and so reach every pixel.
+            const int share = !system.usePrediction ? 200 : matcher->getUseSubpixel() ? 25 : 33;
             EXPECT_LE(cv::countNonZero(difference != 16 * k), (int)difference.total() / share);
         }
     }
+}
+
+//! With negative disparities the first columns of the left image have their matches, too.
+TEST(HDPStereo_MatcherContract, negative_disparities_up_to_the_left_border)
+{
+    RNG rng(37);
+    const int shift = 14, width = 200;
+    const Mat canvas = patchyImage(rng, Size(width + shift, 120), CV_8UC3, 8);
+    const Mat left = canvas.colRange(shift, width + shift), right = canvas.colRange(0, width);
+    for (const System& system : allSystems())
+        for (int minDisparity : { -31, -17 })
+        {
+            SCOPED_TRACE(testing::Message() << system.name << " from " << minDisparity);
+            const Ptr<HDPTreeMatcher> matcher = createSystem(system, 32, minDisparity);
+            const Mat wrong = cv::abs(match(*matcher, left, right) + 16 * shift) > 16;
+            EXPECT_LE(cv::countNonZero(wrong.colRange(0, shift)), (int)wrong.rows * shift / 20);
+            Mat confidence, trees, intervals;
+            matcher->getConfidence(confidence);
+            EXPECT_EQ(left.size(), confidence.size());
+            EXPECT_GE(cv::mean(confidence.colRange(shift, width - 32))[0], 100);
+            matcher->getForest(trees, intervals);
+            EXPECT_EQ(left.cols * trees.rows / left.rows, trees.cols); // of a layer of the image alone
+            EXPECT_EQ(trees.size(), intervals.size());
+        }
 }
 
 TEST(HDPStereo_MatcherContract, equal_images_have_disparity_0)

@@ -37,7 +37,8 @@ columns.
 and accuracy.
 
 The parameters that cv::StereoMatcher declares mean what they mean there:
-- minDisparity: the smallest disparity in pixels, of any sign.
+- minDisparity: the smallest disparity in pixels, of any sign. A negative one adds as many columns to the images, on the
+  left, so that the first columns have their matches.
 - numDisparities: number of candidates, > 0, no multiple of 16 needed. The largest disparity is
   minDisparity + numDisparities - 1; minDisparity - 1 and this one must fit into CV_16S, times 16.
 - blockSize: the side of the matching cost's square window, odd, 1..31: the paper's cost is averaged over it (1, as in
@@ -76,7 +77,7 @@ values that their setters call the default.
 Setters throw cv::Exception for values out of their range and leave the matcher as it was. What depends on several
 parameters or on the images is checked by compute(), before it does any work. compute() throws if
 - an image is empty or neither CV_8UC1 nor CV_8UC3, if they differ in size or type, are wider or higher than 32767
-  pixels, or have 2^31 bytes and more;
+  pixels, or have 2^31 bytes and more, with the columns that a negative minDisparity adds;
 - speckleWindowSize is not 0 and the images have more than 238609294 pixels;
 - minDisparity and numDisparities give disparities that CV_16S cannot hold;
 - blockSize is not 3, 5 or 7 with COST_CENSUS;
