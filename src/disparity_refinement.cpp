@@ -33,9 +33,9 @@ void medianBlurStripes(const Mat& image, int size, Mat& stripesBuffer, Mat& filt
     });
 }
 
-void dispatchFill(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch)
+void dispatchFill(ushort* disparity, const uchar* residual, int width, int scale, OcclusionScratch& scratch)
 {
-    CV_CPU_DISPATCH(fillOccludedRow, (disparity, residual, width, shift, scratch), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(fillOccludedRow, (disparity, residual, width, scale, scratch), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 void dispatchMedian(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
@@ -129,12 +129,10 @@ void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered
 
 void fillOccluded(Mat& disparity, const Mat& residual, int scale)
 {
-    const int shift = scale == 1 ? 0 : 4;
-    CV_StaticAssert(subpixelScale == 1 << 4, "the shift is that of subpixelScale");
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         OcclusionScratch scratch;
         for (int y = rows.start; y < rows.end; ++y)
-            dispatchFill(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, shift, scratch);
+            dispatchFill(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, scale, scratch);
     });
 }
 

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
 #include "vectorized.hpp"
 #include <cstring>
@@ -12,8 +13,8 @@ namespace stereo {
 namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! fillOccluded() for one row. shift: log2 of the units of a disparity in one pixel.
-void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch);
+//! fillOccluded() for one row.
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int scale, OcclusionScratch& scratch);
 
 /** A row of the median of size x size pixels.
 @param rows The `size` rows around it.
@@ -36,7 +37,7 @@ inline int findByte(const uchar* bytes, int begin, int end, uchar value)
 
 //! The last of the pixels at the border of the right image with which a visible surface begins: what is on its left is
 //! not in the right image.
-int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width, int pixel)
+int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width, int scale)
 {
     const int surface = 4; // columns, at least
     const uchar* visible = scratch.visible.data();
@@ -46,7 +47,7 @@ int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int wid
     {
         int end = x + 1;
         while (end < std::min(x + surface, width) && visible[end] &&
-               std::abs(disparity[end] - disparity[end - 1]) <= pixel)
+               std::abs(disparity[end] - disparity[end - 1]) <= scale)
             ++end;
         if (end == x + surface)
             border = x;
@@ -56,7 +57,7 @@ int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int wid
 
 } // namespace
 
-void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch)
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int scale, OcclusionScratch& scratch)
 {
     scratch.there.assign(width + 1, UINT_MAX);
     scratch.columns.resize(width);
@@ -66,10 +67,9 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int sh
     unsigned *there = scratch.there.data(), *keys = scratch.keys.data();
     int* columns = scratch.columns.data();
     uchar *visible = scratch.visible.data(), *atBorder = scratch.atBorder.data();
-    const int half = (1 << shift) / 2, pixel = 1 << shift;
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        columns[x] = std::max(x + 1 - ((disparity[x] + half) >> shift), 0);
+        columns[x] = std::max(x + 1 - wholeDisparity(disparity[x], scale), 0);
         keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
     }
     for (int x = 0; x < width; ++x)
@@ -78,10 +78,10 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int sh
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const int difference = (int)(0xffff - (keys[x] & 0xffff)) - disparity[x];
-        visible[x] = (uchar)((columns[x] > 0) & (difference <= pixel) & (difference >= -pixel));
+        visible[x] = (uchar)((columns[x] > 0) & (difference <= scale) & (difference >= -scale));
         atBorder[x] = (uchar)(visible[x] & (columns[x] <= 1 + 2));
     }
-    std::fill(visible, visible + findBorder(disparity, scratch, width, pixel), (uchar)0);
+    std::fill(visible, visible + findBorder(disparity, scratch, width, scale), (uchar)0);
     uchar* shown = atBorder; // the memory is free
     shown[0] = visible[0];
     shown[width - 1] = visible[width - 1];

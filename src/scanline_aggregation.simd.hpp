@@ -91,9 +91,7 @@ public:
                        [&](std::integral_constant<int, 3>) { fromRight<3>(); });
         fromLeftAndAbove();
         for (int r = 0; r < groups && y + r < end; ++r)
-        {
             finishRow(r, disparity.ptr<ushort>(y + r), residual.ptr(y + r));
-        }
     }
 
 private:
@@ -220,17 +218,8 @@ private:
             for (int i = lanesUsed; i < Window::candidates; ++i)
                 prior[i] = 255;
 
-            if (isContiguous && wasContiguous)
-            {
-                const int shift = clampShift(own.first[0] - before.first[0], Window::candidates);
-                std::memcpy(intoRight, pairOrder_ + Window::candidates + shift, Window::candidates);
-                std::memcpy(intoLeft, pairOrder_ + Window::candidates - shift, Window::candidates);
-            }
-            else
-            {
-                transition(before, own, intoRight);
-                transition(own, before, intoLeft);
-            }
+            transition(before, own, intoRight);
+            transition(own, before, intoLeft);
             if (above)
                 transition(above[std::min(x, lastWindow)], own, intoBelow);
 
@@ -283,6 +272,7 @@ private:
         }
     }
 
+    //! At one column, but for the prior; load: gives the candidates of a plane.
     template <int planes, int column, class Load>
     CV_ALWAYS_INLINE ByteLanes costs(const uchar* const (&left)[groups], const Load& load) const
     {
