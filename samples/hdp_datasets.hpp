@@ -58,12 +58,6 @@ namespace fs = cv::utils::fs;
 
 inline String fileName(const String& path) { return path.substr(path.find_last_of("/\\") + 1); }
 
-inline String lowerCase(String text)
-{
-    std::transform(text.begin(), text.end(), text.begin(), [](char c) { return char(std::tolower(uchar(c))); });
-    return text;
-}
-
 //! The path of a file of this name and the extension of a picture; empty if there is none.
 inline String findPicture(const String& folder, const String& stem)
 {

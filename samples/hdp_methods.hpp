@@ -8,7 +8,6 @@
 #ifndef OPENCV_HDPSTEREO_SAMPLES_METHODS_HPP
 #define OPENCV_HDPSTEREO_SAMPLES_METHODS_HPP
 
-#include <cctype>
 #include <functional>
 
 #include "hdp_samples_common.hpp"
@@ -36,20 +35,6 @@ struct Match
     double seconds;
 };
 
-inline Ptr<cv::stereo::TreeStrategy> createTree(const String& name)
-{
-    return name == "ST"   ? cv::stereo::createSegmentTree()
-           : name == "RT" ? cv::stereo::createRandomTree()
-                          : cv::stereo::createMinimumSpanningTree();
-}
-
-inline String upperCase(String text)
-{
-    for (char& letter : text)
-        letter = (char)std::toupper((unsigned char)letter);
-    return text;
-}
-
 //! A row of the paper's tables, such as HDP+MST, MST and M+MST.
 inline Method paperMethod(const String& prefix, const String& tree, const Ptr<DisparityPredictionModel>& model)
 {
@@ -60,7 +45,7 @@ inline Method paperMethod(const String& prefix, const String& tree, const Ptr<Di
     method.isBlind = method.isGray = false;
     method.create = [=](int numDisparities) -> Ptr<cv::StereoMatcher> {
         const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities, HDPTreeMatcher::PRESET_PAPER);
-        matcher->setTreeStrategy(createTree(tree));
+        matcher->setTreeStrategy(createTree(lowerCase(tree)));
         matcher->setUsePrediction(prefix == "HDP+");
         matcher->setUseMedianPrefilter(prefix == "M+");
         matcher->setPredictionModel(model);

@@ -103,6 +103,33 @@ inline int getInteger(const cv::CommandLineParser& parser, const String& name, i
     return int(value);
 }
 
+inline String lowerCase(String text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) { return char(std::tolower(uchar(c))); });
+    return text;
+}
+
+inline String upperCase(String text)
+{
+    for (char& letter : text)
+        letter = (char)std::toupper((unsigned char)letter);
+    return text;
+}
+
+//! The module's trees, by the names that the samples know them by.
+const char* const TREES[] = { "mst", "st", "rt" };
+
+inline cv::Ptr<cv::stereo::TreeStrategy> createTree(const String& name)
+{
+    if (name == TREES[0])
+        return cv::stereo::createMinimumSpanningTree();
+    if (name == TREES[1])
+        return cv::stereo::createSegmentTree();
+    if (name != TREES[2])
+        fail("--tree=" + name + ": unknown, there are: mst, st, rt");
+    return cv::stereo::createRandomTree();
+}
+
 //! The module's presets, by the names that the samples know them by.
 struct Preset
 {

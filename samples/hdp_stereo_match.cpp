@@ -79,20 +79,6 @@ static Matx44d readCamera(const CommandLineParser& parser, Size size)
     return Matx44d(Q.ptr<double>());
 }
 
-static const char* const TREES[] = { "mst", "st", "rt" };
-
-static Ptr<stereo::TreeStrategy> createTree(const String& name)
-{
-    if (name == TREES[0])
-        return stereo::createMinimumSpanningTree();
-    if (name == TREES[1])
-        return stereo::createSegmentTree();
-    if (name == TREES[2])
-        return stereo::createRandomTree();
-    fail("--tree=" + name + ": unknown, there are: mst, st, rt");
-    return Ptr<stereo::TreeStrategy>();
-}
-
 static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, Size size)
 {
     const Range disparities = getDisparities(parser, size);
@@ -111,8 +97,7 @@ static String systemName(const HDPTreeMatcher& matcher)
     String tree;
     for (const char* name : TREES)
         if (createTree(name)->getDefaultName() == matcher.getTreeStrategy()->getDefaultName())
-            tree = name;
-    std::transform(tree.begin(), tree.end(), tree.begin(), [](char c) { return char(std::toupper(uchar(c))); });
+            tree = upperCase(name);
     const String prefilter = matcher.getUseMedianPrefilter() ? "M+" : "";
     if (matcher.getUsePrediction() && matcher.getAggregation() == HDPTreeMatcher::AGGREGATION_SCANLINES)
         return "scanlines, " + prefilter + tree + " on the top layer";

@@ -6,7 +6,7 @@
 
 #include <iostream>
 
-#include "hdp_samples_common.hpp"
+#include "hdp_report.hpp"
 
 using namespace cv;
 using namespace hdp_samples;
@@ -48,36 +48,6 @@ static Mat withErrors(const Mat& disparity, const Truth& truth, const Vec2f& ran
     picture.setTo(Scalar::all(0), ~truth.judged);
     picture.setTo(Scalar(0, 0, 255), wrongPixels(disparity, truth.disparity, truth.judged, 2));
     return picture;
-}
-
-//! A color for each tree, by its number
-static Mat colorTrees(const Mat& trees)
-{
-    RNG rng(1);
-    double last;
-    minMaxLoc(trees, nullptr, &last);
-    std::vector<Vec3b> colors((size_t)last + 1);
-    for (Vec3b& color : colors)
-        for (int c = 0; c < 3; c++)
-            color[c] = (uchar)rng.uniform(40, 256);
-    Mat picture(trees.size(), CV_8UC3);
-    for (int y = 0; y < trees.rows; y++)
-        for (int x = 0; x < trees.cols; x++)
-            picture.at<Vec3b>(y, x) = colors[trees.at<int>(y, x)];
-    return picture;
-}
-
-//! How many candidates each pixel has: black is 1, white is 16 or more.
-static Mat greyWidths(const Mat& intervals)
-{
-    Mat bounds[2], widths;
-    split(intervals, bounds);
-    subtract(bounds[1], bounds[0], widths, noArray(), CV_32F);
-    widths += 1;
-    log(widths, widths);
-    widths.convertTo(widths, CV_8U, 255 / std::log(16.));
-    cvtColor(widths, widths, COLOR_GRAY2BGR);
-    return widths;
 }
 
 static void run(const CommandLineParser& parser)
@@ -122,7 +92,7 @@ static void run(const CommandLineParser& parser)
     match(*paper);
     Mat trees, intervals;
     paper->getForest(trees, intervals);
-    save("forest.png", { colorTrees(trees), greyWidths(intervals) }, INTER_NEAREST);
+    save("forest.png", { forestPicture(trees), widthPicture(intervals, 16) }, INTER_NEAREST);
 
     const Mat ofFast = match(*fast);
     Mat confidence;

@@ -51,7 +51,7 @@ check_warnings()
 check_widths()
 {
     local without
-    for without in "" AVX512-ICL AVX512-ICL,AVX512-SKX AVX512-ICL,AVX512-SKX,AVX2; do
+    for without in "${disabled_sets[@]}"; do
         say "OPENCV_CPU_DISABLE=$without"
         OPENCV_CPU_DISABLE=$without "$checkout/scripts/test.sh" '--gtest_filter=-HDPStereo_Slow*'
     done

@@ -43,11 +43,11 @@ compare_instruction_sets()
 {
     local program=$1 maps=$directory/maps without status=0
     rm -rf "$maps"
-    for without in none AVX512-ICL AVX512-ICL,AVX512-SKX AVX512-ICL,AVX512-SKX,AVX2; do
+    for without in "${disabled_sets[@]}"; do
         mkdir -p "$maps/without-$without"
-        OPENCV_CPU_DISABLE=${without#none} HDPSTEREO_WRITE_REFERENCE=$maps/without-$without \
+        OPENCV_CPU_DISABLE=$without HDPSTEREO_WRITE_REFERENCE=$maps/without-$without \
             "$program" '--gtest_filter=HDPStereo_ReferenceOutput*' >"$maps/without-$without.log" 2>&1 || status=1
-        [ -n "$(ls "$maps/without-$without")" ] && diff -r "$maps/without-none" "$maps/without-$without" || status=1
+        [ -n "$(ls "$maps/without-$without")" ] && diff -r "$maps/without-" "$maps/without-$without" || status=1
     done
     if [ "$status" -eq 0 ]; then
         passed=$((passed + 1))
