@@ -216,7 +216,10 @@ public:
             break;
         case 5:
             if (!edges.empty())
-                edges[rng.uniform(0, (int)edges.size())] = rng.uniform(0, 2) ? INT_MAX : -1;
+            {
+                const int bad = rng.uniform(0, 2) ? INT_MAX : -1;
+                edges[rng.uniform(0, (int)edges.size())] = bad;
+            }
             break;
         }
     }

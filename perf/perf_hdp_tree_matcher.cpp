@@ -33,7 +33,8 @@ void applySizeTag(Size size)
 //! Noise at three scales. With a contrast of 1 a rough surface, with 0 a smooth one of nearly one color.
 Mat makeTexture(RNG& rng, Size size, double contrast)
 {
-    Mat texture(size, CV_32FC3, Scalar(rng.uniform(60, 190), rng.uniform(60, 190), rng.uniform(60, 190)));
+    const int red = rng.uniform(60, 190), green = rng.uniform(60, 190), blue = rng.uniform(60, 190);
+    Mat texture(size, CV_32FC3, Scalar(blue, green, red));
     const int scales[] = { 1, 4, 32 };
     const double amplitudes[] = { 10 * contrast, 25 * contrast, 6 + 20 * contrast };
     for (int i = 0; i < 3; i++)
@@ -75,8 +76,11 @@ void makePair(Size size, int numDisparities, Mat& left, Mat& right)
     for (int i = 0; i < count; i++) // the nearest last
     {
         const double nearness = 0.3 + 0.5 * i / count;
-        const Point center(rng.uniform(size.width / 8, size.width), rng.uniform(0, size.height));
-        const Size axes(rng.uniform(size.width / 16, size.width / 6), rng.uniform(size.height / 16, size.height / 4));
+        const int y = rng.uniform(0, size.height), x = rng.uniform(size.width / 8, size.width);
+        const int tall = rng.uniform(size.height / 16, size.height / 4);
+        const int wide = rng.uniform(size.width / 16, size.width / 6);
+        const Point center(x, y);
+        const Size axes(wide, tall);
         Mat shape = Mat::zeros(size, CV_8UC1);
         ellipse(shape, center, axes, rng.uniform(0., 180.), 0, 360, Scalar(255), FILLED);
         const double slantX = rng.uniform(-0.1, 0.1) * range / axes.width / 2;

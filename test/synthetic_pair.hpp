@@ -29,10 +29,13 @@ public:
         addSurface(0.10 * n, 0.12 * n / w, 0.08 * n / h, WHOLE, 0, 0, 0, 0, 60);
         if (planeOnly)
             return;
-        addSurface(0.30 * n, 0.15 * n / w, 0, BOX, jitter(0.20) * w, jitter(0.72) * h, 0.17 * w, 0.20 * h, 40);
-        addSurface(0.45 * n, 0, 0, ELLIPSE, jitter(0.38) * w, jitter(0.34) * h, 0.12 * w, 0.20 * h, 50);
-        addSurface(0.45 * n, 0.10 * n / w, 0.25 * n / h, BOX, jitter(0.70) * w, jitter(0.60) * h, 0.14 * w, 0.24 * h,
-                   45);
+        // Never two random numbers in one call: compilers differ in the order in which they evaluate arguments.
+        double cy = jitter(0.72) * h, cx = jitter(0.20) * w;
+        addSurface(0.30 * n, 0.15 * n / w, 0, BOX, cx, cy, 0.17 * w, 0.20 * h, 40);
+        cy = jitter(0.34) * h, cx = jitter(0.38) * w;
+        addSurface(0.45 * n, 0, 0, ELLIPSE, cx, cy, 0.12 * w, 0.20 * h, 50);
+        cy = jitter(0.60) * h, cx = jitter(0.70) * w;
+        addSurface(0.45 * n, 0.10 * n / w, 0.25 * n / h, BOX, cx, cy, 0.14 * w, 0.24 * h, 45);
         addSurface(0.75 * n, 0, 0, BOX, jitter(0.52) * w, 0.5 * h, 0.02 * w, 0.5 * h, 40);
     }
 

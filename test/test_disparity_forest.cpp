@@ -166,7 +166,8 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_in_any_number_of_stripes)
         ScopedThreads scope(threads);
         for (int i = 0; i < 400; ++i)
         {
-            const Size size(i % 20 == 0 ? 1 : rng.uniform(1, 36), i % 20 == 1 ? 1 : rng.uniform(1, 36));
+            const int height = i % 20 == 1 ? 1 : rng.uniform(1, 36), width = i % 20 == 0 ? 1 : rng.uniform(1, 36);
+            const Size size(width, height);
             const Mat image = randomImage(rng, size, i % 2 == 0 ? CV_8UC1 : CV_8UC3, i % 3 == 0 ? 4 : 20);
             Mat pixelIntv(size, CV_16UC2);
             const int side = rng.uniform(1, 9), shifts = rng.uniform(1, 5), length = rng.uniform(1, 10);

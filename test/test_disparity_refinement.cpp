@@ -100,7 +100,10 @@ TEST(HDPStereo_DisparityRefinement, occluded_pixels_by_comparing_all_pairs)
                 const short invalid = (short)((minDisparity - 1) * 16);
                 Mat disparity(30, 50, CV_16SC1);
                 for (short& d : Mat_<short>(disparity))
-                    d = (short)(16 * (minDisparity + rng.uniform(0, 25)) + (wholePixels ? 0 : rng.uniform(-7, 8)));
+                {
+                    d = (short)(16 * (minDisparity + rng.uniform(0, 25)));
+                    d = (short)(d + (wholePixels ? 0 : rng.uniform(-7, 8)));
+                }
                 disparity.row(3).setTo(Scalar(invalid));
                 disparity.col(9).setTo(Scalar(invalid));
                 const Mat expected = rejectOccludedByPairs(disparity, maxDiff, invalid);

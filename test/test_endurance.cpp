@@ -64,9 +64,9 @@ TEST(HDPStereo_Endurance, memory_does_not_grow)
     const Mat lefts[] = { patchyImage(rng, largest, CV_8UC1), patchyImage(rng, largest, CV_8UC3) };
     const Mat rights[] = { patchyImage(rng, largest, CV_8UC1), patchyImage(rng, largest, CV_8UC3) };
     const auto compute = [&](HDPTreeMatcher& matcher, Size size) {
-        const Rect part(
-            Point(rng.uniform(0, largest.width - size.width + 1), rng.uniform(0, largest.height - size.height + 1)),
-            size);
+        const int y = rng.uniform(0, largest.height - size.height + 1);
+        const int x = rng.uniform(0, largest.width - size.width + 1);
+        const Rect part(Point(x, y), size);
         const int type = rng.uniform(0, 2);
         Mat disparity, confidence;
         matcher.compute(lefts[type](part), rights[type](part), disparity);
@@ -80,7 +80,8 @@ TEST(HDPStereo_Endurance, memory_does_not_grow)
     size_t before = 0, after = 0;
     for (int call = 0; call < calls; ++call)
     {
-        const Size size(rng.uniform(1, largest.width + 1), rng.uniform(1, largest.height + 1));
+        const int height = rng.uniform(1, largest.height + 1), width = rng.uniform(1, largest.width + 1);
+        const Size size(width, height);
         configureAnew(*reused, rng);
         compute(*reused, call < calls / 2 && call % 2 ? largest : size);
         if (call % 10 == 0)

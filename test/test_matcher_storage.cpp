@@ -373,8 +373,10 @@ std::string spoilt(std::string text, RNG& rng)
         case 2:
             text.insert(at, pieces[rng.uniform(0, count)]);
             break;
-        default:
-            text.replace(at, (size_t)rng.uniform(1, 5), pieces[rng.uniform(0, count)]);
+        default: {
+            const char* const piece = pieces[rng.uniform(0, count)];
+            text.replace(at, (size_t)rng.uniform(1, 5), piece);
+        }
         }
     }
     return text;
