@@ -31,7 +31,9 @@ namespace {
 //! The first byte from begin on that has this value, or end
 inline int findByte(const uchar* bytes, int begin, int end, uchar value)
 {
-    const void* found = std::memchr(bytes + begin, value, end - begin);
+    if (begin >= end) // also tells GCC that the length below is not negative
+        return end;
+    const void* found = std::memchr(bytes + begin, value, (size_t)(end - begin));
     return found ? (int)((const uchar*)found - bytes) : end;
 }
 
