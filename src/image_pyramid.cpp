@@ -72,22 +72,6 @@ void greyLevels(const Mat& image, Mat& grey)
     });
 }
 
-void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted)
-{
-    const int width = right.cols + extension;
-    const int64 shift = (int64)minDisparity + extension; // minDisparity is any int
-    // Of the columns of the result, [begin, end) come from inside the image.
-    const int begin = (int)std::min<int64>(std::max<int64>(shift, 0), width);
-    const int end = (int)std::max<int64>(std::min<int64>(right.cols + shift, width), 0);
-    shifted.create(right.rows, width, right.type());
-    if (begin < end)
-        right.colRange((int)(begin - shift), (int)(end - shift)).copyTo(shifted.colRange(begin, end));
-    for (int x = 0; x < begin; ++x)
-        right.col(0).copyTo(shifted.col(x));
-    for (int x = end; x < width; ++x)
-        right.col(right.cols - 1).copyTo(shifted.col(x));
-}
-
 } // namespace hdp
 } // namespace stereo
 } // namespace cv

@@ -31,10 +31,6 @@ bits lose: the census cost of the coarse layers lives on it.
 @param grey CV_16UC1. */
 CV_EXPORTS void greyLevels(const Mat& image, Mat& grey);
 
-//! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:
-//! shifted(x + extension) = right(x - minDisparity), the nearest column where there is none.
-CV_EXPORTS void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted);
-
 } // namespace hdp
 } // namespace stereo
 } // namespace cv

@@ -7,6 +7,7 @@
 #include "systems.hpp"
 #include "../src/disparity_confidence.hpp"
 #include "../src/image_pyramid.hpp"
+#include "../src/pair_pyramids.hpp"
 
 namespace opencv_test {
 namespace {

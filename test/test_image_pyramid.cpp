@@ -5,6 +5,7 @@
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "../src/image_pyramid.hpp"
+#include "../src/pair_pyramids.hpp"
 
 namespace opencv_test {
 namespace {

@@ -1,0 +1,78 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "disparity_output.hpp"
+
+#include "disparity_refinement.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+const int unit = StereoMatcher::DISP_SCALE;
+
+//! From the finest layer that was matched to layer 0 of this size
+Mat enlarge(const Mat& finest, const PairSettings& settings, Size size, std::vector<Mat>& enlarged)
+{
+    enlarged.resize(settings.finestLayer);
+    Mat upper = finest;
+    for (int layer = settings.finestLayer - 1; layer >= 0; --layer)
+    {
+        const Size ofLayer(size.width >> layer, size.height >> layer);
+        upsampleDisparity(upper, settings.scale, ofLayer, enlarged[layer]);
+        upper = enlarged[layer];
+    }
+    return upper;
+}
+
+void removeSpeckles(Mat& disparity, const MatcherParameters& p, short invalid, Mat& speckles)
+{
+    // One byte more than cv::filterSpeckles allocates: it writes there if no two pixels belong together.
+    const int bytes = (int)disparity.total() * speckleBytes + 1;
+    if (speckles.cols < bytes)
+        speckles.create(1, bytes, CV_8U);
+    filterSpeckles(disparity, invalid, p.speckleWindowSize, unit * p.speckleRange, speckles);
+}
+
+} // namespace
+
+bool outputDisparity(const Mat& finest, const MatcherParameters& p, const PairSettings& settings,
+                     OutputBuffers& buffers, Mat& disparity)
+{
+    const Size extendedSize = disparity.size() + Size(settings.extension, 0);
+    Mat extended = enlarge(finest, settings, extendedSize, buffers.enlarged);
+    int scale = settings.scale;
+    if (scale > 1 && !p.useSubpixel)
+    {
+        extended.convertTo(buffers.whole, CV_16U, 1. / scale);
+        extended = buffers.whole;
+        scale = 1;
+    }
+    const Mat map = extended.colRange(settings.extension, extended.cols);
+    const bool isFloat = disparity.depth() == CV_32F;
+    const bool isFiltered = p.disp12MaxDiff > 0 || p.speckleWindowSize > 0;
+    if (isFloat)
+        map.convertTo(disparity, CV_32F, 1. / scale, p.minDisparity);
+    Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
+    if (!isFloat || isFiltered)
+        map.convertTo(fixedPoint, CV_16S, (double)unit / scale, (double)p.minDisparity * unit);
+    if (!isFiltered)
+        return false;
+
+    const short invalid = (short)((p.minDisparity - 1) * unit);
+    if (p.disp12MaxDiff > 0)
+        rejectOccluded(fixedPoint, p.disp12MaxDiff, invalid);
+    if (p.speckleWindowSize > 0)
+        removeSpeckles(fixedPoint, p, invalid, buffers.speckles);
+    compare(fixedPoint, Scalar(invalid), buffers.rejected, CMP_EQ);
+    if (isFloat)
+        disparity.setTo(Scalar(p.minDisparity - 1), buffers.rejected);
+    return true;
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

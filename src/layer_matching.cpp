@@ -1,0 +1,175 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "layer_matching.hpp"
+
+#include "candidate_windows.hpp"
+#include "disparity_prediction.hpp"
+#include "disparity_refinement.hpp"
+#include "image_pyramid.hpp"
+#include "nonlocal_refinement.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+const int secondPassMedian = 5;
+
+// Of the non-local refinement: a stable disparity's largest difference in the left-right check, and gamma, relative to
+// that of the cost; with the same gamma the refinement blurs slanted surfaces.
+const int stableMaxDiff = 1;
+const double refinementGamma = 0.25;
+
+int disparitiesOf(const LayerInput& in) { return layerDisparities(in.parameters.numDisparities, in.layer); }
+
+void prepareCost(const LayerInput& in, MatchedLayer& matched)
+{
+    const MatcherParameters& p = in.parameters;
+    const MatchingCostParams params = { p.matchingCost == HDPTreeMatcher::COST_CENSUS, (float)p.colorTruncation,
+                                        (float)p.gradientTruncation, (float)p.colorWeight, p.blockSize };
+    matched.cost.prepare(in.images.left, in.images.right, disparitiesOf(in), params);
+}
+
+//! P(D_l) of section 3.1
+void estimatePrior(const LayerInput& in, LayerBuffers& buffers, StageClock& clock)
+{
+    const int disparities = disparitiesOf(in);
+    if (in.parameters.disparityPrior == HDPTreeMatcher::PRIOR_UPPER_LAYER)
+        return clock.run("disparity prediction",
+                         [&] { upperHistogram(in.upper, in.settings.scale, disparities, buffers.prior); });
+    clock.run("support points", [&] {
+        Mat left = in.images.left, right = in.images.right;
+        if (left.depth() != CV_8U) // greyLevels()
+        {
+            left.convertTo(left, CV_8U, 1. / greyScale);
+            right.convertTo(right, CV_8U, 1. / greyScale);
+        }
+        findSupportPoints(left, right, disparities, buffers.supportPoints, buffers.points);
+        disparityHistogram(buffers.points, disparities, buffers.prior);
+    });
+}
+
+//! PixelIntv of section 3.1; at the top layer the full range
+void predict(const LayerInput& in, LayerBuffers& buffers, Mat& pixelIntv)
+{
+    const Size size = in.images.guide.size();
+    if (in.isTop())
+    {
+        pixelIntv.create(size, CV_16UC2);
+        pixelIntv.setTo(Scalar(0, disparitiesOf(in) - 1));
+        return;
+    }
+    const PairSettings& settings = in.settings;
+    const int upperDisparities = layerDisparities(in.parameters.numDisparities, in.layer + 1);
+    predictIntervals(*settings.model, in.layer, buffers.prior, upperDisparities, settings.delta0 * (1 << in.layer),
+                     in.parameters.intervalMargin, buffers.intervals);
+    assignIntervals(in.upper, settings.scale, size, buffers.intervals, pixelIntv);
+}
+
+//! Section 3.2
+void growForest(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
+{
+    const MatcherParameters& p = in.parameters;
+    if (p.useMedianPrefilter)
+        medianBlur(in.images.guide, matched.guide, 3);
+    const Mat& guide = p.useMedianPrefilter ? matched.guide : in.images.guide;
+    buffers.forestLayer = in.layer;
+    buildForest(guide, matched.pixelIntv, *p.treeStrategy, in.settings.beta, !p.usePrediction, buffers.forestBuffers,
+                buffers.forest);
+}
+
+//! Sections 3.1 to 3.3
+void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
+{
+    const MatcherParameters& p = in.parameters;
+    const int scale = in.settings.scale;
+    if (!in.isTop())
+        estimatePrior(in, buffers, clock);
+    clock.run("disparity prediction", [&] { predict(in, buffers, matched.pixelIntv); });
+    clock.run("disparity forest", [&] { growForest(in, buffers, matched); });
+    matched.searchRatio = searchRatio(buffers.forest, disparitiesOf(in));
+    clock.run("cost aggregation", [&] {
+        aggregateForest(buffers.forest, matched.cost, p.gamma, scale > 1, buffers.aggregation, matched.winner);
+    });
+    if (p.fillOcclusions)
+        clock.run("occlusions", [&] {
+            matched.cost.censusCosts(matched.winner, scale, matched.residual);
+            fillOccluded(matched.winner, matched.residual, scale);
+        });
+}
+
+//! Predicted windows instead of trees. Each pass but the first takes its windows from the disparities of the one
+//! before, and trusts them more than those of the layer above.
+void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
+{
+    const MatcherParameters& p = in.parameters;
+    const int disparities = disparitiesOf(in);
+    matched.searchRatio = std::min<double>(CandidateWindow::candidates, disparities) / disparities;
+    for (int pass = 0; pass < p.scanlinePasses; ++pass)
+    {
+        if (pass > 0)
+            clock.run("disparity median", [&] {
+                medianDisparity(matched.winner, secondPassMedian, matched.medianStripes, matched.filtered);
+                halveDisparity(matched.filtered, matched.lastPass);
+            });
+        clock.run("disparity prediction", [&] {
+            const Mat& guess = pass > 0 ? matched.lastPass : in.upper;
+            predictWindows(guess, disparities, matched.smallest, matched.largest, matched.windows);
+        });
+        clock.run("cost aggregation", [&] {
+            const ScanlinePenalties penalties = { p.smallPenalty, p.largePenalty, pass == 0 ? 1 : 2 };
+            aggregateScanlines(matched.cost, in.images.left.size(), disparities, matched.windows, penalties,
+                               buffers.scanlines, matched.winner, matched.residual);
+        });
+        if (p.fillOcclusions)
+            clock.run("occlusions", [&] { fillOccluded(matched.winner, matched.residual, in.settings.scale); });
+    }
+}
+
+//! Refines the winners over the layer's forest.
+void refine(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
+{
+    if (buffers.forestLayer != in.layer)
+    {
+        matched.pixelIntv.create(matched.winner.size(), CV_16UC2);
+        matched.pixelIntv.setTo(Scalar::all(0)); // one tree
+        growForest(in, buffers, matched);
+    }
+    const int scale = in.settings.scale;
+    swap(matched.winner, matched.disparity);
+    findStable(matched.disparity, scale, stableMaxDiff, matched.stable);
+    refineNonLocal(buffers.forest, matched.disparity, scale, matched.stable, in.parameters.gamma * refinementGamma,
+                   buffers.aggregation, matched.winner);
+}
+
+//! From the winners to the layer's disparities
+void filter(const LayerInput& in, MatchedLayer& matched)
+{
+    swap(matched.winner, matched.disparity);
+    for (int pass = 0; in.settings.medianSize > 0 && pass < in.parameters.disparityMedianPasses; ++pass)
+    {
+        medianDisparity(matched.disparity, in.settings.medianSize, matched.medianStripes, matched.winner);
+        swap(matched.winner, matched.disparity);
+    }
+}
+
+} // namespace
+
+void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
+{
+    clock.run("matching cost", [&] { prepareCost(in, matched); });
+    if (in.isTop() || in.parameters.aggregation == HDPTreeMatcher::AGGREGATION_TREES)
+        aggregateTrees(in, buffers, clock, matched);
+    else
+        aggregateScanlines(in, buffers, clock, matched);
+    if (in.parameters.useNonLocalRefinement)
+        clock.run("non-local refinement", [&] { refine(in, buffers, matched); });
+    clock.run("disparity median", [&] { filter(in, matched); });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

@@ -1,0 +1,66 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
+#define OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
+
+#include "disparity_forest.hpp"
+#include "forest_aggregation.hpp"
+#include "matcher_parameters.hpp"
+#include "matching_cost.hpp"
+#include "pair_pyramids.hpp"
+#include "scanline_aggregation.hpp"
+#include "stage_clock.hpp"
+#include "support_points.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+//! What the disparities of a layer depend on
+struct LayerInput
+{
+    int layer;
+    const LayerImages& images;
+    const Mat& upper; // the disparities of the layer above; of no use at the top layer
+    const MatcherParameters& parameters;
+    const PairSettings& settings;
+
+    bool isTop() const { return layer == settings.layers - 1; }
+};
+
+//! A layer's result, and memory that is kept for the next pair
+struct MatchedLayer
+{
+    Mat disparity;      // CV_16UC1, times PairSettings::scale
+    MatchingCost cost;  // M(p, x)
+    double searchRatio; // R_l of the paper's Table 1
+
+    Mat guide, pixelIntv;
+    Mat smallest, largest, windows;
+    Mat winner, residual, filtered, lastPass, medianStripes, stable;
+};
+
+//! What the layers of a pair make one after the other in the same memory
+struct LayerBuffers
+{
+    DisparityForest forest;
+    int forestLayer = -1;      // the layer that the forest is of; -1: there is none
+    std::vector<double> prior; // P(D_l) of the last layer that was predicted from a prior
+
+    SupportPointBuffers supportPoints;
+    Mat points;
+    std::vector<DisparityInterval> intervals;
+    ForestBuffers forestBuffers;
+    AggregationBuffers aggregation;
+    ScanlineBuffers scanlines;
+};
+
+//! Section 3: from the disparities of the layer above to those of this layer
+void matchLayer(const LayerInput& input, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif

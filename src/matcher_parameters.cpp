@@ -1,0 +1,328 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "matcher_parameters.hpp"
+
+#include "candidate_windows.hpp"
+#include "disparity_output.hpp"
+#include "disparity_prediction.hpp"
+#include "image_pyramid.hpp"
+#include "pair_pyramids.hpp"
+#include "scanline_aggregation.hpp"
+#include "tree_strategy.hpp"
+
+#include <cmath>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+typedef MatcherParameters P;
+typedef HDPTreeMatcher M;
+
+const int largeImageWidth = 1000;
+const int leastTopDisparities = CandidateWindow::candidates; // of a third layer
+const int mostTopDisparities = 64;
+const int maxPenalty = ScanlinePenalties::largest;
+
+bool isAny(int) { return true; }
+bool isFlag(bool) { return true; }
+bool isPositive(double value) { return std::isfinite(value) && value > 0; }
+bool isNotNegative(double value) { return std::isfinite(value) && value >= 0; }
+bool isIn(int value, int first, int last) { return first <= value && value <= last; }
+bool isOddIn(int value, int first, int last) { return isIn(value, first, last) && value % 2 == 1; }
+
+//! Of a valid value
+template <typename T> struct Condition
+{
+    typedef bool (*Type)(T);
+};
+
+// clang-format off
+//! The list of the parameters, in the order of a file: name, member, valid values in words and as a condition
+template <typename Visitor> void visitParameters(Visitor&& visit)
+{
+    visit("minDisparity", &P::minDisparity, "any", isAny);
+    visit("numDisparities", &P::numDisparities, "> 0", [](int v) { return v > 0; });
+    visit("blockSize", &P::blockSize, "odd, in 1..31", [](int v) { return isOddIn(v, 1, 31); });
+    visit("speckleWindowSize", &P::speckleWindowSize, ">= 0", [](int v) { return v >= 0; });
+    visit("speckleRange", &P::speckleRange, "in 0..2047", [](int v) { return isIn(v, 0, SHRT_MAX / M::DISP_SCALE); });
+    visit("disp12MaxDiff", &P::disp12MaxDiff, "any", isAny);
+    visit("usePrediction", &P::usePrediction, "any", isFlag);
+    visit("useMedianPrefilter", &P::useMedianPrefilter, "any", isFlag);
+    visit("numLayers", &P::numLayers, "in 1..16, AUTO or FEWEST_LAYERS",
+          [](int v) { return v == M::AUTO || v == M::FEWEST_LAYERS || isIn(v, 1, 16); });
+    visit("delta0", &P::delta0, "in [0, 1) or AUTO", [](double v) { return v == M::AUTO || (v >= 0 && v < 1); });
+    visit("beta", &P::beta, "in [0, 1] or AUTO", [](double v) { return v == M::AUTO || (v >= 0 && v <= 1); });
+    visit("gamma", &P::gamma, "finite and > 0", isPositive);
+    visit("colorTruncation", &P::colorTruncation, "finite and >= 0", isNotNegative);
+    visit("gradientTruncation", &P::gradientTruncation, "finite and >= 0", isNotNegative);
+    visit("colorWeight", &P::colorWeight, "in [0, 1]", [](double v) { return v >= 0 && v <= 1; });
+    visit("disparityMedianSize", &P::disparityMedianSize, "0, odd in 3..31, or AUTO",
+          [](int v) { return v == M::AUTO || v == 0 || isOddIn(v, 3, 31); });
+    visit("disparityMedianPasses", &P::disparityMedianPasses, "in 1..8", [](int v) { return isIn(v, 1, 8); });
+    visit("matchingCost", &P::matchingCost, "COST_COLOR_GRADIENT or COST_CENSUS",
+          [](int v) { return v == M::COST_COLOR_GRADIENT || v == M::COST_CENSUS; });
+    visit("disparityPrior", &P::disparityPrior, "PRIOR_SUPPORT_POINTS or PRIOR_UPPER_LAYER",
+          [](int v) { return v == M::PRIOR_SUPPORT_POINTS || v == M::PRIOR_UPPER_LAYER; });
+    visit("intervalMargin", &P::intervalMargin, "in 0..64", [](int v) { return isIn(v, 0, 64); });
+    visit("useSubpixel", &P::useSubpixel, "any", isFlag);
+    visit("aggregation", &P::aggregation, "AGGREGATION_TREES or AGGREGATION_SCANLINES",
+          [](int v) { return v == M::AGGREGATION_TREES || v == M::AGGREGATION_SCANLINES; });
+    visit("smallPenalty", &P::smallPenalty, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
+    visit("largePenalty", &P::largePenalty, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
+    visit("finestLayer", &P::finestLayer, "in 0..15", [](int v) { return isIn(v, 0, 15); });
+    visit("scanlinePasses", &P::scanlinePasses, "in 1..4", [](int v) { return isIn(v, 1, 4); });
+    visit("fillOcclusions", &P::fillOcclusions, "any", isFlag);
+    visit("disparityDepth", &P::disparityDepth, "CV_16S or CV_32F", [](int v) { return v == CV_16S || v == CV_32F; });
+    visit("useNonLocalRefinement", &P::useNonLocalRefinement, "any", isFlag);
+}
+// clang-format on
+
+template <typename T> struct ParameterSetter
+{
+    MatcherParameters& parameters;
+    T P::*const parameter;
+    const T value;
+
+    void operator()(const char* name, T P::*member, const char* valid, typename Condition<T>::Type isValid) const
+    {
+        if (member != parameter)
+            return;
+        if (!isValid(value))
+        {
+            std::ostringstream message;
+            message << name << " must be " << valid << ", not " << value;
+            CV_Error(Error::StsOutOfRange, message.str());
+        }
+        parameters.*member = value;
+    }
+    template <typename Other>
+    void operator()(const char*, Other P::*, const char*, typename Condition<Other>::Type) const
+    {
+    }
+};
+
+struct ParameterWriter
+{
+    const MatcherParameters& parameters;
+    FileStorage& fs;
+
+    template <typename T>
+    void operator()(const char* name, T P::*member, const char*, typename Condition<T>::Type) const
+    {
+        fs << name << parameters.*member;
+    }
+    void operator()(const char* name, bool P::*member, const char*, bool (*)(bool)) const
+    {
+        fs << name << (int)(parameters.*member);
+    }
+};
+
+struct ParameterReader
+{
+    const FileNode& fn;
+    MatcherParameters& parameters;
+
+    void operator()(const char* name, int P::*member, const char*, bool (*)(int)) const
+    {
+        const FileNode node = fn[name];
+        if (!node.empty())
+            setParameter(parameters, member, number<int>(node, name, node.isInt()));
+    }
+    void operator()(const char* name, double P::*member, const char*, bool (*)(double)) const
+    {
+        const FileNode node = fn[name];
+        if (!node.empty())
+            setParameter(parameters, member, number<double>(node, name, node.isInt() || node.isReal()));
+    }
+    void operator()(const char* name, bool P::*member, const char*, bool (*)(bool)) const
+    {
+        const FileNode node = fn[name];
+        if (!node.empty())
+            setParameter(parameters, member, number<int>(node, name, node.isInt()) != 0);
+    }
+
+private:
+    template <typename T> static T number(const FileNode& node, const char* name, bool isNumber)
+    {
+        if (!isNumber)
+            CV_Error(Error::StsParseError, format("%s must be a number", name));
+        return (T)node;
+    }
+};
+
+Ptr<TreeStrategy> readStrategy(const FileNode& fn, const Ptr<TreeStrategy>& own)
+{
+    if (!fn.isMap() || !fn["strategy"].isString())
+        CV_Error(Error::StsParseError, "treeStrategy must name a strategy");
+    const String name = (String)fn["strategy"];
+    const Ptr<TreeStrategy> strategy = createTreeStrategy(name);
+    if (strategy)
+    {
+        strategy->read(fn);
+        return strategy;
+    }
+    if (name != own->getDefaultName()) // only the caller can create it
+        CV_Error(Error::StsParseError, "treeStrategy: set a strategy named " + name + " before reading");
+    return own;
+}
+
+int numLayers(const MatcherParameters& p)
+{
+    if (p.numLayers > 0)
+        return p.numLayers;
+    int layers = p.numLayers == M::AUTO && layerDisparities(p.numDisparities, 2) >= leastTopDisparities ? 3 : 2;
+    while (layerDisparities(p.numDisparities, layers - 1) > mostTopDisparities)
+        ++layers;
+    return layers;
+}
+
+//! Of parameters alone, and of the image's size
+void checkCombinations(const MatcherParameters& p, Size size)
+{
+    const int64 lowest = ((int64)p.minDisparity - 1) * M::DISP_SCALE;
+    const int64 highest = ((int64)p.minDisparity + p.numDisparities - 1) * M::DISP_SCALE;
+    if (lowest < SHRT_MIN || highest > SHRT_MAX)
+        CV_Error(Error::StsOutOfRange, format("minDisparity and numDisparities must keep (minDisparity - 1) * %d and "
+                                              "(minDisparity + numDisparities - 1) * %d in CV_16S",
+                                              (int)M::DISP_SCALE, (int)M::DISP_SCALE));
+
+    if (p.matchingCost == M::COST_CENSUS && p.blockSize != 3 && p.blockSize != 5 && p.blockSize != 7)
+        CV_Error(Error::StsOutOfRange, format("blockSize must be 3, 5 or 7 for COST_CENSUS, not %d", p.blockSize));
+
+    if (p.aggregation == M::AGGREGATION_SCANLINES && p.matchingCost != M::COST_CENSUS)
+        CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for AGGREGATION_SCANLINES");
+
+    if (p.fillOcclusions && p.matchingCost != M::COST_CENSUS)
+        CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for fillOcclusions");
+
+    if (p.speckleWindowSize > 0 && size.area() > INT_MAX / speckleBytes)
+        CV_Error(Error::StsOutOfRange,
+                 format("speckleWindowSize must be 0 for images of more than %d pixels", INT_MAX / speckleBytes));
+}
+
+} // namespace
+
+MatcherParameters presetParameters(int preset)
+{
+    if (preset < M::PRESET_PAPER || preset > M::PRESET_TREE)
+        CV_Error(Error::StsOutOfRange, format("preset must be one of HDPTreeMatcher::PRESET_*, not %d", preset));
+    MatcherParameters p;
+    if (preset == M::PRESET_PAPER)
+        return p;
+
+    p.matchingCost = M::COST_CENSUS;
+    p.blockSize = 7;
+    p.gamma = 20;
+    p.useSubpixel = true;
+    p.disparityMedianSize = 5;
+    p.fillOcclusions = true;
+    if (preset == M::PRESET_TREE)
+    {
+        p.disparityPrior = M::PRIOR_UPPER_LAYER;
+        p.intervalMargin = 1;
+        p.delta0 = 0.02;
+        p.beta = 0.9;
+        return p;
+    }
+
+    p.aggregation = M::AGGREGATION_SCANLINES;
+    p.treeStrategy = createSegmentTree();
+    p.numLayers = M::AUTO;
+    if (preset == M::PRESET_ULTRAFAST)
+        p.finestLayer = 1;
+    if (preset == M::PRESET_QUALITY)
+    {
+        p.numLayers = M::FEWEST_LAYERS;
+        p.scanlinePasses = 2;
+        p.disparityMedianSize = 7;
+        p.disparityMedianPasses = 2;
+    }
+    return p;
+}
+
+template <typename T> void setParameter(MatcherParameters& parameters, T MatcherParameters::*parameter, const T& value)
+{
+    const ParameterSetter<T> setter = { parameters, parameter, value };
+    visitParameters(setter);
+}
+
+template void setParameter(MatcherParameters&, int MatcherParameters::*, const int&);
+template void setParameter(MatcherParameters&, double MatcherParameters::*, const double&);
+template void setParameter(MatcherParameters&, bool MatcherParameters::*, const bool&);
+
+void setTreeStrategy(MatcherParameters& parameters, const Ptr<TreeStrategy>& strategy)
+{
+    if (!strategy)
+        CV_Error(Error::StsNullPtr, "treeStrategy must not be empty");
+    parameters.treeStrategy = strategy;
+}
+
+void writeParameters(const MatcherParameters& parameters, FileStorage& fs)
+{
+    const ParameterWriter writer = { parameters, fs };
+    visitParameters(writer);
+    fs << "treeStrategy"
+       << "{"
+       << "strategy" << parameters.treeStrategy->getDefaultName();
+    parameters.treeStrategy->write(fs);
+    fs << "}";
+    if (parameters.predictionModel)
+    {
+        fs << "predictionModel"
+           << "{";
+        parameters.predictionModel->write(fs);
+        fs << "}";
+    }
+}
+
+MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ownStrategy)
+{
+    MatcherParameters p;
+    const ParameterReader reader = { fn, p };
+    visitParameters(reader);
+    p.treeStrategy = readStrategy(fn["treeStrategy"], ownStrategy);
+    if (!fn["predictionModel"].empty())
+    {
+        p.predictionModel = DisparityPredictionModel::create();
+        p.predictionModel->read(fn["predictionModel"]);
+    }
+    return p;
+}
+
+PairSettings resolve(const MatcherParameters& p, const Mat& left)
+{
+    const Size size = left.size();
+    checkCombinations(p, size);
+    PairSettings settings;
+    settings.layers = p.usePrediction ? countLayers(size, numLayers(p)) : 1;
+    settings.finestLayer = std::min(p.finestLayer, settings.layers - 1);
+    settings.extension = p.minDisparity < 0 ? (int)alignSize(-p.minDisparity, 1 << (settings.layers - 1)) : 0;
+    const int64 width = (int64)size.width + settings.extension;
+    if (width > maxSide || width * size.height * (int64)left.elemSize() > INT_MAX)
+        CV_Error(Error::StsOutOfRange,
+                 format("minDisparity must not be %d for an image of %d x %d: as many columns are added to it",
+                        p.minDisparity, size.width, size.height));
+    settings.scale = p.useSubpixel || p.aggregation == M::AGGREGATION_SCANLINES ? subpixelScale : 1;
+
+    const bool isLarge = size.width >= largeImageWidth;
+    settings.model = p.predictionModel;
+    if (!settings.model)
+        settings.model = DisparityPredictionModel::createPublished(isLarge ? DisparityPredictionModel::PUBLISHED_LARGE
+                                                                           : DisparityPredictionModel::PUBLISHED_SMALL);
+    if (p.aggregation == M::AGGREGATION_TREES && settings.model->getNumLayers() < settings.layers - 1)
+        CV_Error(Error::StsOutOfRange, format("predictionModel must have numLayers - 1 = %d layers, not %d",
+                                              settings.layers - 1, settings.model->getNumLayers()));
+    settings.delta0 = p.delta0 != M::AUTO ? p.delta0 : isLarge ? 0.064 : 0.004;
+    settings.beta = p.beta != M::AUTO ? p.beta : isLarge ? 0.6 : 0.95;
+    settings.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
+    return settings;
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

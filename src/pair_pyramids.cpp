@@ -1,0 +1,95 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "image_pyramid.hpp"
+#include "pair_pyramids.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+//! The layers above the image are kept in a buffer; the image itself belongs to the caller.
+void buildPyramid(const Mat& image, int layers, std::vector<Mat>& pyramid)
+{
+    pyramid.resize(layers);
+    pyramid[0] = image;
+    for (int layer = 1; layer < layers; ++layer)
+        halveImage(pyramid[layer - 1], pyramid[layer]);
+}
+
+} // namespace
+
+void checkPair(const Mat& left, const Mat& right)
+{
+    if (left.empty())
+        CV_Error(Error::StsBadArg, "left must not be empty");
+    if (left.dims != 2 || (left.type() != CV_8UC1 && left.type() != CV_8UC3))
+        CV_Error(Error::StsUnsupportedFormat, "left must be CV_8UC1 or CV_8UC3");
+    if (right.dims != 2 || right.size() != left.size())
+        CV_Error(Error::StsUnmatchedSizes, "right must have the size of left");
+    if (right.type() != left.type())
+        CV_Error(Error::StsUnmatchedFormats, "right must have the type of left");
+    if (std::max(left.cols, left.rows) > maxSide)
+        CV_Error(Error::StsOutOfRange,
+                 format("left must be at most %d pixels wide and high, not %d x %d", maxSide, left.cols, left.rows));
+    if (left.total() * left.elemSize() > (size_t)INT_MAX)
+        CV_Error(Error::StsOutOfRange, "left must have less than 2^31 bytes");
+}
+
+void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int extension, int layers, bool census,
+                       PairPyramids& pyramids, std::vector<LayerImages>& images)
+{
+    Mat extended = left, shifted = right;
+    if (minDisparity != 0)
+    {
+        shiftColumns(right, minDisparity, extension, pyramids.shiftedRight);
+        shifted = pyramids.shiftedRight;
+    }
+    if (extension > 0)
+    {
+        copyMakeBorder(left, pyramids.extendedLeft, 0, 0, extension, 0, BORDER_REPLICATE);
+        extended = pyramids.extendedLeft;
+    }
+    buildPyramid(extended, layers, pyramids.left);
+    if (census)
+    {
+        greyLevels(extended, pyramids.leftLevels);
+        greyLevels(shifted, pyramids.rightLevels);
+        buildPyramid(pyramids.leftLevels, layers, pyramids.leftGrey);
+        buildPyramid(pyramids.rightLevels, layers, pyramids.right);
+    }
+    else
+        buildPyramid(shifted, layers, pyramids.right);
+    images.resize(layers);
+    for (int layer = 0; layer < layers; ++layer)
+    {
+        images[layer].guide = pyramids.left[layer];
+        images[layer].left = census ? pyramids.leftGrey[layer] : pyramids.left[layer];
+        images[layer].right = pyramids.right[layer];
+    }
+    pyramids.left[0].release(); // the caller's
+    pyramids.right[0].release();
+}
+
+void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted)
+{
+    const int width = right.cols + extension;
+    const int64 shift = (int64)minDisparity + extension; // minDisparity is any int
+    // Of the columns of the result, [begin, end) come from inside the image.
+    const int begin = (int)std::min<int64>(std::max<int64>(shift, 0), width);
+    const int end = (int)std::max<int64>(std::min<int64>(right.cols + shift, width), 0);
+    shifted.create(right.rows, width, right.type());
+    if (begin < end)
+        right.colRange((int)(begin - shift), (int)(end - shift)).copyTo(shifted.colRange(begin, end));
+    for (int x = 0; x < begin; ++x)
+        right.col(0).copyTo(shifted.col(x));
+    for (int x = end; x < width; ++x)
+        right.col(right.cols - 1).copyTo(shifted.col(x));
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

@@ -1,0 +1,56 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
+#define OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+//! Largest width and height of an image. Two edges per pixel are numbered by int, and what is counted by pixels of a
+//! side or by bytes of the image fits into one, too, in OpenCV's filters as well. cv::filterSpeckles has 16-bit
+//! coordinates.
+const int maxSide = SHRT_MAX;
+
+//! Throws cv::Exception if the images are no pair that can be matched.
+void checkPair(const Mat& left, const Mat& right);
+
+//! What the stages see of a layer
+struct LayerImages
+{
+    Mat guide;       // gives the edge weights
+    Mat left, right; // give the matching cost; a candidate counts from minDisparity
+};
+
+//! Memory of the pyramids, kept from pair to pair
+struct PairPyramids
+{
+    std::vector<Mat> left, leftGrey, right;
+    Mat extendedLeft, shiftedRight, leftLevels, rightLevels;
+};
+
+/** The pyramids of a pair (section 2.1), for candidates that count from 0.
+@param left CV_8UC1 or CV_8UC3.
+@param right Of the same size and type.
+@param minDisparity The disparity that candidate 0 stands for.
+@param extension Columns added on the left of both images, so that the first columns have their matches if
+disparities are negative; a multiple of 2^(layers - 1).
+@param layers Number of layers.
+@param census Whether the matching cost gets grey levels, see greyLevels(), instead of the images themselves.
+@param pyramids Memory to work in.
+@param images Receives the images of each layer. */
+void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int extension, int layers, bool census,
+                       PairPyramids& pyramids, std::vector<LayerImages>& images);
+
+//! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:
+//! shifted(x + extension) = right(x - minDisparity), the nearest column where there is none.
+CV_EXPORTS void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif
