@@ -6,6 +6,9 @@
 #include "scanline_aggregation.hpp"
 #include "vectorized.hpp"
 #include <cstring>
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#include "byte_lanes.simd.hpp"
+#endif
 
 namespace cv {
 namespace stereo {
@@ -27,8 +30,6 @@ void aggregateStripe(const ScanlineProblem& problem, int above, const Range& row
 namespace {
 
 typedef CandidateWindow Window;
-
-#include "byte_lanes.simd.hpp"
 
 /** A sweep over a stripe. Rows are done in blocks of ByteLanes::groups, skewed: when group r is at column x of the
 block's row r, group r + 1 is at column x - 2 of the next row, so that it finds what the group before left there two steps
@@ -279,7 +280,7 @@ private:
         const int at = 4 * column;
         const auto ofPlane = [&](int plane) { return load((ptrdiff_t)(plane * planeStride_) - column); };
         const ByteLanes grey = ByteLanes::repeatByte<at + MatchingCost::greyByte>(left), candidates = ofPlane(planes);
-        const ByteLanes contrast = ((grey - candidates) | (candidates - grey)).min(ByteLanes::repeat(31)).quarter();
+        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(31)).quarter();
         const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ofPlane(0);
         if (planes == 1)
             return contrast + first.countBits();

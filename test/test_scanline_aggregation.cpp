@@ -1,19 +1,18 @@
 // This file is part of OpenCV project.
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
+
+// The stage once more, with OpenCV's emulation of vectors in place of those of the machine
+#define CV_FORCE_SIMD128_CPP
+
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "../src/scanline_aggregation.hpp"
 
-// The stage once more, with the lanes that are written without any instruction set
-#undef CV_AVX2
-#undef CV_SSE2
-#define CV_AVX2 0
-#define CV_SSE2 0
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_END
-#define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_portable {
+#define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_emulated {
 #define CV_CPU_OPTIMIZATION_NAMESPACE_END }
 #include "../src/scanline_aggregation.simd.hpp"
 
@@ -143,7 +142,7 @@ TEST_P(HDPStereo_ScanlineAggregation, any_penalties)
     }
 }
 
-TEST_P(HDPStereo_ScanlineAggregation, lanes_without_instruction_sets)
+TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
 {
     RNG rng(44);
     hdp::ScanlineBuffers buffers;
@@ -156,7 +155,7 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_instruction_sets)
             const hdp::MatchingCost cost = layer.cost();
             const hdp::ScanlineProblem problem = { &cost, size, numDisparities, &layer.windows, usualPenalties };
             Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
-            hdp::opt_portable::aggregateStripe(problem, 0, Range(0, size.height), scratch, disparity, residual);
+            hdp::opt_emulated::aggregateStripe(problem, 0, Range(0, size.height), scratch, disparity, residual);
             expectIdentical(aggregate(layer, usualPenalties, buffers), Layer::beside(disparity, residual));
         }
 }
