@@ -4,12 +4,14 @@
 
 // A TreeStrategy of one's own, in comparison with the minimum spanning tree: the errors of both on a rectified pair.
 
+#include <algorithm>
 #include <iostream>
 
-#include "hdp_samples_common.hpp"
+#include "opencv2/core/utility.hpp"
+#include "opencv2/hdpstereo.hpp"
+#include "opencv2/imgcodecs.hpp"
 
 using namespace cv;
-using namespace hdp_samples;
 using cv::stereo::HDPTreeMatcher;
 
 //! [class]
@@ -45,30 +47,43 @@ private:
 };
 //! [class]
 
-static const char* const KEYS =
-    "{help h ?        |    | print this and exit }"
-    "{@left           |    | left image of a rectified pair }"
-    "{@right          |    | right image }"
-    "{min-disparity   | 0  | smallest disparity in pixels }"
-    "{num-disparities |    | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
-    "{max-weight      | 20 | largest weight of an edge of a tree, 0..255 }"
-    "{truth           |    | left disparity: PNG of 8 bit (0 = unknown) or 16 bit (times 256, 0 = unknown) or PFM }"
-    "{truth-right     |    | right disparity; occluded pixels are then not judged }"
-    "{truth-scale     |    | what a disparity of 1 is in the truth files, if not 1 (8 bit, PFM) or 256 (16 bit) }";
+static const char* const keys = "{help h ?        |     | print this and exit }"
+                                "{@left           |     | left image of a rectified pair }"
+                                "{@right          |     | right image }"
+                                "{num-disparities | 128 | number of disparities, from 0 }"
+                                "{max-weight      | 20  | largest weight of an edge of a tree, 0..255 }"
+                                "{truth           |     | true disparities, 8 bit, 0 = unknown }";
 
-static const std::vector<String> FLAGS = { "help", "h", "?" };
+static Mat readImage(const String& path, int flags)
+{
+    const Mat image = imread(path, flags);
+    if (image.empty())
+        CV_Error(Error::StsError, "cannot read the image '" + path + "'");
+    return image;
+}
+
+//! Prints the share of the pixels of known truth that are wrong.
+static void printErrors(const Mat& disparity16, const Mat& truth)
+{
+    Mat truth16;
+    truth.convertTo(truth16, CV_16S, StereoMatcher::DISP_SCALE);
+    const Mat error = abs(disparity16 - truth16);
+    for (int threshold = 1; threshold <= 2; threshold++)
+    {
+        const Mat wrong = (error >= threshold * StereoMatcher::DISP_SCALE) & (truth != 0);
+        std::cout << format("   err>=%d %6.2f %%", threshold, 100. * countNonZero(wrong) / countNonZero(truth));
+    }
+}
 
 static void run(const CommandLineParser& parser)
 {
-    Mat left, right;
-    readPair(parser, left, right);
-    const Truth truth = readTruth(parser, left.size());
-    const Range disparities = getDisparities(parser, left.size());
-    const int maxWeight = getInteger(parser, "max-weight", 0, 255);
+    const Mat left = readImage(parser.get<String>("@left"), IMREAD_COLOR),
+              right = readImage(parser.get<String>("@right"), IMREAD_COLOR),
+              truth = parser.has("truth") ? readImage(parser.get<String>("truth"), IMREAD_GRAYSCALE) : Mat();
+    const int numDisparities = parser.get<int>("num-disparities"), maxWeight = parser.get<int>("max-weight");
 
     //! [use]
-    const Ptr<HDPTreeMatcher> matcher =
-        HDPTreeMatcher::create(disparities.start, disparities.size(), HDPTreeMatcher::PRESET_TREE);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities, HDPTreeMatcher::PRESET_TREE);
     const Ptr<stereo::TreeStrategy> strategies[] = { stereo::createMinimumSpanningTree(),
                                                      makePtr<ContourTree>(maxWeight) };
     for (const Ptr<stereo::TreeStrategy>& strategy : strategies)
@@ -81,19 +96,31 @@ static void run(const CommandLineParser& parser)
         double lastTree;
         minMaxLoc(trees, nullptr, &lastTree);
         std::cout << format("%-30s%10.0f trees", strategy->getDefaultName().c_str(), lastTree + 1);
-        if (!truth.disparity.empty())
-        {
-            const Mat map = toPixels(disparity, matcher->getMinDisparity());
-            for (int threshold = 1; threshold <= 2; threshold++)
-                std::cout << format("   err>=%d %6.2f %%", threshold,
-                                    percent(wrongPixels(map, truth.disparity, truth.judged, threshold), truth.judged));
-        }
+        if (!truth.empty())
+            printErrors(disparity, truth);
         std::cout << std::endl;
     }
+    if (!std::cout)
+        CV_Error(Error::StsError, "cannot write to the standard output");
 }
 
 int main(int argc, char** argv)
 {
-    return runSample(argc, argv, KEYS, "A TreeStrategy of one's own, beside the minimum spanning tree.\n", FLAGS, 2,
-                     run);
+    CommandLineParser parser(argc, argv, keys);
+    parser.about("A TreeStrategy of one's own, beside the minimum spanning tree.");
+    if (parser.has("help"))
+    {
+        parser.printMessage();
+        return 0;
+    }
+    try
+    {
+        run(parser);
+    }
+    catch (const cv::Exception& e)
+    {
+        std::cerr << "error: " << e.err << std::endl;
+        return 1;
+    }
+    return 0;
 }

@@ -2,199 +2,218 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Matches a rectified stereo pair with cv::stereo::HDPTreeMatcher: writes the disparity, a picture of it and a point
-// cloud, and prints the time of each stage, the share of the disparity range searched, and the error if the truth is
-// known.
+// Matches a rectified stereo pair with cv::stereo::HDPTreeMatcher, and writes the disparities, a picture of them and a
+// point cloud.
 
+#include <fstream>
 #include <iostream>
+#include <map>
 
+#include "opencv2/core/utils/logger.hpp"
 #include "opencv2/hdpstereo.hpp"
-
-#include "hdp_samples_common.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
 
 using namespace cv;
-using namespace hdp_samples;
 using cv::stereo::HDPTreeMatcher;
 
-static const char* const KEYS =
-    "{help h ?         |       | print this and exit }"
-    "{@left            |       | left image of a rectified pair }"
-    "{@right           |       | right image }"
-    "{preset           | fast  | set of parameters: ultrafast, fast, quality, tree, or paper (the paper's tables) }"
-    "{tree             |       | spanning tree: mst (minimum), st (segment) or rt (random); by default the preset's }"
-    "{no-prediction    |       | the plain tree algorithm over the full range }"
-    "{median-prefilter |       | edge weights from a 3 x 3 median of the image }"
-    "{min-disparity    | 0     | smallest disparity in pixels }"
-    "{num-disparities  |       | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
-    "{threads          |       | number of threads; all processors if not given }"
-    "{output           |       | disparity: FILE.png (16 bit, times 256, 0 = none) or FILE.pfm (float, inf = none) }"
-    "{picture          |       | disparity in colors: far blue, near orange, none black; with --truth, errors of 2 and "
-    "more are red, and pixels that are not judged black }"
-    "{truth            |       | left disparity: PNG of 8 bit (0 = unknown) or 16 bit (times 256, 0 = unknown) or PFM }"
-    "{truth-right      |       | right disparity; occluded pixels are then not judged }"
-    "{truth-scale      |       | what a disparity of 1 is in the truth files, if not 1 (8 bit, PFM) or 256 (16 bit) }"
-    "{point-cloud      |       | colored points: FILE.ply; needs --Q, or --focal and --baseline }"
-    "{Q                |       | file with the 4 x 4 matrix Q of cv::stereoRectify }"
-    "{focal            |       | focal length in pixels; the principal point is the center of the image }"
-    "{baseline         |       | distance of the cameras, in the unit of the points }";
+static const char* const keys =
+    "{help h ?         |      | print this and exit }"
+    "{@left            |      | left image of a rectified pair }"
+    "{@right           |      | right image }"
+    "{preset           | fast | set of parameters: ultrafast, fast, quality, tree, or paper (the paper's tables) }"
+    "{tree             |      | spanning tree: mst (minimum), st (segment) or rt (random); by default the preset's }"
+    "{no-prediction    |      | search the full range in every layer }"
+    "{median-prefilter |      | edge weights from a 3 x 3 median of the image }"
+    "{min-disparity    | 0    | smallest disparity in pixels }"
+    "{num-disparities  |      | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
+    "{threads          |      | number of threads; all processors if not given }"
+    "{output           |      | disparities: FILE.png (16 bit, times 256, 0 = none) or FILE.pfm (float, inf = none) }"
+    "{picture          |      | disparities in colors: far is blue, near is orange, none is black }"
+    "{truth            |      | true disparities: PNG, 8 bit or 16 bit (times 256), 0 = unknown }"
+    "{point-cloud      |      | colored points: FILE.ply; needs --focal and --baseline }"
+    "{focal            | 0    | focal length in pixels; the principal point is the center of the image }"
+    "{baseline         | 0    | distance of the cameras, in the unit of the points }";
 
-static const std::vector<String> FLAGS = { "help", "h", "?", "no-prediction", "median-prefilter" };
-
-static void checkOptions(const CommandLineParser& parser)
+//! Writes a file; also notices a full disk.
+static void writeFile(const String& path, const std::vector<uchar>& bytes)
 {
-    const String output = parser.get<String>("output"), picture = parser.get<String>("picture");
-    if (!output.empty() && !hasExtension(output, ".png") && !hasExtension(output, ".pfm"))
-        fail("--output=" + output + ": neither a .png nor a .pfm file");
-    if (!picture.empty() && !haveImageWriter(picture))
-        fail("--picture=" + picture + ": not a kind of image that can be written");
-
-    const bool camera = parser.has("focal") && parser.has("baseline");
-    if (parser.has("point-cloud") && parser.has("Q") == camera)
-        fail("--point-cloud needs either --Q, or --focal and --baseline");
-    if (!parser.has("point-cloud") && (parser.has("Q") || parser.has("focal") || parser.has("baseline")))
-        fail("--Q, --focal and --baseline need --point-cloud");
+    std::ofstream file(path.c_str(), std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    if (!file.flush())
+        CV_Error(Error::StsError, "cannot write '" + path + "'");
+    std::cout << "written    " << path << std::endl;
 }
 
-static Matx44d readCamera(const CommandLineParser& parser, Size size)
+static void writeImage(const String& path, const Mat& image)
 {
-    if (!parser.has("Q"))
-    {
-        const double f = getNumber(parser, "focal", 1e-3, 1e9), b = getNumber(parser, "baseline", 1e-9, 1e9);
-        return Matx44d(1, 0, 0, -0.5 * (size.width - 1),  //
-                       0, 1, 0, -0.5 * (size.height - 1), //
-                       0, 0, 0, f,                        //
-                       0, 0, 1 / b, 0);
-    }
-    Mat Q;
-    try
-    {
-        FileStorage(parser.get<String>("Q"), FileStorage::READ)["Q"] >> Q;
-    }
-    catch (const cv::Exception&)
-    {
-    }
-    if (Q.size() != Size(4, 4) || Q.channels() != 1)
-        fail("cannot read a 4 x 4 matrix Q from '" + parser.get<String>("Q") + "'");
-    Q.convertTo(Q, CV_64F);
-    return Matx44d(Q.ptr<double>());
+    std::vector<uchar> bytes;
+    imencode(path.substr(std::min(path.rfind('.'), path.size())), image, bytes);
+    writeFile(path, bytes);
 }
 
-static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, Size size)
+static void writeDisparity(const String& path, const Mat& disparity)
 {
-    const Range disparities = getDisparities(parser, size);
-    Ptr<HDPTreeMatcher> matcher =
-        HDPTreeMatcher::create(disparities.start, disparities.size(), getPreset(parser, "preset"));
+    Mat image = disparity;
+    if (path.size() > 4 && path.substr(path.size() - 4) == ".png")
+    {
+        disparity.convertTo(image, CV_16U, 256);
+        image.setTo(1, image == 0); // 0 stands for none
+        image.setTo(0, (disparity < 0) | (disparity >= 256));
+    }
+    writeImage(path, image);
+}
+
+static Mat readImage(const String& path, int flags)
+{
+    const Mat image = imread(path, flags);
+    if (image.empty())
+        CV_Error(Error::StsError, "cannot read the image '" + path + "'");
+    return image;
+}
+
+//! The value of a name that an option gives
+template <typename Value>
+static Value choose(const CommandLineParser& parser, const String& option, const std::map<String, Value>& values)
+{
+    const auto found = values.find(parser.get<String>(option));
+    if (found == values.end())
+        CV_Error(Error::StsBadArg, "--" + option + "=" + parser.get<String>(option) + " is unknown, see --help");
+    return found->second;
+}
+
+static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
+{
+    const int preset = choose<int>(parser, "preset",
+                                   { { "ultrafast", HDPTreeMatcher::PRESET_ULTRAFAST },
+                                     { "fast", HDPTreeMatcher::PRESET_FAST },
+                                     { "quality", HDPTreeMatcher::PRESET_QUALITY },
+                                     { "tree", HDPTreeMatcher::PRESET_TREE },
+                                     { "paper", HDPTreeMatcher::PRESET_PAPER } });
+    const int numDisparities =
+        parser.has("num-disparities") ? parser.get<int>("num-disparities") : std::max((width / 5 + 15) / 16 * 16, 16);
+    const int minDisparity = parser.get<int>("min-disparity");
+    if (!parser.check())
+        CV_Error(Error::StsBadArg, "a number is needed: --num-disparities=128, and so on");
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, numDisparities, preset);
     if (parser.has("tree"))
-        matcher->setTreeStrategy(createTree(parser.get<String>("tree")));
+        matcher->setTreeStrategy(choose<Ptr<stereo::TreeStrategy>>(parser, "tree",
+                                                                   { { "mst", stereo::createMinimumSpanningTree() },
+                                                                     { "st", stereo::createSegmentTree() },
+                                                                     { "rt", stereo::createRandomTree() } }));
     matcher->setUsePrediction(!parser.has("no-prediction"));
     matcher->setUseMedianPrefilter(parser.has("median-prefilter"));
     return matcher;
 }
 
-//! What the matcher is; a system of the paper by its name in the tables there, such as HDP+MST.
-static String systemName(const HDPTreeMatcher& matcher)
-{
-    String tree;
-    for (const char* name : TREES)
-        if (createTree(name)->getDefaultName() == matcher.getTreeStrategy()->getDefaultName())
-            tree = upperCase(name);
-    const String prefilter = matcher.getUseMedianPrefilter() ? "M+" : "";
-    if (matcher.getUsePrediction() && matcher.getAggregation() == HDPTreeMatcher::AGGREGATION_SCANLINES)
-        return "scanlines, " + prefilter + tree + " on the top layer";
-    return prefilter + (matcher.getUsePrediction() ? "HDP+" : "") + tree +
-           (matcher.getMatchingCost() == HDPTreeMatcher::COST_CENSUS ? ", census cost" : "");
-}
-
-static void printWork(const HDPTreeMatcher& matcher, double totalMilliseconds)
+static void printTimes(const HDPTreeMatcher& matcher)
 {
     std::vector<String> stages;
-    std::vector<double> milliseconds, ratios;
+    std::vector<double> milliseconds;
     matcher.getStageTimes(stages, milliseconds);
-    matcher.getSearchRatios(ratios);
     for (size_t i = 0; i < stages.size(); i++)
         std::cout << format("%-11s%-24s%10.1f ms\n", i == 0 ? "time" : "", stages[i].c_str(), milliseconds[i]);
-    std::cout << format("%-11s%-24s%10.1f ms\n", "", "in all", totalMilliseconds);
-    for (size_t i = 0; i < ratios.size(); i++)
-        std::cout << format("%-11slayer %-18d%10.2f %%\n", i == 0 ? "searched" : "", int(i), 100 * ratios[i]);
 }
 
-static void printErrors(const Mat& disparity, const Truth& truth)
+//! Pixels without a disparity are wrong.
+static void printErrors(const Mat& disparity, const Mat& truth)
 {
+    CV_CheckEQ(truth.size(), disparity.size(), "--truth must have the size of the images");
+    Mat error;
+    truth.convertTo(error, CV_32F, truth.depth() == CV_16U ? 1. / 256 : 1);
+    error = abs(disparity - error);
     for (int threshold = 1; threshold <= 2; threshold++)
         std::cout << format("%-11serr>=%-19d%10.2f %%\n", threshold == 1 ? "wrong" : "", threshold,
-                            percent(wrongPixels(disparity, truth.disparity, truth.judged, threshold), truth.judged));
-    std::cout << format("%-11sof %d pixels with known truth%s\n", "", countNonZero(truth.judged),
-                        truth.nonOccluded ? " that are not occluded" : "");
+                            100. * countNonZero((error >= threshold) & (truth != 0)) / countNonZero(truth));
 }
 
-static void saveDisparity(const String& path, const Mat& disparity)
+//! From blue by green to orange; both ends of the color map are left out.
+static Mat colorPicture(const Mat& disparity, const Mat& known)
 {
-    const int lost = writeDisparity(path, disparity);
-    std::cout << "written    " << path << std::endl;
-    if (lost > 0)
-        std::cerr << "warning: " << lost << " disparities are below 0 or above 255.99, which a 16-bit PNG cannot hold; "
-                  << "they are written as 0 (none). A .pfm file holds all." << std::endl;
+    Mat levels, picture;
+    normalize(disparity, levels, 20, 170, NORM_MINMAX, CV_8U, known);
+    applyColorMap(levels, picture, COLORMAP_TURBO);
+    picture.setTo(Scalar::all(0), ~known);
+    return picture;
 }
 
-static void savePicture(const String& path, const Mat& disparity, const Truth& truth)
+//! A binary .ply file
+static std::vector<uchar> pointCloud(const Mat& disparity, const Mat& known, const Mat& image, const Matx44d& Q)
 {
-    Mat picture = colorPicture(disparity);
-    if (!truth.disparity.empty())
-    {
-        picture.setTo(Scalar::all(0), ~truth.judged);
-        const Mat wrong = wrongPixels(disparity, truth.disparity, truth.judged, 2);
-        picture.setTo(Scalar(0, 0, 255), wrong & knownPixels(disparity));
-    }
-    writeImage(path, picture);
-    std::cout << "written    " << path << std::endl;
-}
-
-static void savePointCloud(const String& path, const Mat& disparity, const Mat& image, const Matx44d& Q)
-{
-    const int count = writePointCloud(path, disparity, image, Q);
-    std::cout << "written    " << path << " (" << count << " points)" << std::endl;
+    Mat points;
+    reprojectImageTo3D(disparity, points, Q);
+    const Mat finite = known & (disparity != 0);
+    const String header = format("ply\nformat binary_little_endian 1.0\nelement vertex %d\n"
+                                 "property float x\nproperty float y\nproperty float z\n"
+                                 "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
+                                 countNonZero(finite));
+    std::vector<uchar> bytes(header.begin(), header.end());
+    for (int y = 0; y < points.rows; y++)
+        for (int x = 0; x < points.cols; x++)
+            if (finite.at<uchar>(y, x))
+            {
+                const uchar *const point = points.ptr(y, x), *const bgr = image.ptr(y, x);
+                bytes.insert(bytes.end(), point, point + sizeof(Vec3f));
+                bytes.insert(bytes.end(), { bgr[2], bgr[1], bgr[0] });
+            }
+    return bytes;
 }
 
 static void run(const CommandLineParser& parser)
 {
-    checkOptions(parser);
+    const double f = parser.get<double>("focal"), B = parser.get<double>("baseline");
+    if (parser.has("point-cloud") && !(f > 0 && B > 0))
+        CV_Error(Error::StsBadArg, "--point-cloud needs --focal and --baseline, each above 0");
     if (parser.has("threads"))
-        setNumThreads(getInteger(parser, "threads", 1, 1024));
+        setNumThreads(parser.get<int>("threads"));
+    const Mat left = readImage(parser.get<String>("@left"), IMREAD_COLOR),
+              right = readImage(parser.get<String>("@right"), IMREAD_COLOR);
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.cols);
 
-    Mat left, right;
-    readPair(parser, left, right);
-    const Truth truth = readTruth(parser, left.size());
-    const Matx44d Q = parser.has("point-cloud") ? readCamera(parser, left.size()) : Matx44d();
-
-    Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.size());
-    const int minDisparity = matcher->getMinDisparity();
-    std::cout << format("images     %d x %d, disparities %d to %d\n", left.cols, left.rows, minDisparity,
-                        minDisparity + matcher->getNumDisparities() - 1)
-              << "system     " << systemName(*matcher) << " (preset " << parser.get<String>("preset") << ", threads "
-              << getNumThreads() << ")" << std::endl;
-
-    Mat disparity16;
-    TickMeter timer;
-    timer.start();
+    Mat disparity16, disparity; // in 1/16 pixel; in pixels
     matcher->compute(left, right, disparity16);
-    timer.stop();
-    const Mat disparity = toPixels(disparity16, minDisparity);
+    disparity16.convertTo(disparity, CV_32F, 1. / StereoMatcher::DISP_SCALE);
+    const Mat known = disparity >= matcher->getMinDisparity();
+    disparity.setTo(std::numeric_limits<float>::infinity(), ~known);
 
-    printWork(*matcher, timer.getTimeMilli());
-    if (!truth.disparity.empty())
-        printErrors(disparity, truth);
+    printTimes(*matcher);
+    if (parser.has("truth"))
+        printErrors(disparity, readImage(parser.get<String>("truth"), IMREAD_GRAYSCALE | IMREAD_ANYDEPTH));
     if (parser.has("output"))
-        saveDisparity(parser.get<String>("output"), disparity);
+        writeDisparity(parser.get<String>("output"), disparity);
     if (parser.has("picture"))
-        savePicture(parser.get<String>("picture"), disparity, truth);
+        writeImage(parser.get<String>("picture"), colorPicture(disparity, known));
     if (parser.has("point-cloud"))
-        savePointCloud(parser.get<String>("point-cloud"), disparity, left, Q);
+    {
+        const Matx44d Q(1, 0, 0, -0.5 * (left.cols - 1), 0, 1, 0, -0.5 * (left.rows - 1), 0, 0, 0, f, 0, 0, 1 / B, 0);
+        writeFile(parser.get<String>("point-cloud"), pointCloud(disparity, known, left, Q));
+    }
+    if (!std::cout.flush())
+        CV_Error(Error::StsError, "cannot write to the standard output");
 }
 
 int main(int argc, char** argv)
 {
-    return runSample(argc, argv, KEYS,
-                     "Disparity of a rectified stereo pair: non-local matching, hierarchical disparity "
-                     "prediction.\n",
-                     FLAGS, 2, run);
+    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT);
+    CommandLineParser parser(argc, argv, keys);
+    parser.about("Disparities of a rectified stereo pair.");
+    try
+    {
+        for (int i = 1; i < argc; i++)
+        {
+            const String name = String(argv[i]).substr(0, String(argv[i]).find('='));
+            if (name.compare(0, 2, "--") == 0)
+                parser.has(name.substr(2)); // throws if it is unknown
+        }
+        if (parser.has("help"))
+            parser.printMessage();
+        else
+            run(parser);
+    }
+    catch (const cv::Exception& e)
+    {
+        std::cerr << "error: " << e.err << std::endl;
+        return 1;
+    }
+    return 0;
 }

@@ -94,7 +94,7 @@ if [ -n "$sanitize" ]; then
     directory=$build/sanitize
     options=("-DHDPSTEREO_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=RelWithDebInfo
         "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1")
-    targets=(opencv_test_hdpstereo example_hdpstereo_hdp_stereo_match example_hdpstereo_hdp_benchmark)
+    targets=(opencv_test_hdpstereo opencv_test_hdpstereo_tools example_hdpstereo_hdp_stereo_match hdp_benchmark)
 fi
 
 if ! find_opencv_source; then
@@ -123,7 +123,7 @@ if [ -n "$sanitize" ] && [ $# -eq 0 ]; then
     "$directory/bin/example_hdpstereo_hdp_stereo_match" "$OPENCV_SAMPLES_DATA_PATH"/aloe{L,R}.jpg --num-disparities=256 \
         "--truth=$OPENCV_SAMPLES_DATA_PATH/aloeGT.png" "--output=$directory/aloe.png" "--picture=$directory/aloe_picture.png"
     say "The benchmark on a small pair under the sanitizers (its figures mean nothing)"
-    "$directory/bin/example_hdpstereo_hdp_benchmark" "$OPENCV_SAMPLES_DATA_PATH"/aloe{L,R}.jpg --resize=160x136 \
+    "$directory/bin/hdp_benchmark" "$OPENCV_SAMPLES_DATA_PATH"/aloe{L,R}.jpg --resize=160x136 \
         --num-disparities=32 "--truth=$OPENCV_SAMPLES_DATA_PATH/aloeGT.png" --runs=2 --stages
     # These would take ten minutes: all nine systems at full size, most of them over the full range.
     set -- '--gtest_filter=-HDPStereo_Slow*'
@@ -132,6 +132,9 @@ else
     say "Running the tests${sanitize:+ under the sanitizers}"
 fi
 run_tests "$directory/bin/opencv_test_hdpstereo" "$@"
+if [ $# -eq 0 ] || [ -n "$sanitize" ]; then
+    run_tests "$directory/bin/opencv_test_hdpstereo_tools"
+fi
 if [ -z "$sanitize" ] && [ $# -eq 0 ]; then
     if [ ${#python_options[@]} -gt 0 ]; then
         say "Running the Python tests"

@@ -27,7 +27,7 @@ cv::Exception, and leaves the model as it was, for a file that does not hold a m
 class CV_EXPORTS_W DisparityPredictionModel : public Algorithm
 {
 public:
-    //! The models that createPublished() knows: the paper's authors', and those of train() (samples/hdp_train.cpp)
+    //! The models that createPublished() knows: the paper's authors', and those of train() (tools/hdp_train.cpp)
     enum Published
     {
         PUBLISHED_LARGE = 0, //!< the authors', Middlebury 2006 at full size (about 1390 x 1110); 3 layers

@@ -2,18 +2,21 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The samples' reader of datasets, on small generated folders of each layout.
+// The reader of datasets, on small generated folders of each layout.
 
 #include "test_precomp.hpp"
 
 #include <fstream>
 
-#include "../samples/hdp_datasets.hpp"
+#include "opencv2/core/utils/filesystem.hpp"
+
+#include "evaluation/datasets.hpp"
 
 namespace opencv_test {
 namespace {
 
-using namespace hdp_samples;
+using namespace hdp_tools;
+namespace fs = cv::utils::fs;
 
 const Size pairSize(24, 12);
 
@@ -118,7 +121,7 @@ TEST(HDPStereo_Datasets, middlebury_2006_trees)
         const Pair pair = readPair(scenes[i]);
         expectHalves(pair);
         EXPECT_EQ(Pair::MIDDLEBURY, pair.protocol);
-        EXPECT_EQ(256 / trees[i / 2].divisor, pair.numDisparities);
+        EXPECT_EQ(256 / trees[i / 2].divisor, pair.disparities.end);
         // Columns 0 .. 3 leave the image, 12 .. 19 come to disparities of 4, and 20 .. 23 to 8.
         EXPECT_EQ(0, countNonZero(pair.judged.colRange(0, 4)));
         EXPECT_EQ(8 * 12, countNonZero(pair.judged.colRange(4, 12)));
@@ -168,9 +171,9 @@ TEST(HDPStereo_Datasets, plain_names_and_roots_of_any_depth)
     const Pair street = readPair(scenes[0]);
     EXPECT_EQ(Pair::NO_TRUTH, street.protocol);
     EXPECT_TRUE(street.truth.empty());
-    EXPECT_EQ(16, street.numDisparities);
+    EXPECT_EQ(16, street.disparities.end);
     EXPECT_EQ("quarter", scenes[1].resolution);
-    EXPECT_EQ(64, readPair(scenes[1]).numDisparities);
+    EXPECT_EQ(64, readPair(scenes[1]).disparities.end);
     expectHalves(readPair(scenes[1]));
     EXPECT_EQ("half", scenes[2].resolution);
     expectHalves(readPair(scenes[2]));
@@ -228,8 +231,8 @@ TEST(HDPStereo_Datasets, middlebury_2014_and_eval3)
     for (int i : { 0, 2 })
     {
         const Pair pair = readPair(found[i]);
-        EXPECT_EQ(Pair::MIDDLEBURY, pair.protocol);
-        EXPECT_EQ(70, pair.numDisparities);
+        EXPECT_EQ(Pair::BAD, pair.protocol);
+        EXPECT_EQ(70, pair.disparities.end);
         EXPECT_EQ(8.25f, pair.truth.at<float>(3, 20));
         EXPECT_EQ(NO_DISPARITY, pair.truth.at<float>(0, 5));
         EXPECT_EQ(0, pair.judged.at<uchar>(0, 5));
@@ -238,7 +241,7 @@ TEST(HDPStereo_Datasets, middlebury_2014_and_eval3)
         EXPECT_EQ(255, pair.judged.at<uchar>(1, 21));
     }
     EXPECT_EQ(Pair::NO_TRUTH, readPair(found[1]).protocol);
-    EXPECT_EQ(290, readPair(found[1]).numDisparities);
+    EXPECT_EQ(290, readPair(found[1]).disparities.end);
 
     // The mask goes before the right truth.
     Mat mask(pairSize, CV_8U, Scalar(128));
@@ -292,7 +295,7 @@ TEST(HDPStereo_Datasets, kitti)
         EXPECT_EQ((std::vector<String>{ "training/000000_10", "training/000001_10" }), setsAndNames(scenes));
         const Pair pair = readPair(scenes[1]);
         EXPECT_EQ(Pair::KITTI, pair.protocol);
-        EXPECT_EQ(256, pair.numDisparities);
+        EXPECT_EQ(256, pair.disparities.end);
         EXPECT_EQ(NO_DISPARITY, pair.truth.at<float>(0, 0));
         EXPECT_EQ(4.f, pair.truth.at<float>(1, 0));
         EXPECT_EQ(8.5f, pair.truth.at<float>(1, 20));

@@ -6,25 +6,18 @@
 
 #include <iostream>
 
-#include "hdp_report.hpp"
+#include "opencv2/imgproc.hpp"
+
+#include "evaluation/command_line.hpp"
+#include "evaluation/methods.hpp"
+#include "evaluation/pictures.hpp"
 
 using namespace cv;
-using namespace hdp_samples;
-using cv::stereo::HDPTreeMatcher;
+using namespace hdp_tools;
 
-static const char* const KEYS =
-    "{help h ?        |     | print this and exit }"
-    "{@left           |     | left image of a rectified pair }"
-    "{@right          |     | right image }"
-    "{truth           |     | left disparity: PNG of 8 bit (0 = unknown) or 16 bit (times 256, 0 = unknown) or PFM }"
-    "{truth-right     |     | right disparity; occluded pixels are then not judged }"
-    "{truth-scale     |     | what a disparity of 1 is in the truth files, if not 1 (8 bit, PFM) or 256 (16 bit) }"
-    "{min-disparity   | 0   | smallest disparity in pixels }"
-    "{num-disparities |     | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
-    "{output          | .   | folder for the pictures }"
-    "{width           | 400 | width of each of the pictures that are put side by side }";
-
-static const std::vector<String> FLAGS = { "help", "h", "?" };
+static const String KEYS = "{help h ?        |     | print this and exit }" + String(PAIR_KEYS) +
+                           "{output          | .   | folder for the pictures }"
+                           "{width           | 400 | width of each of the pictures that are put side by side }";
 
 //! Pictures side by side, of a width each
 static Mat sideBySide(const std::vector<Mat>& pictures, int width, int interpolation)
@@ -42,32 +35,29 @@ static Mat sideBySide(const std::vector<Mat>& pictures, int width, int interpola
     return row;
 }
 
-static Mat withErrors(const Mat& disparity, const Truth& truth, const Vec2f& range)
+static Mat withErrors(const Mat& disparity, const Pair& pair, const Vec2f& range)
 {
     Mat picture = colorPicture(disparity, range);
-    picture.setTo(Scalar::all(0), ~truth.judged);
-    picture.setTo(Scalar(0, 0, 255), wrongPixels(disparity, truth.disparity, truth.judged, 2));
+    picture.setTo(Scalar::all(0), ~pair.judged);
+    picture.setTo(Scalar(0, 0, 255), wrongPixels(disparity, pair));
     return picture;
 }
 
-static void run(const CommandLineParser& parser)
+static int run(const CommandLineParser& parser)
 {
-    Mat left, right;
-    readPair(parser, left, right);
-    const Truth truth = readTruth(parser, left.size());
-    if (truth.disparity.empty())
+    const Pair pair = readPair(parser);
+    if (pair.truth.empty())
         fail("--truth is needed");
-    const Range disparities = getDisparities(parser, left.size());
     const int width = getInteger(parser, "width", 16, 4096);
-    const Vec2f range = colorRange(truth.disparity);
+    const Vec2f range = colorRange(pair.truth);
 
     const auto create = [&](int preset) {
-        return HDPTreeMatcher::create(disparities.start, disparities.size(), preset);
+        return HDPTreeMatcher::create(pair.disparities.start, pair.disparities.size(), preset);
     };
     const auto match = [&](HDPTreeMatcher& matcher) {
         Mat disparity;
-        matcher.compute(left, right, disparity);
-        return toPixels(disparity, disparities.start);
+        matcher.compute(pair.left, pair.right, disparity);
+        return toPixels(disparity, pair.disparities.start);
     };
     const auto save = [&](const String& name, const std::vector<Mat>& pictures, int interpolation) {
         const String path = parser.get<String>("output") + "/hdpstereo_" + name;
@@ -75,7 +65,7 @@ static void run(const CommandLineParser& parser)
         std::cout << "written    " << path << std::endl;
     };
 
-    save("pair.jpg", { left, right, colorPicture(truth.disparity, range) }, INTER_AREA);
+    save("pair.jpg", { pair.left, pair.right, colorPicture(pair.truth, range) }, INTER_AREA);
 
     const Ptr<HDPTreeMatcher> paper = create(HDPTreeMatcher::PRESET_PAPER), fast = create(HDPTreeMatcher::PRESET_FAST);
     for (const Ptr<HDPTreeMatcher>& matcher : { paper, fast })
@@ -98,20 +88,21 @@ static void run(const CommandLineParser& parser)
     Mat confidence;
     fast->getConfidence(confidence);
     cvtColor(confidence, confidence, COLOR_GRAY2BGR);
-    save("confidence.jpg", { colorPicture(ofFast, range), withErrors(ofFast, truth, range), confidence }, INTER_AREA);
+    save("confidence.jpg", { colorPicture(ofFast, range), withErrors(ofFast, pair, range), confidence }, INTER_AREA);
 
     fast->setFillOcclusions(false);
     save("occlusions.jpg", { colorPicture(match(*fast), range), colorPicture(ofFast, range) }, INTER_AREA);
 
     std::vector<Mat> errors;
     for (const int preset : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE, HDPTreeMatcher::PRESET_FAST })
-        errors.push_back(withErrors(match(*create(preset)), truth, range));
+        errors.push_back(withErrors(match(*create(preset)), pair, range));
     save("errors.jpg", errors, INTER_AREA);
+    return 0;
 }
 
 int main(int argc, char** argv)
 {
-    return runSample(argc, argv, KEYS,
-                     "The pictures of the tutorial: pair, maps of the layers, disparity forest, confidence, errors.\n",
-                     FLAGS, 2, run);
+    return runProgram(argc, argv, KEYS,
+                      "The pictures of the tutorial: pair, maps of the layers, disparity forest, confidence, errors.\n",
+                      {}, 2, run);
 }

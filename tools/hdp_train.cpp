@@ -7,16 +7,23 @@
 // layer below give the next mixture. So the model learns from what it will be given.
 
 #include <cstdio>
+#include <fstream>
 #include <iostream>
 #include <numeric>
 
-#include "opencv2/core/utils/logger.hpp"
+#include "opencv2/core.hpp"
+#include "opencv2/core/utils/filesystem.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
 
-#include "hdp_layers.hpp"
-#include "hdp_tables.hpp"
+#include "evaluation/command_line.hpp"
+#include "evaluation/datasets.hpp"
+#include "evaluation/layers.hpp"
+#include "evaluation/scores.hpp"
+#include "evaluation/tables.hpp"
 
 using namespace cv;
-using namespace hdp_samples;
+using namespace hdp_tools;
 
 static const char* const KEYS =
     "{help h ?        |     | print this and exit }"
@@ -29,8 +36,6 @@ static const char* const KEYS =
     "{max-components  | 6   | most Gaussians of a mixture }"
     "{picture         |     | FILE.png for the fitted and the sampled distributions of the offsets }"
     "{threads         |     | number of threads; all processors if not given }";
-
-static const std::vector<String> FLAGS = { "help", "h", "?" };
 
 //! A scene on its way down the pyramid
 struct TrainingScene
@@ -144,7 +149,8 @@ static void matchAbove(TrainingScene& scene, int layer, int layers, const Ptr<Di
         left = nextLayer(left);
         right = nextLayer(right);
     }
-    matcherOfLayer(layer + 1, layers, pair.numDisparities, pair.left.cols, above)->compute(left, right, disparity16);
+    matcherOfLayer(layer + 1, layers, pair.disparities.size(), pair.left.cols, above)
+        ->compute(left, right, disparity16);
     scene.upper = toPixels(disparity16, 0);
     scene.truth = truthOfLayer(pair.truth, layer);
     // The pyramid leaves out the last column and row of an odd number.
@@ -225,12 +231,12 @@ static Mat distributionPicture(const Offsets& sampled, const DisparityPrediction
     return picture;
 }
 
-//! err>=2, or D1, of HDP+MST on the scenes that are held out
+//! The main score of HDP+MST on the scenes that are held out
 static Table errorTable(const std::vector<TrainingScene>& scenes,
                         const std::vector<Ptr<DisparityPredictionModel>>& models, int layers)
 {
     Table table;
-    table.title = "HDP+MST on the pairs that are held out, in percent (Middlebury: err>=2, KITTI: D1)";
+    table.title = "HDP+MST on the pairs that are held out, in percent (Middlebury: err>=2 or bad 2.0, KITTI: D1)";
     table.header = { "scene", "trained", "published" };
     std::vector<double> all[2];
     for (const TrainingScene& scene : scenes)
@@ -242,10 +248,9 @@ static Table errorTable(const std::vector<TrainingScene>& scenes,
         {
             const Pair& pair = scene.pair;
             Mat disparity16;
-            matcherOfLayer(0, layers, pair.numDisparities, pair.left.cols, models[m])
+            matcherOfLayer(0, layers, pair.disparities.size(), pair.left.cols, models[m])
                 ->compute(pair.left, pair.right, disparity16);
-            const Score score = scoreMap(toPixels(disparity16, 0), pair);
-            errors.push_back(pair.protocol == Pair::KITTI ? score.d1 : score.error2);
+            errors.push_back(mainScore(scoreMap(toPixels(disparity16, 0), pair), pair.protocol));
             all[m].push_back(errors.back());
         }
         table.addRow(scene.name);
@@ -267,15 +272,14 @@ static int run(const CommandLineParser& parser)
         fail("-o " + output + ": neither a .yml nor an .xml nor a .json file");
     if (!picture.empty() && !haveImageWriter(picture))
         fail("--picture=" + picture + ": not a kind of image that can be written");
-    if (parser.has("threads"))
-        setNumThreads(getInteger(parser, "threads", 1, 1024));
+    setThreads(parser);
     const int seed = getInteger(parser, "seed", 0, std::numeric_limits<int>::max());
     const int layers = getInteger(parser, "layers", 2, 8);
     const int maxComponents = getInteger(parser, "max-components", 1, 64);
 
     int bad = 0;
     std::vector<TrainingScene> scenes = readScenes(parser, bad);
-    const bool isNew = !fs::exists(output);
+    const bool isNew = !utils::fs::exists(output);
     if (!std::ofstream(output.c_str(), std::ios::app)) // before the work, not after it
         fail("cannot write '" + output + "'");
     if (isNew)
@@ -349,37 +353,19 @@ static int run(const CommandLineParser& parser)
 
 int main(int argc, char** argv)
 {
-    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below, in one line
-    try
-    {
-        // "-o FILE" as other programs have it; the parser only knows "-o=FILE".
-        std::vector<String> arguments(argv, argv + argc);
-        for (size_t i = 1; i + 1 < arguments.size(); i++)
-            if (arguments[i] == "-o")
-            {
-                arguments[i] += "=" + arguments[i + 1];
-                arguments.erase(arguments.begin() + std::ptrdiff_t(i) + 1);
-            }
-        std::vector<const char*> pointers;
-        for (const String& argument : arguments)
-            pointers.push_back(argument.c_str());
-
-        CommandLineParser parser(int(pointers.size()), &pointers[0], KEYS);
-        parser.about("Trains a disparity prediction model on stereo pairs with known truth.\n"
-                     "Exit status: 0 if all is well, 2 if a pair was skipped, 1 on other errors.\n");
-        checkArguments(int(pointers.size()), &pointers[0], parser, FLAGS, 1);
-        if (!parser.has("help"))
-            return run(parser);
-        parser.printMessage();
-        return 0;
-    }
-    catch (const cv::Exception& e)
-    {
-        std::cerr << "error: " << e.err << std::endl;
-    }
-    catch (const std::exception& e)
-    {
-        std::cerr << "error: " << e.what() << std::endl;
-    }
-    return 1;
+    // "-o FILE" as other programs have it; the parser only knows "-o=FILE".
+    std::vector<String> arguments(argv, argv + argc);
+    for (size_t i = 1; i + 1 < arguments.size(); i++)
+        if (arguments[i] == "-o")
+        {
+            arguments[i] += "=" + arguments[i + 1];
+            arguments.erase(arguments.begin() + std::ptrdiff_t(i) + 1);
+        }
+    std::vector<const char*> pointers;
+    for (const String& argument : arguments)
+        pointers.push_back(argument.c_str());
+    return runProgram(int(pointers.size()), pointers.data(), KEYS,
+                      "Trains a disparity prediction model on stereo pairs with known truth.\n"
+                      "Exit status: 0 if all is well, 2 if a pair was skipped, 1 on other errors.\n",
+                      {}, 1, run);
 }

@@ -2,20 +2,23 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The pictures, charts and page of hdp_evaluate's report. All of it is in the page: pictures as data URIs, charts as
-// inline SVG.
+#include "report.hpp"
 
-#ifndef OPENCV_HDPSTEREO_SAMPLES_REPORT_HPP
-#define OPENCV_HDPSTEREO_SAMPLES_REPORT_HPP
+#include <algorithm>
+#include <cmath>
+#include <sstream>
 
-#include "hdp_layers.hpp"
-#include "hdp_tables.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
 
-namespace hdp_samples {
+#include "pictures.hpp"
+#include "tables.hpp"
 
-const int PICTURE_WIDTH = 360;
+namespace hdp_tools {
 
-inline String base64(const std::vector<uchar>& bytes)
+static const int pictureWidth = 360;
+
+String base64(const std::vector<uchar>& bytes)
 {
     const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     String text;
@@ -32,13 +35,11 @@ inline String base64(const std::vector<uchar>& bytes)
     return text;
 }
 
-//! A figure of the page. Photographs and maps are reduced to PICTURE_WIDTH, small matrices enlarged.
-inline String figure(const Mat& picture, const String& caption, const String& extension = ".jpg",
-                     int interpolation = cv::INTER_AREA)
+String figure(const Mat& picture, const String& caption, const String& extension, int interpolation)
 {
     Mat shown = picture;
-    if (picture.cols > PICTURE_WIDTH)
-        cv::resize(picture, shown, cv::Size(PICTURE_WIDTH, std::max(picture.rows * PICTURE_WIDTH / picture.cols, 1)), 0,
+    if (picture.cols > pictureWidth)
+        cv::resize(picture, shown, cv::Size(pictureWidth, std::max(picture.rows * pictureWidth / picture.cols, 1)), 0,
                    0, interpolation);
     std::vector<uchar> bytes;
     cv::imencode(extension, shown, bytes,
@@ -50,73 +51,7 @@ inline String figure(const Mat& picture, const String& caption, const String& ex
     return out.str();
 }
 
-//! A map in colors; wrong pixels (err>=2, or KITTI's D1) red, pixels that are not judged black.
-inline Mat resultPicture(const Mat& disparity, const Pair& pair)
-{
-    if (pair.protocol == Pair::NO_TRUTH)
-        return colorPicture(disparity);
-    Mat picture = colorPicture(disparity, colorRange(pair.truth));
-    Mat error, wrong;
-    cv::absdiff(disparity, pair.truth, error);
-    if (pair.protocol == Pair::KITTI)
-        wrong = (error > 3) & (error > 0.05 * pair.truth);
-    else
-        wrong = error >= 2;
-    picture.setTo(cv::Scalar(0, 0, 255), wrong & pair.judged);
-    if (pair.protocol == Pair::MIDDLEBURY) // KITTI's truth is too sparse for it
-        picture.setTo(cv::Scalar::all(0), ~pair.judged);
-    return picture;
-}
-
-//! Every tree in a color of its own, by its number
-inline Mat forestPicture(const Mat& trees)
-{
-    Mat picture(trees.size(), CV_8UC3);
-    for (int y = 0; y < trees.rows; y++)
-        for (int x = 0; x < trees.cols; x++)
-        {
-            const unsigned hash = (unsigned(trees.at<int>(y, x)) + 1) * 2654435761u;
-            picture.at<cv::Vec3b>(y, x) = cv::Vec3b(uchar(hash >> 24), uchar(hash >> 16), uchar(hash >> 8));
-        }
-    return picture;
-}
-
-//! Number of candidates of each pixel: violet for 1 to yellow for all, in equal steps of the logarithm
-inline Mat widthPicture(const Mat& intervals, int numDisparities)
-{
-    Mat picture(intervals.size(), CV_8U);
-    for (int y = 0; y < intervals.rows; y++)
-        for (int x = 0; x < intervals.cols; x++)
-        {
-            const cv::Vec2w interval = intervals.at<cv::Vec2w>(y, x);
-            const double width = std::max(interval[1] - interval[0] + 1, 1);
-            picture.at<uchar>(y, x) =
-                cv::saturate_cast<uchar>(255 * std::log(width) / std::log(std::max(numDisparities, 2)));
-        }
-    cv::applyColorMap(picture, picture, cv::COLORMAP_VIRIDIS);
-    return picture;
-}
-
-//! P(D_l | D_{l+1}): a row for every D_{l+1}, its largest element white. Rows without any are black.
-inline Mat matrixPicture(const cv::Mat_<double>& matrix)
-{
-    Mat picture(matrix.size(), CV_8U);
-    for (int i = 0; i < matrix.rows; i++)
-    {
-        double largest = 0;
-        cv::minMaxLoc(matrix.row(i), 0, &largest);
-        matrix.row(i).convertTo(picture.row(i), CV_8U, largest > 0 ? 255 / largest : 0);
-    }
-    Mat enlarged;
-    const int factor = std::max(256 / picture.cols, 1);
-    cv::resize(picture, enlarged, cv::Size(), factor, factor * 2, cv::INTER_NEAREST); // D_{l+1} counts double
-    cv::applyColorMap(enlarged, picture, cv::COLORMAP_INFERNO);
-    return picture;
-}
-
-//! The model's P(D_l | D_{l+1}) up to a factor for each row: rows D_{l+1}, columns D_l.
-inline cv::Mat_<double> predictedMatrix(const DisparityPredictionModel& model, int layer,
-                                        const std::vector<double>& prior)
+cv::Mat_<double> predictedMatrix(const DisparityPredictionModel& model, int layer, const std::vector<double>& prior)
 {
     cv::Mat_<double> matrix((int(prior.size()) - 1) / 2 + 1, int(prior.size()));
     for (int i = 0; i < matrix.rows; i++)
@@ -125,8 +60,7 @@ inline cv::Mat_<double> predictedMatrix(const DisparityPredictionModel& model, i
     return matrix;
 }
 
-//! How often true D_l and estimated D_{l+1} come together; maps in pixels of their layers.
-inline cv::Mat_<double> sampledMatrix(const Mat& truth, const Mat& upper, int numDisparities)
+cv::Mat_<double> sampledMatrix(const Mat& truth, const Mat& upper, int numDisparities)
 {
     cv::Mat_<double> matrix = cv::Mat_<double>::zeros((numDisparities - 1) / 2 + 1, numDisparities);
     for (int y = 0; y < truth.rows; y++)
@@ -143,11 +77,8 @@ inline cv::Mat_<double> sampledMatrix(const Mat& truth, const Mat& upper, int nu
     return matrix;
 }
 
-/** Figures of the forest, of the intervals, and of P(D_l | D_{l+1}) by the model and by the truth.
-@param matcher One with predicted intervals that has just matched the pair.
-@param create Makes another one like it, of so many candidates. */
-inline String predictionFigures(const String& name, const HDPTreeMatcher& matcher,
-                                const std::function<Ptr<cv::StereoMatcher>(int)>& create, const Pair& pair)
+String predictionFigures(const String& name, const HDPTreeMatcher& matcher,
+                         const std::function<Ptr<cv::StereoMatcher>(cv::Range)>& create, const Pair& pair)
 {
     std::ostringstream out;
     Mat trees, intervals;
@@ -176,7 +107,8 @@ inline String predictionFigures(const String& name, const HDPTreeMatcher& matche
         left = nextLayer(left);
         right = nextLayer(right);
         const Ptr<HDPTreeMatcher> above =
-            create(disparitiesOfLayer(matcher.getNumDisparities(), layer + 1)).dynamicCast<HDPTreeMatcher>();
+            create(cv::Range(0, disparitiesOfLayer(matcher.getNumDisparities(), layer + 1)))
+                .dynamicCast<HDPTreeMatcher>();
         adaptToLayer(*above, layer + 1, layers, width, upperPart(*model, layer + 1));
         Mat upper;
         above->compute(left, right, upper);
@@ -192,23 +124,14 @@ inline String predictionFigures(const String& name, const HDPTreeMatcher& matche
     return out.str();
 }
 
-//! A bar of the paper's runtime figure
-struct RuntimePair
-{
-    String scene;
-    double fullRange, predicted; // seconds
-};
-
-//! The paper's runtime figure for one tree: two bars a scene, seconds on a logarithmic axis, and the speed-up as circles
-//! on a linear one, whose top is the largest.
-inline String runtimeChart(const String& title, const std::vector<RuntimePair>& pairs)
+String runtimeChart(const String& title, const std::vector<RuntimePair>& pairs)
 {
     double low = std::numeric_limits<double>::max(), high = 0, fastest = 0;
     for (const RuntimePair& p : pairs)
     {
-        fastest = std::max(fastest, p.fullRange / p.predicted);
-        low = std::min(low, std::min(p.fullRange, p.predicted));
-        high = std::max(high, std::max(p.fullRange, p.predicted));
+        fastest = std::max(fastest, p.other / p.method);
+        low = std::min(low, std::min(p.other, p.method));
+        high = std::max(high, std::max(p.other, p.method));
     }
     if (!(high > 0))
         return String();
@@ -230,13 +153,13 @@ inline String runtimeChart(const String& title, const std::vector<RuntimePair>& 
     for (size_t i = 0; i < pairs.size(); i++)
     {
         const RuntimePair& p = pairs[i];
-        const double x = left + 10 + double(i) * step, seconds[2] = { p.fullRange, p.predicted };
+        const double x = left + 10 + double(i) * step, seconds[2] = { p.other, p.method };
         for (int bar = 0; bar < 2; bar++)
             out << cv::format("<rect x=\"%.1f\" y=\"%.1f\" width=\"16\" height=\"%.1f\" class=\"%s\"><title>%.3f s"
                               "</title></rect>\n",
                               x + 18 * bar, level(seconds[bar]), above + height - level(seconds[bar]),
                               bar ? "hdp" : "plain", seconds[bar]);
-        const double speedUp = p.fullRange / p.predicted, y = above + height * (1 - speedUp / fastest);
+        const double speedUp = p.other / p.method, y = above + height * (1 - speedUp / fastest);
         out << cv::format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\"/><text x=\"%.1f\" y=\"%.1f\" "
                           "text-anchor=\"middle\">%.1fx</text>\n",
                           x + 17, y, x + 17, y - 8, speedUp);
@@ -247,7 +170,7 @@ inline String runtimeChart(const String& title, const std::vector<RuntimePair>& 
     return out.str();
 }
 
-inline String htmlPage(const String& title, const String& body)
+String htmlPage(const String& title, const String& body)
 {
     return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + htmlText(title) +
            "</title>\n<style>\n"
@@ -273,6 +196,4 @@ inline String htmlPage(const String& title, const String& body)
            htmlText(title) + "</h1>\n" + body + "</body>\n</html>\n";
 }
 
-} // namespace hdp_samples
-
-#endif
+} // namespace hdp_tools

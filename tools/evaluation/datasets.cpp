@@ -2,64 +2,27 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// What the samples share to read datasets. findScenes() recognises the scenes below a folder by the names of the files:
-//
-// - Middlebury 2005 and 2006 as published (SCENE/view1, view5, disp1, disp5; of the sets of 7 views, the images are in
-//   SCENE/Illum1/Exp0 and so on) or with plain names (SCENE/left, right, disp_left, disp_right), 2003 (im2, im6, disp2,
-//   disp6), 2014 (im0, im1, disp0, disp1, calib.txt) and MiddEval3 (im0, im1, disp0GT, disp1GT or mask0nocc, calib.txt);
-// - KITTI 2015 (image_2, image_3, disp_occ_0, disp_noc_0: a folder each, with a file for every frame) and 2012
-//   (colored_0, colored_1 or image_0, image_1, disp_occ, disp_noc), or a folder for every frame with left, right and
-//   disp_left in 16 bit;
-// - pairs without truth: SCENE/left, right.
-//
-// readPair() reads one of them; what is wrong with it is an exception that names the file.
+#include "datasets.hpp"
 
-#ifndef OPENCV_HDPSTEREO_SAMPLES_DATASETS_HPP
-#define OPENCV_HDPSTEREO_SAMPLES_DATASETS_HPP
-
-#include "hdp_samples_common.hpp"
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
 
 #include "opencv2/core/utils/filesystem.hpp"
+#include "opencv2/imgcodecs.hpp"
 
-namespace hdp_samples {
+#include "command_line.hpp"
 
-//! The files of a pair, whether they exist or not
-struct Scene
-{
-    String set;        // the folder of the scene, below the root's: "middlebury2006/full"
-    String name;       // "Aloe"
-    String resolution; // of Middlebury's images: "full", "half", "third", "quarter", or empty
-    String left, right;
-    String truth, rightTruth; // empty if the pair has none
-    String nonOccludedMask;   // 255 where the right image shows the pixel, or empty
-    String nonOccludedTruth;  // KITTI's truth without the pixels that the right image does not show, or empty
-    String calibration;       // Middlebury's calib.txt with the number of disparities, or empty
-    bool isFrame;             // of KITTI
-};
-
-//! A pair and what is known of it
-struct Pair
-{
-    enum Protocol
-    {
-        NO_TRUTH,
-        MIDDLEBURY, // err>=1 and err>=2 of the non-occluded pixels
-        KITTI       // D1: errors above 3 pixels and 5 %, of all known pixels and of the non-occluded ones
-    };
-    Protocol protocol;
-    Mat left, right;       // CV_8UC3
-    int numDisparities;    // disparities 0 .. numDisparities - 1 are to be searched
-    Mat truth;             // NO_DISPARITY where unknown; empty without truth
-    Mat judged;            // mask of the pixels that count
-    Mat judgedNonOccluded; // those of KITTI that are not occluded; may be empty
-};
+namespace hdp_tools {
 
 namespace fs = cv::utils::fs;
 
-inline String fileName(const String& path) { return path.substr(path.find_last_of("/\\") + 1); }
+static String fileName(const String& path) { return path.substr(path.find_last_of("/\\") + 1); }
 
 //! The path of a file of this name and the extension of a picture; empty if there is none.
-inline String findPicture(const String& folder, const String& stem)
+static String findPicture(const String& folder, const String& stem)
 {
     for (const char* extension : { ".png", ".pfm", ".ppm", ".pgm", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff" })
     {
@@ -71,13 +34,13 @@ inline String findPicture(const String& folder, const String& stem)
 }
 
 //! As findPicture(); a name for messages if there is none.
-inline String expectPicture(const String& folder, const String& stem)
+static String expectPicture(const String& folder, const String& stem)
 {
     const String path = findPicture(folder, stem);
     return path.empty() ? fs::join(folder, stem + ".png") : path;
 }
 
-inline std::vector<String> subfolders(const String& folder)
+static std::vector<String> subfolders(const String& folder)
 {
     std::vector<String> entries, folders;
     fs::glob(folder, String(), entries, false, true);
@@ -88,7 +51,7 @@ inline std::vector<String> subfolders(const String& folder)
 }
 
 //! Middlebury's resolution that the name of a folder stands for; empty if none.
-inline String resolutionOfName(const String& folderName)
+static String resolutionOfName(const String& folderName)
 {
     const String name = lowerCase(folderName);
     for (const char* resolution : { "full", "half", "third", "quarter" })
@@ -103,29 +66,30 @@ inline String resolutionOfName(const String& folderName)
 }
 
 //! What Middlebury 2001 to 2006 divide the disparities of a resolution by.
-inline int resolutionDivisor(const String& resolution)
+static int resolutionDivisor(const String& resolution)
 {
     return resolution == "quarter" ? 4 : resolution == "third" ? 3 : resolution == "half" ? 2 : 1;
 }
 
 //! Resolution of the 2005 and 2006 pairs by their height; empty for any other height.
-inline String resolutionOfHeight(int height)
+static String resolutionOfHeight(int height)
 {
     return height == 1110 ? "full" : height == 555 ? "half" : height == 370 ? "third" : "";
 }
 
 //! The scene of a folder that has a left or right image by the names of Middlebury. Its set is the path of a folder.
-inline bool readSceneFolder(const String& folder, Scene& scene)
+static bool readSceneFolder(const String& folder, Scene& scene)
 {
     const struct
     {
-        const char *left, *right, *truth, *rightTruth, *mask, *calibration;
+        const char *left, *right, *truth, *rightTruth, *mask;
+        bool needsCalibration;
     } layouts[] = {
-        { "left", "right", "disp_left", "disp_right", 0, 0 },
-        { "view1", "view5", "disp1", "disp5", 0, 0 },
-        { "im2", "im6", "disp2", "disp6", 0, 0 },
-        { "im0", "im1", "disp0GT", "disp1GT", "mask0nocc", "calib.txt" },
-        { "im0", "im1", "disp0", "disp1", "mask0nocc", "calib.txt" },
+        { "left", "right", "disp_left", "disp_right", "nonoccluded", false },
+        { "view1", "view5", "disp1", "disp5", 0, false },
+        { "im2", "im6", "disp2", "disp6", 0, false },
+        { "im0", "im1", "disp0GT", "disp1GT", "mask0nocc", true },
+        { "im0", "im1", "disp0", "disp1", "mask0nocc", true },
     };
     for (const auto& layout : layouts)
     {
@@ -143,7 +107,7 @@ inline bool readSceneFolder(const String& folder, Scene& scene)
             scene.name = fileName(grandparent) + "_" + fileName(parent) + "_" + scene.name;
         }
         const bool hasTruth = knowsTruth(sceneFolder);
-        if (layout.calibration && !hasTruth && layout.truth == String("disp0GT"))
+        if (layout.needsCalibration && !hasTruth && layout.truth == String("disp0GT"))
             continue; // 2014, or MiddEval3's test pairs, which are the same without truth
         scene.left = expectPicture(folder, layout.left);
         scene.right = expectPicture(folder, layout.right);
@@ -154,15 +118,16 @@ inline bool readSceneFolder(const String& folder, Scene& scene)
         }
         if (layout.mask)
             scene.nonOccludedMask = findPicture(folder, layout.mask);
-        if (layout.calibration)
-            scene.calibration = fs::join(folder, layout.calibration);
+        const String calibration = fs::join(folder, "calib.txt");
+        if (layout.needsCalibration || fs::exists(calibration))
+            scene.calibration = calibration;
         scene.isFrame = false;
 
         scene.set = fs::getParent(sceneFolder);
         scene.resolution = resolutionOfName(fileName(scene.set));
         if (scene.resolution.empty())
             scene.resolution = resolutionOfName(fileName(fs::getParent(scene.set)));
-        if (scene.resolution.empty() && hasTruth && !layout.calibration)
+        if (scene.resolution.empty() && hasTruth && scene.calibration.empty())
         {
             const Mat truth = cv::imread(scene.truth, cv::IMREAD_UNCHANGED);
             if (truth.depth() == CV_8U)
@@ -175,7 +140,7 @@ inline bool readSceneFolder(const String& folder, Scene& scene)
 
 //! Whether a picture is one of the others of a frame that KITTI knows the truth of at NUMBER_10.png: NUMBER_11.png is for
 //! optical flow, and the multi-view sets have 00 to 20.
-inline bool isOtherTime(const String& file)
+static bool isOtherTime(const String& file)
 {
     const String time = "_10.png";
     if (file.size() < time.size())
@@ -186,11 +151,12 @@ inline bool isOtherTime(const String& file)
 }
 
 //! The frames of a folder that has KITTI's folders.
-inline std::vector<Scene> readFrameFolder(const String& folder)
+static std::vector<Scene> readFrameFolder(const String& folder)
 {
     const char* const layouts[][4] = { { "image_2", "image_3", "disp_occ_0", "disp_noc_0" },
                                        { "colored_0", "colored_1", "disp_occ", "disp_noc" },
-                                       { "image_0", "image_1", "disp_occ", "disp_noc" } };
+                                       { "image_0", "image_1", "disp_occ", "disp_noc" },
+                                       { "left", "right", "disp_lidar", "" } };
     std::vector<Scene> scenes;
     for (const auto& layout : layouts)
     {
@@ -211,7 +177,8 @@ inline std::vector<Scene> readFrameFolder(const String& folder)
             scene.left = file;
             scene.right = fs::join(fs::join(folder, layout[1]), name);
             scene.truth = fs::isDirectory(truth) ? fs::join(truth, name) : String();
-            scene.nonOccludedTruth = fs::isDirectory(nonOccluded) ? fs::join(nonOccluded, name) : String();
+            scene.nonOccludedTruth =
+                *layout[3] && fs::isDirectory(nonOccluded) ? fs::join(nonOccluded, name) : String();
             scene.isFrame = true;
             scenes.push_back(scene);
         }
@@ -220,8 +187,7 @@ inline std::vector<Scene> readFrameFolder(const String& folder)
     return scenes;
 }
 
-//! All scenes of a folder and the folders below it, by set and name. Fails if there is none.
-inline std::vector<Scene> findScenes(const String& root)
+std::vector<Scene> findScenes(const String& root)
 {
     if (!fs::isDirectory(root))
         fail("'" + root + "' is not a folder");
@@ -264,8 +230,31 @@ inline std::vector<Scene> findScenes(const String& root)
     return scenes;
 }
 
+std::vector<Scene> selectScenes(const cv::CommandLineParser& parser)
+{
+    std::vector<Scene> scenes = findScenes(parser.get<String>("@root"));
+    const std::vector<String> resolutions = splitList(parser.get<String>("resolution")),
+                              names = splitList(parser.get<String>("scenes"));
+    for (const String& resolution : resolutions)
+        if (resolution != "full" && resolution != "half" && resolution != "third" && resolution != "quarter")
+            fail("--resolution: unknown resolution '" + resolution + "', there are: full, half, third, quarter");
+    for (const String& name : names)
+        if (std::none_of(scenes.begin(), scenes.end(), [&](const Scene& scene) { return scene.name == name; }))
+            fail("--scenes: there is no scene '" + name + "'");
+    const auto isLeftOut = [&](const Scene& scene) {
+        const bool otherResolution =
+            !resolutions.empty() && !scene.resolution.empty() &&
+            std::find(resolutions.begin(), resolutions.end(), scene.resolution) == resolutions.end();
+        return otherResolution || (!names.empty() && std::find(names.begin(), names.end(), scene.name) == names.end());
+    };
+    scenes.erase(std::remove_if(scenes.begin(), scenes.end(), isLeftOut), scenes.end());
+    if (scenes.empty())
+        fail("no pair is left by --resolution and --scenes");
+    return scenes;
+}
+
 //! "ndisp" of Middlebury's calib.txt
-inline int readDisparityCount(const String& path)
+static int readDisparityCount(const String& path)
 {
     std::ifstream file(path.c_str());
     if (!file)
@@ -288,7 +277,7 @@ inline int readDisparityCount(const String& path)
 }
 
 //! Reads a picture that must have the size of the left image.
-inline Mat readOfSize(const String& path, int flags, cv::Size size)
+static Mat readOfSize(const String& path, int flags, cv::Size size)
 {
     const Mat image = readImage(path, flags);
     if (image.size() != size)
@@ -298,56 +287,63 @@ inline Mat readOfSize(const String& path, int flags, cv::Size size)
 }
 
 //! A truth file of any kind. The resolution matters to 8-bit files only.
-inline Mat readTruth(const String& path, cv::Size size, const String& resolution, bool& is16Bit)
+static Mat readTruth(const String& path, cv::Size size, const String& resolution, int& depth)
 {
     const Mat image = readOfSize(path, cv::IMREAD_UNCHANGED, size);
-    is16Bit = image.depth() == CV_16U;
-    return toDisparity(image, path, image.depth() == CV_8U ? resolutionDivisor(resolution) : 0);
+    depth = image.depth();
+    return toDisparity(image, path, depth == CV_8U ? resolutionDivisor(resolution) : 0);
 }
 
-inline Pair readPair(const Scene& scene)
+//! Mask of the pixels of a pair with truth that count
+static Mat readJudged(const Scene& scene, const Pair& pair)
+{
+    const cv::Size size = pair.left.size();
+    if (pair.protocol == Pair::KITTI)
+        return knownPixels(pair.truth);
+    if (!scene.nonOccludedMask.empty())
+        return (readOfSize(scene.nonOccludedMask, cv::IMREAD_GRAYSCALE, size) == 255) & knownPixels(pair.truth);
+    // The maps of 2001 to 2006 are whole numbers and agree exactly.
+    const double tolerance = pair.protocol == Pair::BAD ? 1 : 0;
+    int depth;
+    return nonOccludedPixels(pair.truth, readTruth(scene.rightTruth, size, scene.resolution, depth), tolerance);
+}
+
+static int numDisparitiesOf(const Scene& scene, const Pair& pair)
+{
+    const int ofEth3d = 64;
+    const int width = pair.left.cols;
+    if (!scene.calibration.empty())
+    {
+        // ETH3D gives the width, for it does not know the range.
+        const int count = readDisparityCount(scene.calibration);
+        return count == width ? std::min(ofEth3d, width) : count;
+    }
+    if (pair.protocol == Pair::KITTI)
+        return 256;
+    return scene.resolution.empty() ? defaultNumDisparities(width) : 256 / resolutionDivisor(scene.resolution);
+}
+
+Pair readPair(const Scene& scene)
 {
     Pair pair;
+    pair.protocol = Pair::NO_TRUTH;
     pair.left = readImage(scene.left, cv::IMREAD_COLOR);
     const cv::Size size = pair.left.size();
     pair.right = readOfSize(scene.right, cv::IMREAD_COLOR, size);
-    pair.protocol = Pair::NO_TRUTH;
-    bool is16Bit = false;
     if (!scene.truth.empty())
     {
-        pair.truth = readTruth(scene.truth, size, scene.resolution, is16Bit);
-        const bool isKitti = scene.isFrame || (is16Bit && !fs::exists(scene.rightTruth));
-        pair.protocol = isKitti ? Pair::KITTI : Pair::MIDDLEBURY;
+        int depth = 0;
+        pair.truth = readTruth(scene.truth, size, scene.resolution, depth);
+        const bool isKitti = scene.isFrame || (depth == CV_16U && !fs::exists(scene.rightTruth));
+        pair.protocol = isKitti ? Pair::KITTI : depth == CV_32F ? Pair::BAD : Pair::MIDDLEBURY;
+        pair.judged = readJudged(scene, pair);
+        if (isKitti && !scene.nonOccludedTruth.empty())
+            pair.judgedNonOccluded = knownPixels(readTruth(scene.nonOccludedTruth, size, String(), depth));
+        if (cv::countNonZero(pair.judged) == 0)
+            fail("'" + scene.truth + "' knows no pixel that can be judged");
     }
-    if (pair.protocol == Pair::KITTI)
-    {
-        pair.judged = knownPixels(pair.truth);
-        if (!scene.nonOccludedTruth.empty())
-            pair.judgedNonOccluded = knownPixels(readTruth(scene.nonOccludedTruth, size, String(), is16Bit));
-    }
-    else if (pair.protocol == Pair::MIDDLEBURY && !scene.nonOccludedMask.empty())
-        pair.judged = (readOfSize(scene.nonOccludedMask, cv::IMREAD_GRAYSCALE, size) == 255) & knownPixels(pair.truth);
-    else if (pair.protocol == Pair::MIDDLEBURY)
-    {
-        // The maps of 2001 to 2006 are whole numbers and agree exactly.
-        const double tolerance = scene.calibration.empty() ? 0 : 1;
-        const Mat rightTruth = readTruth(scene.rightTruth, size, scene.resolution, is16Bit);
-        pair.judged = nonOccludedPixels(pair.truth, rightTruth, tolerance);
-    }
-    if (pair.protocol != Pair::NO_TRUTH && cv::countNonZero(pair.judged) == 0)
-        fail("'" + scene.truth + "' knows no pixel that can be judged");
-
-    if (!scene.calibration.empty())
-        pair.numDisparities = readDisparityCount(scene.calibration);
-    else if (pair.protocol == Pair::KITTI)
-        pair.numDisparities = 256;
-    else if (!scene.resolution.empty())
-        pair.numDisparities = 256 / resolutionDivisor(scene.resolution);
-    else
-        pair.numDisparities = defaultNumDisparities(size.width);
+    pair.disparities = cv::Range(0, numDisparitiesOf(scene, pair));
     return pair;
 }
 
-} // namespace hdp_samples
-
-#endif
+} // namespace hdp_tools

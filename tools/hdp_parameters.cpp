@@ -7,12 +7,17 @@
 // preset's own.
 
 #include <ctime>
+#include <functional>
 #include <iostream>
+#include <sstream>
 
-#include "hdp_tables.hpp"
+#include "evaluation/command_line.hpp"
+#include "evaluation/datasets.hpp"
+#include "evaluation/methods.hpp"
+#include "evaluation/scores.hpp"
 
 using namespace cv;
-using namespace hdp_samples;
+using namespace hdp_tools;
 using cv::stereo::HDPTreeMatcher;
 
 static const char* const KEYS =
@@ -21,8 +26,6 @@ static const char* const KEYS =
     "{presets   | fast,tree | those to change: fast, tree or both }"
     "{runs      | 3         | how often a pair is matched in each way, in turns; the shortest times count }"
     "{threads   |           | number of threads; all processors if not given }";
-
-static const std::vector<String> FLAGS = { "help", "h", "?" };
 
 //! A preset, or a preset with one change
 struct Variant
@@ -105,7 +108,7 @@ static void measure(const Pair& pair, int preset, int runs, std::vector<Variant>
     std::vector<Ptr<HDPTreeMatcher>> matchers;
     for (const Variant& variant : variants)
     {
-        matchers.push_back(HDPTreeMatcher::create(0, pair.numDisparities, preset));
+        matchers.push_back(HDPTreeMatcher::create(0, pair.disparities.size(), preset));
         variant.change(*matchers.back());
     }
     std::vector<double> seconds(variants.size(), DBL_MAX);
@@ -126,19 +129,17 @@ static void measure(const Pair& pair, int preset, int runs, std::vector<Variant>
     }
 }
 
-static void run(const CommandLineParser& parser)
+static int run(const CommandLineParser& parser)
 {
-    if (parser.has("threads"))
-        setNumThreads(getInteger(parser, "threads", 1, 1024));
+    setThreads(parser);
     const int runs = getInteger(parser, "runs", 1, 1000);
     std::vector<int> presets;
-    const String names = "," + lowerCase(parser.get<String>("presets")) + ",";
-    if (names.find(",fast,") != String::npos)
-        presets.push_back(HDPTreeMatcher::PRESET_FAST);
-    if (names.find(",tree,") != String::npos)
-        presets.push_back(HDPTreeMatcher::PRESET_TREE);
-    if (presets.empty())
-        fail("--presets=" + parser.get<String>("presets") + ": neither fast nor tree");
+    for (const String& name : splitList(parser.get<String>("presets")))
+    {
+        if (name != "fast" && name != "tree")
+            fail("--presets=" + parser.get<String>("presets") + ": neither fast nor tree");
+        presets.push_back(presetOf(name));
+    }
 
     std::vector<Scene> scenes;
     for (const Scene& scene : findScenes(parser.get<String>("@root")))
@@ -162,12 +163,13 @@ static void run(const CommandLineParser& parser)
                                 v.relativeTime / pairs);
         std::cout << std::endl;
     }
+    return 0;
 }
 
 int main(int argc, char** argv)
 {
-    return runSample(argc, argv, KEYS,
-                     "What each parameter does to speed and accuracy: mean errors over all pairs, and the "
-                     "processor time as a multiple of the preset's.\n",
-                     FLAGS, 1, run);
+    return runProgram(argc, argv, KEYS,
+                      "What each parameter does to speed and accuracy: mean errors over all pairs, and the "
+                      "processor time as a multiple of the preset's.\n",
+                      {}, 1, run);
 }

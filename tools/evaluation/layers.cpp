@@ -2,21 +2,17 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The layers of HDPTreeMatcher's pyramid, one by one: what the matcher finds in layer l, and what is true there.
+#include "layers.hpp"
 
-#ifndef OPENCV_HDPSTEREO_SAMPLES_LAYERS_HPP
-#define OPENCV_HDPSTEREO_SAMPLES_LAYERS_HPP
+#include <algorithm>
 
-#include "hdp_datasets.hpp"
+#include "opencv2/imgproc.hpp"
 
-namespace hdp_samples {
+#include "command_line.hpp"
 
-using cv::Ptr;
-using cv::stereo::DisparityPredictionModel;
-using cv::stereo::HDPTreeMatcher;
+namespace hdp_tools {
 
-//! The image in layer + 1 of an image in layer: means of 2 x 2 pixels
-inline Mat nextLayer(const Mat& image)
+Mat nextLayer(const Mat& image)
 {
     const cv::Size size(image.cols / 2, image.rows / 2);
     if (size.empty())
@@ -26,8 +22,7 @@ inline Mat nextLayer(const Mat& image)
     return next;
 }
 
-//! D_l of the true disparities: those of layer 0, in pixels of the layer, at one of the four pixels that become one
-inline Mat truthOfLayer(const Mat& truth, int layer)
+Mat truthOfLayer(const Mat& truth, int layer)
 {
     Mat result = truth;
     for (int l = 0; l < layer; l++)
@@ -41,14 +36,13 @@ inline Mat truthOfLayer(const Mat& truth, int layer)
     return result;
 }
 
-inline Ptr<DisparityPredictionModel> publishedModel(int width)
+Ptr<DisparityPredictionModel> publishedModel(int width)
 {
     return DisparityPredictionModel::createPublished(width >= 1000 ? DisparityPredictionModel::PUBLISHED_LARGE
                                                                    : DisparityPredictionModel::PUBLISHED_SMALL);
 }
 
-//! The layers first .. of a model, as a model of its own
-inline Ptr<DisparityPredictionModel> upperPart(const DisparityPredictionModel& model, int first)
+Ptr<DisparityPredictionModel> upperPart(const DisparityPredictionModel& model, int first)
 {
     const Ptr<DisparityPredictionModel> part = DisparityPredictionModel::create();
     for (int layer = first; layer < model.getNumLayers(); layer++)
@@ -60,15 +54,9 @@ inline Ptr<DisparityPredictionModel> upperPart(const DisparityPredictionModel& m
     return part;
 }
 
-//! How many candidates a layer has
-inline int disparitiesOfLayer(int numDisparities, int layer) { return ((numDisparities - 1) >> layer) + 1; }
+int disparitiesOfLayer(int numDisparities, int layer) { return ((numDisparities - 1) >> layer) + 1; }
 
-/** Makes a new matcher do for the images of a layer what one with its parameters and so many layers does in that layer
-and those above, when it matches images of this width.
-@param matcher Of disparitiesOfLayer() candidates.
-@param above The model of this layer and those above; empty at the top layer. */
-inline void adaptToLayer(HDPTreeMatcher& matcher, int layer, int layers, int width,
-                         const Ptr<DisparityPredictionModel>& above)
+void adaptToLayer(HDPTreeMatcher& matcher, int layer, int layers, int width, const Ptr<DisparityPredictionModel>& above)
 {
     const bool isLarge = width >= 1000; // see HDPTreeMatcher::setDelta0() and setBeta()
     if (matcher.getDelta0() == HDPTreeMatcher::AUTO)
@@ -80,9 +68,8 @@ inline void adaptToLayer(HDPTreeMatcher& matcher, int layer, int layers, int wid
     matcher.setPredictionModel(above);
 }
 
-//! A matcher (PRESET_PAPER) that has been adapted to a layer of a pair with so many candidates.
-inline Ptr<HDPTreeMatcher> matcherOfLayer(int layer, int layers, int numDisparities, int width,
-                                          const Ptr<DisparityPredictionModel>& above)
+Ptr<HDPTreeMatcher> matcherOfLayer(int layer, int layers, int numDisparities, int width,
+                                   const Ptr<DisparityPredictionModel>& above)
 {
     const Ptr<HDPTreeMatcher> matcher =
         HDPTreeMatcher::create(0, disparitiesOfLayer(numDisparities, layer), HDPTreeMatcher::PRESET_PAPER);
@@ -90,6 +77,4 @@ inline Ptr<HDPTreeMatcher> matcherOfLayer(int layer, int layers, int numDisparit
     return matcher;
 }
 
-} // namespace hdp_samples
-
-#endif
+} // namespace hdp_tools

@@ -1,0 +1,132 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "command_line.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+
+#include "opencv2/core/utils/logger.hpp"
+
+namespace hdp_tools {
+
+void fail(const String& message) { throw std::runtime_error(message); }
+
+String lowerCase(String text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) { return char(std::tolower(uchar(c))); });
+    return text;
+}
+
+std::vector<String> splitList(const String& text)
+{
+    std::vector<String> items;
+    std::istringstream in(text);
+    for (String item; std::getline(in, item, ',');)
+        if (!item.empty())
+            items.push_back(item);
+    return items;
+}
+
+double getNumber(const cv::CommandLineParser& parser, const String& name, double low, double high)
+{
+    const String text = parser.get<String>(name);
+    double value = 0;
+    size_t end = 0;
+    try
+    {
+        value = std::stod(text, &end);
+    }
+    catch (const std::logic_error&)
+    {
+        end = 0;
+    }
+    if (end == 0 || end != text.size() || !(value >= low && value <= high))
+        fail(cv::format("--%s=%s: not a number from %g to %g", name.c_str(), text.c_str(), low, high));
+    return value;
+}
+
+int getInteger(const cv::CommandLineParser& parser, const String& name, int low, int high)
+{
+    const double value = getNumber(parser, name, low, high);
+    if (value != std::floor(value))
+        fail("--" + name + "=" + parser.get<String>(name) + ": not a whole number");
+    return int(value);
+}
+
+void setThreads(const cv::CommandLineParser& parser)
+{
+    if (parser.has("threads"))
+        cv::setNumThreads(getInteger(parser, "threads", 1, 1024));
+}
+
+static void checkArguments(int argc, const char* const argv[], const cv::CommandLineParser& parser,
+                           std::vector<String> flags, int maxPositional)
+{
+    flags.insert(flags.end(), { "help", "h", "?" });
+    int positional = 0;
+    for (int i = 1; i < argc; i++)
+    {
+        const String argument = argv[i];
+        if (argument.size() < 2 || argument[0] != '-')
+        {
+            if (++positional > maxPositional)
+                fail("unexpected argument '" + argument + "'");
+            continue;
+        }
+        const String option = argument.substr(0, argument.find('='));
+        const String name = option.substr(option.compare(0, 2, "--") == 0 ? 2 : 1);
+        try
+        {
+            parser.has(name);
+        }
+        catch (const cv::Exception&)
+        {
+            fail("unknown option '" + option + "'");
+        }
+        const bool isFlag = std::find(flags.begin(), flags.end(), name) != flags.end();
+        if (isFlag && option != argument)
+            fail("option '" + option + "' takes no value");
+        if (!isFlag && option.size() + 1 >= argument.size())
+            fail("option '" + option + "' needs a value: " + option + "=VALUE");
+    }
+}
+
+int runProgram(int argc, const char* const argv[], const String& keys, const String& about,
+               const std::vector<String>& flags, int maxPositional,
+               const std::function<int(const cv::CommandLineParser&)>& run)
+{
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); // errors are reported below
+    try
+    {
+        cv::CommandLineParser parser(argc, argv, keys);
+        parser.about(about);
+        checkArguments(argc, argv, parser, flags, maxPositional);
+        int status = 0;
+        if (parser.has("help"))
+            parser.printMessage();
+        else
+            status = run(parser);
+        std::cout.flush();
+        if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout))
+            fail("cannot write to the standard output");
+        return status;
+    }
+    catch (const cv::Exception& e)
+    {
+        std::cerr << "error: " << e.err << std::endl;
+    }
+    catch (const std::exception& e)
+    {
+        std::cerr << "error: " << e.what() << std::endl;
+    }
+    return 1;
+}
+
+} // namespace hdp_tools

@@ -1,0 +1,126 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "disparity_maps.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "opencv2/imgcodecs.hpp"
+
+#include "command_line.hpp"
+
+namespace hdp_tools {
+
+Mat toPixels(const Mat& disparity16, int minDisparity)
+{
+    Mat disparity;
+    disparity16.convertTo(disparity, CV_32F, 1.0 / 16);
+    disparity.setTo(NO_DISPARITY, disparity < minDisparity);
+    return disparity;
+}
+
+bool hasExtension(const String& path, const String& extension)
+{
+    const size_t dot = path.rfind('.');
+    return dot != String::npos && lowerCase(path.substr(dot)) == extension;
+}
+
+Mat readImage(const String& path, int flags)
+{
+    Mat image;
+    try
+    {
+        image = cv::imread(path, flags);
+    }
+    catch (const cv::Exception&)
+    {
+    }
+    if (image.empty())
+        fail("cannot read the image '" + path + "'");
+    return image;
+}
+
+void writeImage(const String& path, const Mat& image)
+{
+    bool written = false;
+    try
+    {
+        written = cv::imwrite(path, image);
+    }
+    catch (const cv::Exception&)
+    {
+    }
+    if (!written)
+        fail("cannot write '" + path + "'");
+}
+
+Mat toDisparity(const Mat& image, const String& path, double scale)
+{
+    if (image.channels() != 1)
+        fail("'" + path + "' is a color image, not a disparity map");
+    const bool isFloat = image.depth() == CV_32F;
+    if (scale == 0)
+        scale = image.depth() == CV_16U ? 256 : 1;
+
+    Mat disparity;
+    image.convertTo(disparity, CV_32F);
+    disparity /= scale; // not a factor of 1 / scale, which rounds differently
+    const Mat known = isFloat ? Mat(cv::abs(image) <= std::numeric_limits<float>::max()) : Mat(image != 0);
+    disparity.setTo(NO_DISPARITY, ~known);
+    return disparity;
+}
+
+Mat readDisparity(const String& path, double scale)
+{
+    return toDisparity(readImage(path, cv::IMREAD_UNCHANGED), path, scale);
+}
+
+void writeDisparity(const String& path, const Mat& disparity)
+{
+    const Mat fits = (disparity >= 0) & (disparity < 256);
+    Mat fitting = disparity.clone(), image;
+    fitting.setTo(0, ~fits);
+    fitting.convertTo(image, CV_16U, 256);
+    image.setTo(1, fits & (image == 0));
+    writeImage(path, image);
+}
+
+Mat nonOccludedPixels(const Mat& truth, const Mat& rightTruth, double tolerance)
+{
+    Mat mask = Mat::zeros(truth.size(), CV_8U);
+    for (int y = 0; y < truth.rows; y++)
+    {
+        for (int x = 0; x < truth.cols; x++)
+        {
+            const float d = truth.at<float>(y, x);
+            const float xr = d < NO_DISPARITY ? float(x) - std::floor(d) : -1.f;
+            if (xr >= 0 && xr < float(truth.cols) && std::abs(rightTruth.at<float>(y, int(xr)) - d) <= tolerance)
+                mask.at<uchar>(y, x) = 255;
+        }
+    }
+    return mask;
+}
+
+Mat wrongPixels(const Mat& disparity, const Mat& truth, const Mat& mask, double threshold)
+{
+    Mat error;
+    cv::absdiff(disparity, truth, error);
+    return (error >= threshold) & mask;
+}
+
+Mat wrongPixelsD1(const Mat& disparity, const Mat& truth, const Mat& mask)
+{
+    Mat error;
+    cv::absdiff(disparity, truth, error);
+    return (error > 3) & (error > 0.05 * truth) & mask;
+}
+
+double percent(const Mat& pixels, const Mat& mask)
+{
+    return 100. * cv::countNonZero(pixels) / std::max(cv::countNonZero(mask), 1);
+}
+
+} // namespace hdp_tools

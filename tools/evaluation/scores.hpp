@@ -1,0 +1,44 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Errors of a map by the measures of the datasets.
+
+#ifndef OPENCV_HDPSTEREO_TOOLS_SCORES_HPP
+#define OPENCV_HDPSTEREO_TOOLS_SCORES_HPP
+
+#include <vector>
+
+#include "pair.hpp"
+
+namespace hdp_tools {
+
+const double NO_SCORE = std::numeric_limits<double>::quiet_NaN();
+
+//! In percent of the judged pixels, but for the average; pixels without a disparity are wrong. NO_SCORE without truth.
+struct Score
+{
+    double error1, error2;            // err>=1 and err>=2, as in the paper
+    double badHalf, bad1, bad2, bad4; // errors above 0.5, 1, 2 and 4 pixels
+    double d1, d1NonOccluded;         // errors above 3 pixels and 5 %; the latter for KITTI only
+    double invalid;                   // pixels without a disparity
+    double average;                   // mean absolute error in pixels, of each pixel at most 64
+
+    Score();
+};
+
+Score scoreMap(const Mat& disparity, const Pair& pair);
+
+//! The score that the pair's dataset is known for, in words, and its value: err>=2, D1, or bad 2
+String mainScoreName(Pair::Protocol protocol);
+double mainScore(const Score& score, Pair::Protocol protocol);
+
+//! Pixels that are wrong by the pair's main score
+Mat wrongPixels(const Mat& disparity, const Pair& pair);
+
+//! Mean of the numbers that there are; NO_SCORE if there are none.
+double meanOf(const std::vector<double>& values);
+
+} // namespace hdp_tools
+
+#endif

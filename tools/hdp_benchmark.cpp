@@ -1,0 +1,244 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// The presets of cv::stereo::HDPTreeMatcher beside cv::StereoBM and cv::StereoSGBM on one pair: time, memory and, if the
+// truth is known, errors, as tables in Markdown.
+//
+// All methods are timed in one process, in turns, so that a machine that is busy for a while slows all of them. Memory
+// is measured in a process for each method: this program, run again with --memory-of.
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include "opencv2/imgproc.hpp"
+
+#include "evaluation/command_line.hpp"
+#include "evaluation/memory.hpp"
+#include "evaluation/scores.hpp"
+#include "evaluation/tables.hpp"
+
+using namespace cv;
+using namespace hdp_tools;
+
+static const String KEYS =
+    "{help h ?        |     | print this and exit }" + String(PAIR_KEYS) +
+    "{methods         | presets,opencv | what to compare: ultrafast, fast, quality, tree, paper, bm, sgbm, sgbm-3way, "
+    "sgbm-hh4, ..., or these groups, separated by commas }"
+    "{resize          |     | WIDTHxHEIGHT to resize the pair to; the truth's disparities scale with the width }"
+    "{threads         |     | number of threads; all processors if not given }"
+    "{runs            | 7   | timed runs of each method, after one that is not timed }"
+    "{one-at-a-time   |     | keep the buffers of one method only, for pairs so large that all do not fit into memory; "
+    "each timed run then has an untimed one before it }"
+    "{stages          |     | the time of each stage of the presets, too }"
+    "{memory-of       |     | measure the memory of this method, print it in bytes per pixel, and exit }";
+
+static void resizePair(const String& sizeText, Pair& pair)
+{
+    Size size;
+    char rest;
+    const int limit = 1 << 15;
+    if (std::sscanf(sizeText.c_str(), "%dx%d%c", &size.width, &size.height, &rest) != 2 || size.width < 1 ||
+        size.height < 1 || size.width > limit || size.height > limit)
+        fail(format("--resize=%s: not WIDTHxHEIGHT, each from 1 to %d", sizeText.c_str(), limit));
+
+    const double factor = double(size.width) / pair.left.cols;
+    const int method = factor < 1 ? INTER_AREA : INTER_CUBIC;
+    resize(pair.left, pair.left, size, 0, 0, method);
+    resize(pair.right, pair.right, size, 0, 0, method);
+    if (!pair.truth.empty())
+    {
+        // What is judged was found at the size of the files, where the truth of both images can be compared.
+        resize(pair.truth, pair.truth, size, 0, 0, INTER_NEAREST);
+        resize(pair.judged, pair.judged, size, 0, 0, INTER_NEAREST);
+        pair.truth *= factor;
+    }
+}
+
+struct Measurement
+{
+    Method method;
+    String failure; // why the method has no times, if it is not empty
+    double bytesPerPixel;
+    std::vector<double> milliseconds;
+    Score score;
+    std::vector<String> stages; // of an HDPTreeMatcher
+    std::vector<std::vector<double>> stageMilliseconds;
+};
+
+//! One more run of a method; the first one is for its errors, too.
+static void measureRun(Measurement& result, Ptr<cv::StereoMatcher>& matcher, const Pair& pair)
+{
+    const Method& method = result.method;
+    if (result.milliseconds.empty() && pair.protocol != Pair::NO_TRUTH)
+    {
+        matcher = method.create(pair.disparities);
+        result.score = scoreMap(matchDensely(method, *matcher, pair.left, pair.right), pair);
+        if (!method.isHdp) // its buffers are those of a wider pair
+            matcher.release();
+    }
+    const Mat left = imageFor(method, pair.left), right = imageFor(method, pair.right);
+    Mat disparity;
+    if (!matcher)
+    {
+        matcher = method.create(pair.disparities);
+        matcher->compute(left, right, disparity);
+    }
+    TickMeter timer;
+    timer.start();
+    matcher->compute(left, right, disparity);
+    timer.stop();
+    result.milliseconds.push_back(timer.getTimeMilli());
+    if (method.isHdp)
+    {
+        result.stageMilliseconds.push_back(std::vector<double>());
+        matcher.dynamicCast<HDPTreeMatcher>()->getStageTimes(result.stages, result.stageMilliseconds.back());
+    }
+}
+
+//! Each method in turn, again and again
+static void measureTimes(std::vector<Measurement>& results, const Pair& pair, int runs, bool oneAtATime)
+{
+    std::vector<Ptr<cv::StereoMatcher>> matchers(results.size());
+    for (int run = 0; run < runs; run++)
+    {
+        std::cerr << "run " << run + 1 << " of " << runs << std::endl;
+        for (size_t i = 0; i < results.size(); i++)
+        {
+            if (!results[i].failure.empty())
+                continue;
+            try
+            {
+                measureRun(results[i], matchers[i], pair);
+            }
+            catch (const cv::Exception& e)
+            {
+                results[i].failure = e.err;
+            }
+            if (oneAtATime)
+                matchers[i].release();
+        }
+    }
+}
+
+// ---- Tables
+
+static double median(std::vector<double> values)
+{
+    std::sort(values.begin(), values.end());
+    const size_t n = values.size();
+    return (values[(n - 1) / 2] + values[n / 2]) / 2;
+}
+
+static Table resultTable(const std::vector<Measurement>& results, bool withErrors)
+{
+    double reference = NO_SCORE;
+    for (const Measurement& result : results)
+        if (result.method.name == REFERENCE_METHOD && result.failure.empty())
+            reference = median(result.milliseconds);
+
+    Table table;
+    table.title = "Times, memory" + String(withErrors ? " and errors" : "");
+    table.header = { "method", "median ms", "minimum ms", "times faster than " + String(REFERENCE_METHOD),
+                     "bytes per pixel" };
+    const std::vector<String> errors = { "err>=1 %", "err>=2 %", "D1 %", "invalid %" };
+    if (withErrors)
+        table.header.insert(table.header.end(), errors.begin(), errors.end());
+    for (const Measurement& result : results)
+    {
+        table.addRow(result.method.name);
+        if (!result.failure.empty())
+        {
+            table.addText(result.failure);
+            continue;
+        }
+        const double time = median(result.milliseconds);
+        table.addNumber(time, "%.1f");
+        table.addNumber(*std::min_element(result.milliseconds.begin(), result.milliseconds.end()), "%.1f");
+        table.addNumber(reference / time);
+        table.addNumber(result.bytesPerPixel >= 0 ? result.bytesPerPixel : NO_SCORE, "%.1f");
+        if (withErrors)
+            for (const double error :
+                 { result.score.error1, result.score.error2, result.score.d1, result.score.invalid })
+                table.addNumber(error);
+    }
+    return table;
+}
+
+static Table stageTable(const std::vector<Measurement>& results)
+{
+    Table table;
+    table.title = "Stages";
+    table.header = { "method", "stage", "median ms" };
+    for (const Measurement& result : results)
+    {
+        for (size_t stage = 0; stage < result.stages.size(); stage++)
+        {
+            std::vector<double> milliseconds;
+            for (const std::vector<double>& run : result.stageMilliseconds)
+                milliseconds.push_back(run[stage]);
+            table.addRow(result.method.name);
+            table.addText(result.stages[stage]);
+            table.addNumber(median(milliseconds));
+        }
+    }
+    return table;
+}
+
+static int run(const CommandLineParser& parser, const char* const argv[])
+{
+    setThreads(parser);
+    const int runs = getInteger(parser, "runs", 1, 10000);
+    const bool memoryOnly = parser.has("memory-of");
+    const String option = memoryOnly ? "memory-of" : "methods";
+    const std::vector<Method> methods = selectMethods(option, parser.get<String>(option));
+
+    Pair pair = readPair(parser);
+    if (parser.has("resize"))
+    {
+        resizePair(parser.get<String>("resize"), pair);
+        if (!parser.has("num-disparities"))
+            pair.disparities.end = pair.disparities.start + defaultNumDisparities(pair.left.cols);
+    }
+    const Range disparities = pair.disparities;
+    if (disparities.size() % 16 != 0)
+        fail(format("--num-disparities=%d: not a multiple of 16, which OpenCV's matchers need", disparities.size()));
+
+    if (memoryOnly)
+    {
+        if (methods.size() != 1)
+            fail("--memory-of measures one method");
+        std::cout << measureMemory(methods[0], pair) << std::endl;
+        return 0;
+    }
+
+    std::cout << format("%d x %d pixels, disparities %d to %d, threads %d, runs %d, OpenCV %s\n", pair.left.cols,
+                        pair.left.rows, disparities.start, disparities.end - 1, getNumThreads(), runs,
+                        getVersionString().c_str())
+              << "processor features: " << getCPUFeaturesLine() << "\n"
+              << std::endl;
+    std::vector<Measurement> results;
+    for (const Method& method : methods)
+    {
+        Measurement result = { method, String(), -1, {}, Score(), {}, {} };
+        std::cerr << "memory of " << method.name << std::endl;
+        result.failure = runMemoryOf(method, argv, result.bytesPerPixel);
+        results.push_back(result);
+    }
+    measureTimes(results, pair, runs, parser.has("one-at-a-time"));
+    std::cout << toMarkdown(resultTable(results, pair.protocol != Pair::NO_TRUTH));
+    if (parser.has("stages"))
+        std::cout << "\n" << toMarkdown(stageTable(results));
+    for (const Measurement& result : results)
+        if (!result.failure.empty())
+            fail(result.method.name + " " + result.failure);
+    return 0;
+}
+
+int main(int argc, char** argv)
+{
+    return runProgram(argc, argv, KEYS, "Times, memory and errors of stereo matchers side by side.\n",
+                      { "one-at-a-time", "stages" }, 2,
+                      [&](const CommandLineParser& parser) { return run(parser, argv); });
+}

@@ -1,0 +1,113 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Matches every pair of a dataset with every method, and prints the tables of the paper: the share of the disparities
+// that is searched, the errors, and the time. --report writes them with pictures of all maps to a page.
+
+#include <fstream>
+#include <iostream>
+
+#include "opencv2/core.hpp"
+#include "opencv2/core/utils/filesystem.hpp"
+
+#include "evaluation/command_line.hpp"
+#include "evaluation/progress.hpp"
+#include "evaluation/result_tables.hpp"
+
+using namespace cv;
+using namespace hdp_tools;
+
+static const char* const KEYS =
+    "{help h ?        |     | print this and exit }"
+    "{@root           |     | folder of Middlebury, ETH3D or KITTI pairs, of pairs without truth, or of such folders }"
+    "{resolution      |     | only these of Middlebury's: full, half, third or quarter, separated by commas }"
+    "{methods         | systems,presets,opencv | names as in the tables, or these groups, separated by commas }"
+    "{scenes          |     | only these, separated by commas }"
+    "{num-disparities |     | number of disparities; by default that of the dataset }"
+    "{model           |     | prediction model of the paper's HDP systems: a file of hdp_train }"
+    "{report          |     | folder for index.html, with the tables, pictures of all maps, and how they came about }"
+    "{csv             |     | FILE.csv for the tables, and one of every pair }"
+    "{maps            |     | folder for the maps: METHOD/SET/SCENE.png (16 bit, times 256, 0 = none) }"
+    "{runs            | 1   | how often a pair is matched; the shortest time counts }"
+    "{jobs            | 1   | how many pairs are matched at a time; they share the threads, and get slower }"
+    "{threads         |     | number of threads; all processors if not given }";
+
+static void writeText(const String& path, const String& text)
+{
+    std::ofstream file(path.c_str(), std::ios::binary);
+    file << text;
+    file.close();
+    if (!file)
+        fail("cannot write '" + path + "'");
+}
+
+static int run(const CommandLineParser& parser)
+{
+    if (!parser.has("@root"))
+        fail("a folder is needed, see --help");
+    setThreads(parser);
+    const int threads = getNumThreads();
+    const Ptr<DisparityPredictionModel> model = parser.has("model")
+                                                    ? DisparityPredictionModel::load(parser.get<String>("model"))
+                                                    : Ptr<DisparityPredictionModel>();
+    EvaluationSettings settings;
+    settings.methods = selectMethods("methods", parser.get<String>("methods"), model);
+    settings.numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, 2048) : 0;
+    settings.runs = getInteger(parser, "runs", 1, 1000);
+    settings.jobs = getInteger(parser, "jobs", 1, 256);
+    settings.maps = parser.get<String>("maps");
+    settings.hasReport = parser.has("report");
+
+    std::vector<SceneResult> results;
+    for (const Scene& scene : selectScenes(parser))
+        results.push_back(SceneResult(scene, settings.methods.size()));
+
+    // Before hours of work, not after it
+    const String report = parser.get<String>("report"), csv = parser.get<String>("csv");
+    const String page = utils::fs::join(report, "index.html");
+    if (settings.hasReport)
+    {
+        makeFolder(report);
+        writeText(page, htmlPage("Not finished", ""));
+    }
+    if (!settings.maps.empty())
+        makeFolder(settings.maps);
+    if (!csv.empty())
+        writeText(csv, "");
+
+    setNumThreads(std::max(threads / settings.jobs, 1));
+    catchInterrupts();
+    const int bad = evaluateScenes(settings, results);
+
+    const std::vector<Table> tables = makeTables(settings.methods, results, settings.jobs);
+    String text;
+    for (const Table& table : tables)
+    {
+        std::cout << toMarkdown(table) << "\n";
+        text += toCsv(table) + "\n";
+    }
+    if (!csv.empty())
+        writeText(csv, text + toCsv(everyPairTable(settings.methods, results)));
+    if (settings.hasReport)
+    {
+        const String summary = format(
+            "%d pairs, %d of them with something wrong; %d systems, %d threads, OpenCV " CV_VERSION "%s",
+            int(results.size()), bad, int(settings.methods.size()), threads, isInterrupted() ? "; interrupted" : "");
+        writeText(page, reportPage(tables, settings.methods, results, summary));
+    }
+    if (isInterrupted())
+        std::cerr << "interrupted: this is what was finished" << std::endl;
+    if (bad > 0)
+        std::cerr << bad << " of " << results.size() << " pairs were skipped or failed, see above" << std::endl;
+    return isInterrupted() ? 130 : bad > 0 ? 2 : 0;
+}
+
+int main(int argc, char** argv)
+{
+    return runProgram(
+        argc, argv, KEYS,
+        "Tables of the paper, and a report with pictures, of a dataset of rectified stereo pairs.\n"
+        "Exit status: 0 if all is well, 2 if a pair was skipped, 130 if interrupted, 1 on other errors.\n",
+        {}, 1, run);
+}
