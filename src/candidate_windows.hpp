@@ -22,13 +22,13 @@ struct CandidateWindow
         candidates = runs * runLength
     };
     short first[runs];      // the first disparity of each run
-    ushort predicted[runs]; // what the run is there for, as a disparity of the layer, times subpixelScale
+    ushort predicted[runs]; // what the run is there for, in 1 / subpixelScale pixel of the layer
 
     bool isContiguous() const { return first[1] == first[0] + runLength; }
 };
 
 /** Predicts the candidates of a layer.
-@param upper The disparities of the layer above, CV_16UC1, times subpixelScale.
+@param upper The disparities of the layer above, CV_16UC1, a disparity map.
 @param numDisparities Of the layer. Candidates from there on mean nothing; there are some only if it is less than
 CandidateWindow::candidates.
 @param smallest Memory to work in.
@@ -37,7 +37,7 @@ CandidateWindow::candidates.
 CV_EXPORTS void predictWindows(const Mat& upper, int numDisparities, Mat& smallest, Mat& largest, Mat& windows);
 
 //! Disparities of a layer as the layer above would have them: half the mean of the middle two of 2 x 2 pixels. For a
-//! second pass over a layer, around the disparities of the first. disparity and upper: CV_16UC1, times the same scale.
+//! second pass over a layer, around the disparities of the first. disparity and upper: CV_16UC1, disparity maps.
 CV_EXPORTS void halveDisparity(const Mat& disparity, Mat& upper);
 
 } // namespace hdp

@@ -4,7 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "candidate_windows.hpp"
-#include "disparity_prediction.hpp"
+#include "disparity_units.hpp"
 #include "vectorized.hpp"
 
 namespace cv {
@@ -43,19 +43,19 @@ inline int select(int condition, int a, int b) { return b ^ ((a ^ b) & -conditio
 void predictRow(const ushort* own, const ushort* least, const ushort* most, int width, int numDisparities,
                 ushort* windows)
 {
-    const int scale = subpixelScale, length = CandidateWindow::runLength, all = CandidateWindow::candidates;
+    const int length = CandidateWindow::runLength, all = CandidateWindow::candidates;
     HDP_VECTORIZED for (int x = 0; x < width; ++x) // without branches, so that it can be
     {
         const int here = 2 * own[x], smallest = 2 * least[x], largest = 2 * most[x];
         const int other = largest - here >= here - smallest ? largest : smallest;
-        const int nearest = (here + scale / 2) / scale, nearestOther = (other + scale / 2) / scale;
+        const int nearest = wholeDisparity(here), nearestOther = wholeDisparity(other);
         const int around = firstOf(nearest, all, numDisparities);
         const int first = firstOf(nearest, length, numDisparities);
         const int beyond = firstOf(nearestOther, length, numDisparities);
         // Two runs would overlap: one window over both
         const int between = std::max(std::min((first + beyond + length - all) >> 1, numDisparities - all), 0);
 
-        const int hasOther = std::abs(other - here) >= discontinuity * scale;
+        const int hasOther = std::abs(other - here) >= discontinuity * subpixelScale;
         const int overlaps = hasOther & (std::abs(first - beyond) < length), isApart = hasOther - overlaps;
         const int low = select(isApart, first, select(overlaps, between, around));
         windows[4 * x] = (ushort)low;

@@ -5,6 +5,7 @@
 #include "disparity_confidence.hpp"
 
 #include "disparity_refinement.hpp"
+#include "disparity_units.hpp"
 
 namespace cv {
 namespace stereo {
@@ -16,10 +17,10 @@ namespace {
 const int stripeRows = 128;
 
 //! Distances to the nearest pixel at a step, CV_32FC1.
-void distanceToSteps(const Mat& disparity, int scale, Mat& distance)
+void distanceToSteps(const Mat& disparity, Mat& distance)
 {
     Mat smooth(disparity.size(), CV_8U, Scalar(255));
-    const auto isStep = [&](int a, int b) { return 2 * std::abs(a - b) > 3 * scale; };
+    const auto isStep = [&](int a, int b) { return 2 * std::abs(a - b) > 3 * subpixelScale; };
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
@@ -39,13 +40,13 @@ void distanceToSteps(const Mat& disparity, int scale, Mat& distance)
 }
 
 //! The costs of a row's disparities and the means of those of their alternatives.
-void evaluateRow(const MatchingCost& cost, const ushort* disparity, int scale, int numDisparities, int firstPixel,
-                 int width, std::vector<int>& pixels, std::vector<float>& costs, float* own, float* others)
+void evaluateRow(const MatchingCost& cost, const ushort* disparity, int numDisparities, int firstPixel, int width,
+                 std::vector<int>& pixels, std::vector<float>& costs, float* own, float* others)
 {
     const int lanes = 8, alternative = DisparityConfidence::alternative;
     for (int x = 0; x < width; ++x)
         pixels[x] = firstPixel + x;
-    const auto candidate = [&](int x) { return (disparity[x] + scale / 2) / scale; };
+    const auto candidate = [&](int x) { return wholeDisparity(disparity[x]); };
     for (int start = 0, end; start < width; start = end) // pixels of one disparity
     {
         const int winner = candidate(start);
@@ -73,8 +74,7 @@ struct StripeUniqueness
     std::vector<float> costs;
     Mat own, others;
 
-    void compute(const MatchingCost& cost, const Mat& disparity, int scale, int numDisparities, const Range& rows,
-                 Mat& uniqueness)
+    void compute(const MatchingCost& cost, const Mat& disparity, int numDisparities, const Range& rows, Mat& uniqueness)
     {
         const int width = disparity.cols, window = DisparityConfidence::window, radius = window / 2;
         pixels.resize(width);
@@ -84,7 +84,7 @@ struct StripeUniqueness
         for (int i = 0; i < own.rows; ++i)
         {
             const int y = std::min(std::max(rows.start - radius + i, 0), disparity.rows - 1);
-            evaluateRow(cost, disparity.ptr<ushort>(y), scale, numDisparities, y * width, width, pixels, costs,
+            evaluateRow(cost, disparity.ptr<ushort>(y), numDisparities, y * width, width, pixels, costs,
                         own.ptr<float>(i), others.ptr<float>(i));
         }
         boxFilter(own, own, CV_32F, Size(window, window), Point(-1, -1), true, BORDER_REPLICATE);
@@ -103,11 +103,11 @@ struct StripeUniqueness
 
 } // namespace
 
-void disparityConfidence(const Mat& disparity, int scale, int numDisparities, const MatchingCost& cost, Mat& confidence)
+void disparityConfidence(const Mat& disparity, int numDisparities, const MatchingCost& cost, Mat& confidence)
 {
     Mat distance, stable;
-    distanceToSteps(disparity, scale, distance);
-    findStable(disparity, scale, DisparityConfidence::visibleMaxDiff, stable);
+    distanceToSteps(disparity, distance);
+    findStable(disparity, DisparityConfidence::visibleMaxDiff, stable);
     confidence.create(disparity.size(), CV_8U);
     const int stripes = (disparity.rows + stripeRows - 1) / stripeRows;
     parallel_for_(Range(0, stripes), [&](const Range& range) {
@@ -116,7 +116,7 @@ void disparityConfidence(const Mat& disparity, int scale, int numDisparities, co
         for (int i = range.start; i < range.end; ++i)
         {
             const Range rows(i * stripeRows, std::min((i + 1) * stripeRows, disparity.rows));
-            stripe.compute(cost, disparity, scale, numDisparities, rows, uniqueness);
+            stripe.compute(cost, disparity, numDisparities, rows, uniqueness);
             for (int y = rows.start; y < rows.end; ++y)
             {
                 const float* u = uniqueness.ptr<float>(y - rows.start);

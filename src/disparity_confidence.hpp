@@ -34,12 +34,11 @@ pixels before and after it (or of the only one of them that there is): max(0, A 
 means of both over a window of 21 x 21 pixels, borders replicated; 0 without alternatives or if A + C = 0.
 
 v is 1 for a pixel that passes the left-right check, see findStable(), or else 1/2.
-@param disparity CV_16UC1, times scale.
-@param scale Units of a disparity in one pixel.
+@param disparity CV_16UC1, a disparity map.
 @param numDisparities Of the layer.
 @param cost Of the layer.
 @param confidence Receives CV_8UC1. */
-CV_EXPORTS void disparityConfidence(const Mat& disparity, int scale, int numDisparities, const MatchingCost& cost,
+CV_EXPORTS void disparityConfidence(const Mat& disparity, int numDisparities, const MatchingCost& cost,
                                     Mat& confidence);
 
 } // namespace hdp

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_DISPARITY_FOREST_HPP
 #define OPENCV_HDPSTEREO_DISPARITY_FOREST_HPP
 
-#include "disparity_prediction.hpp"
+#include "disparity_units.hpp"
 #include "opencv2/hdpstereo/tree_strategy.hpp"
 
 namespace cv {

@@ -5,6 +5,7 @@
 #include "disparity_output.hpp"
 
 #include "disparity_refinement.hpp"
+#include "disparity_units.hpp"
 
 namespace cv {
 namespace stereo {
@@ -12,7 +13,8 @@ namespace hdp {
 
 namespace {
 
-const int unit = StereoMatcher::DISP_SCALE;
+const int unit = subpixelScale;
+static_assert(unit == (int)StereoMatcher::DISP_SCALE, "A disparity map and the result have the same units.");
 
 //! From the finest layer that was matched to layer 0 of this size
 Mat enlarge(const Mat& finest, const PairSettings& settings, Size size, std::vector<Mat>& enlarged)
@@ -22,7 +24,7 @@ Mat enlarge(const Mat& finest, const PairSettings& settings, Size size, std::vec
     for (int layer = settings.finestLayer - 1; layer >= 0; --layer)
     {
         const Size ofLayer(size.width >> layer, size.height >> layer);
-        upsampleDisparity(upper, settings.scale, ofLayer, enlarged[layer]);
+        upsampleDisparity(upper, ofLayer, enlarged[layer]);
         upper = enlarged[layer];
     }
     return upper;
@@ -44,21 +46,20 @@ bool outputDisparity(const Mat& finest, const MatcherParameters& p, const PairSe
 {
     const Size extendedSize = disparity.size() + Size(settings.extension, 0);
     Mat extended = enlarge(finest, settings, extendedSize, buffers.enlarged);
-    int scale = settings.scale;
-    if (scale > 1 && !p.useSubpixel)
+    if (!p.useSubpixel)
     {
-        extended.convertTo(buffers.whole, CV_16U, 1. / scale);
+        extended.convertTo(buffers.whole, CV_16U, 1. / unit);
+        buffers.whole.convertTo(buffers.whole, CV_16U, unit);
         extended = buffers.whole;
-        scale = 1;
     }
     const Mat map = extended.colRange(settings.extension, extended.cols);
     const bool isFloat = disparity.depth() == CV_32F;
     const bool isFiltered = p.disp12MaxDiff > 0 || p.speckleWindowSize > 0;
     if (isFloat)
-        map.convertTo(disparity, CV_32F, 1. / scale, p.minDisparity);
+        map.convertTo(disparity, CV_32F, 1. / unit, p.minDisparity);
     Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
     if (!isFloat || isFiltered)
-        map.convertTo(fixedPoint, CV_16S, (double)unit / scale, (double)p.minDisparity * unit);
+        map.convertTo(fixedPoint, CV_16S, 1, (double)p.minDisparity * unit);
     if (!isFiltered)
         return false;
 

@@ -23,7 +23,7 @@ struct OutputBuffers
 
 /** From the disparities of the finest layer to what cv::StereoMatcher promises: those of every pixel of the image, from
 minDisparity on, less what the left-right check and the speckle filter reject.
-@param finest CV_16UC1 of the finest layer's size, times PairSettings::scale.
+@param finest CV_16UC1 of the finest layer's size, a disparity map.
 @param parameters The parameters.
 @param settings What they amount to for the pair.
 @param buffers Memory to work in.

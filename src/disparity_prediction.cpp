@@ -66,19 +66,18 @@ void predictIntervals(const DisparityPredictionModel& model, int layer, const st
     });
 }
 
-void upperHistogram(const Mat& upper, int scale, int numDisparities, std::vector<double>& histogram)
+void upperHistogram(const Mat& upper, int numDisparities, std::vector<double>& histogram)
 {
     std::vector<double> pixels((numDisparities + 1) / 2);
     for (int y = 0; y < upper.rows; ++y)
         for (int x = 0; x < upper.cols; ++x)
-            ++pixels[wholeDisparity(upper.at<ushort>(y, x), scale)];
+            ++pixels[wholeDisparity(upper.at<ushort>(y, x))];
     histogram.resize(numDisparities);
     for (int d = 0; d < numDisparities; ++d)
         histogram[d] = pixels[d / 2] + (double)upper.total() / pixels.size();
 }
 
-void assignIntervals(const Mat& upper, int scale, Size size, const std::vector<DisparityInterval>& intervals,
-                     Mat& pixelIntv)
+void assignIntervals(const Mat& upper, Size size, const std::vector<DisparityInterval>& intervals, Mat& pixelIntv)
 {
     pixelIntv.create(size, CV_16UC2);
     parallel_for_(Range(0, size.height), [&](const Range& rows) {
@@ -87,7 +86,7 @@ void assignIntervals(const Mat& upper, int scale, Size size, const std::vector<D
             const ushort* above = upper.ptr<ushort>(std::min(y / 2, upper.rows - 1));
             DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
             for (int x = 0; x < size.width; ++x)
-                interval[x] = intervals[wholeDisparity(above[std::min(x / 2, upper.cols - 1)], scale)];
+                interval[x] = intervals[wholeDisparity(above[std::min(x / 2, upper.cols - 1)])];
         }
     });
 }

@@ -4,29 +4,12 @@
 #ifndef OPENCV_HDPSTEREO_SRC_DISPARITY_PREDICTION_HPP
 #define OPENCV_HDPSTEREO_SRC_DISPARITY_PREDICTION_HPP
 
+#include "disparity_units.hpp"
 #include "opencv2/hdpstereo/disparity_prediction.hpp"
 
 namespace cv {
 namespace stereo {
 namespace hdp {
-
-//! Units of a sub-pixel disparity in one pixel
-const int subpixelScale = 16;
-
-//! Of a disparity times scale, which is 1 or subpixelScale
-inline int wholeDisparity(int disparity, int scale)
-{
-    return scale == 1 ? disparity : (int)((unsigned)(disparity + subpixelScale / 2) / subpixelScale);
-}
-
-//! Disparities first .. last; empty if last < first. Stored in Mats as CV_16UC2.
-struct DisparityInterval
-{
-    ushort first, last;
-
-    bool empty() const { return last < first; }
-    int size() const { return last - first + 1; }
-};
 
 /** PixelIntv of every disparity of layer l + 1 (section 3.1).
 @param model The model; its mixture of this layer is used.
@@ -43,12 +26,12 @@ CV_EXPORTS void predictIntervals(const DisparityPredictionModel& model, int laye
                                  std::vector<DisparityInterval>& intervals);
 
 //! P(D_l) up to a factor, of what the layer above found: how many of its pixels have disparity floor(D_l / 2), and the
-//! mean of these numbers besides, as no disparity is impossible. upper: CV_16UC1, disparities times scale.
-CV_EXPORTS void upperHistogram(const Mat& upper, int scale, int numDisparities, std::vector<double>& histogram);
+//! mean of these numbers besides, as no disparity is impossible. upper: CV_16UC1, a disparity map.
+CV_EXPORTS void upperHistogram(const Mat& upper, int numDisparities, std::vector<double>& histogram);
 
-//! PixelIntv of every pixel of a layer: intervals[D_{l+1}] of the pixel above it. upper: CV_16UC1, disparities times
-//! scale; pixelIntv: CV_16UC2.
-CV_EXPORTS void assignIntervals(const Mat& upper, int scale, Size size, const std::vector<DisparityInterval>& intervals,
+//! PixelIntv of every pixel of a layer: intervals[D_{l+1}] of the pixel above it. upper: CV_16UC1, a disparity
+//! map; pixelIntv: CV_16UC2.
+CV_EXPORTS void assignIntervals(const Mat& upper, Size size, const std::vector<DisparityInterval>& intervals,
                                 Mat& pixelIntv);
 
 } // namespace hdp

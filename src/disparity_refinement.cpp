@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
-#include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
 #include "disparity_refinement.simd.hpp"
 #include "disparity_refinement.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
@@ -33,9 +32,9 @@ void medianBlurStripes(const Mat& image, int size, Mat& stripesBuffer, Mat& filt
     });
 }
 
-void dispatchFill(ushort* disparity, const uchar* residual, int width, int scale, OcclusionScratch& scratch)
+void dispatchFill(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch)
 {
-    CV_CPU_DISPATCH(fillOccludedRow, (disparity, residual, width, scale, scratch), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(fillOccludedRow, (disparity, residual, width, scratch), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 void dispatchMedian(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
@@ -72,20 +71,20 @@ enum Match
 };
 
 /** Compares each disparity with the largest one that maps to the same column of the right image.
-@param disparity CV_16SC1 or CV_16UC1 (T), times scale.
+@param disparity CV_16SC1 or CV_16UC1 (T), in 1 / subpixelScale pixel.
 @param maxDiff Largest difference, in pixels, of a visible pixel.
 @param invalid Disparity of pixels that map to no column, or a value that none has.
 @param visit Called with row, column and Match of each pixel, from left to right, rows side by side. */
 template <typename T, typename Visit>
-void checkLeftRight(const Mat& disparity, int scale, int maxDiff, int invalid, const Visit& visit)
+void checkLeftRight(const Mat& disparity, int maxDiff, int invalid, const Visit& visit)
 {
-    const int64 largestDifference = (int64)maxDiff * scale;
+    const int64 largestDifference = (int64)maxDiff * subpixelScale;
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         std::vector<int> nearest(disparity.cols);
         for (int y = rows.start; y < rows.end; ++y)
         {
             const T* row = disparity.ptr<T>(y);
-            const auto column = [&](int x) { return x - cvRound(row[x] / (double)scale); };
+            const auto column = [&](int x) { return x - cvRound(row[x] / (double)subpixelScale); };
             std::fill(nearest.begin(), nearest.end(), SHRT_MIN);
             for (int x = 0; x < disparity.cols; ++x)
             {
@@ -127,16 +126,16 @@ void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered
     }
 }
 
-void fillOccluded(Mat& disparity, const Mat& residual, int scale)
+void fillOccluded(Mat& disparity, const Mat& residual)
 {
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         OcclusionScratch scratch;
         for (int y = rows.start; y < rows.end; ++y)
-            dispatchFill(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, scale, scratch);
+            dispatchFill(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, scratch);
     });
 }
 
-void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity)
+void upsampleDisparity(const Mat& upper, Size size, Mat& disparity)
 {
     disparity.create(size, CV_16U);
     parallel_for_(Range(0, size.height), [&](const Range& rows) {
@@ -148,7 +147,7 @@ void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity)
             ushort* row = disparity.ptr<ushort>(y);
             const auto mean = [&](int x, int next) {
                 const int d = own[x];
-                const auto sameSurface = [&](int other) { return std::abs(other - d) <= scale ? other : d; };
+                const auto sameSurface = [&](int other) { return std::abs(other - d) <= subpixelScale ? other : d; };
                 return (ushort)((9 * d + 3 * sameSurface(own[next]) + 3 * sameSurface(beside[x]) +
                                  sameSurface(beside[next]) + 4) /
                                 8);
@@ -174,15 +173,15 @@ void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
         if (match == OCCLUDED)
             disparity.at<short>(y, x) = invalid;
     };
-    checkLeftRight<short>(disparity, 16, maxDiff, invalid, reject);
+    checkLeftRight<short>(disparity, maxDiff, invalid, reject);
 }
 
-void findStable(const Mat& disparity, int scale, int maxDiff, Mat& stable)
+void findStable(const Mat& disparity, int maxDiff, Mat& stable)
 {
     stable.create(disparity.size(), CV_8U);
     const auto mark = [&](int y, int x, Match match) { stable.at<uchar>(y, x) = match == VISIBLE ? 255 : 0; };
     const int none = -1; // all are valid
-    checkLeftRight<ushort>(disparity, scale, maxDiff, none, mark);
+    checkLeftRight<ushort>(disparity, maxDiff, none, mark);
 }
 
 } // namespace hdp

@@ -26,29 +26,26 @@ struct OcclusionScratch
 that map to one column of the right image the one with the lowest residual is there; those whose disparity is another
 one, and those that map to no column, are not. Nor are single pixels between two that are not, nor what is left of a surface that begins at the border of the right
 image: the last run of four pixels it shows, without steps, of which the first one is in column 0, 1 or 2.
-@param disparity CV_16UC1, times scale; changed.
-@param residual Matching costs, CV_8UC1.
-@param scale Units of a disparity in one pixel. */
-CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual, int scale);
+@param disparity CV_16UC1, a disparity map; changed.
+@param residual Matching costs, CV_8UC1. */
+CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual);
 
 /** The disparities of a layer from those of the layer above: bilinear inside a surface, its pixel's own at its border.
-@param upper CV_16UC1, times scale.
-@param scale Units of a disparity in one pixel.
+@param upper CV_16UC1, a disparity map.
 @param size Of the layer.
-@param disparity Receives CV_16UC1, times scale. */
-CV_EXPORTS void upsampleDisparity(const Mat& upper, int scale, Size size, Mat& disparity);
+@param disparity Receives CV_16UC1, a disparity map. */
+CV_EXPORTS void upsampleDisparity(const Mat& upper, Size size, Mat& disparity);
 
 //! Marks the pixels as invalid whose disparity differs by more than maxDiff pixels from the largest one that maps to
 //! the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
 CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);
 
 /** Left-right check of a layer's disparities: which pixels are stable.
-@param disparity CV_16UC1, times scale.
-@param scale Units of a pixel.
+@param disparity CV_16UC1, a disparity map.
 @param maxDiff A pixel is stable if the largest disparity that maps to its column of the right image is larger by
 maxDiff pixels at most. One that maps to no column is not.
 @param stable Receives CV_8UC1, 255 where stable, else 0. */
-CV_EXPORTS void findStable(const Mat& disparity, int scale, int maxDiff, Mat& stable);
+CV_EXPORTS void findStable(const Mat& disparity, int maxDiff, Mat& stable);
 
 } // namespace hdp
 } // namespace stereo

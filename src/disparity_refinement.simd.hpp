@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
-#include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
+#include "disparity_units.hpp"
 #include "vectorized.hpp"
 #include <cstring>
 
@@ -14,7 +14,7 @@ namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 //! fillOccluded() for one row.
-void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int scale, OcclusionScratch& scratch);
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch);
 
 /** A row of the median of size x size pixels.
 @param rows The `size` rows around it.
@@ -39,7 +39,7 @@ inline int findByte(const uchar* bytes, int begin, int end, uchar value)
 
 //! The last of the pixels at the border of the right image with which a visible surface begins: what is on its left is
 //! not in the right image.
-int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width, int scale)
+int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width)
 {
     const int surface = 4; // columns, at least
     const uchar* visible = scratch.visible.data();
@@ -49,7 +49,7 @@ int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int wid
     {
         int end = x + 1;
         while (end < std::min(x + surface, width) && visible[end] &&
-               std::abs(disparity[end] - disparity[end - 1]) <= scale)
+               std::abs(disparity[end] - disparity[end - 1]) <= subpixelScale)
             ++end;
         if (end == x + surface)
             border = x;
@@ -59,7 +59,7 @@ int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int wid
 
 } // namespace
 
-void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int scale, OcclusionScratch& scratch)
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch)
 {
     scratch.there.assign(width + 1, UINT_MAX);
     scratch.columns.resize(width);
@@ -71,7 +71,7 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int sc
     uchar *visible = scratch.visible.data(), *atBorder = scratch.atBorder.data();
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        columns[x] = std::max(x + 1 - wholeDisparity(disparity[x], scale), 0);
+        columns[x] = std::max(x + 1 - wholeDisparity(disparity[x]), 0);
         keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
     }
     for (int x = 0; x < width; ++x)
@@ -80,10 +80,10 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int sc
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const int difference = (int)(0xffff - (keys[x] & 0xffff)) - disparity[x];
-        visible[x] = (uchar)((columns[x] > 0) & (difference <= scale) & (difference >= -scale));
+        visible[x] = (uchar)((columns[x] > 0) & (difference <= subpixelScale) & (difference >= -subpixelScale));
         atBorder[x] = (uchar)(visible[x] & (columns[x] <= 1 + 2));
     }
-    std::fill(visible, visible + findBorder(disparity, scratch, width, scale), (uchar)0);
+    std::fill(visible, visible + findBorder(disparity, scratch, width), (uchar)0);
     uchar* shown = atBorder; // the memory is free
     shown[0] = visible[0];
     shown[width - 1] = visible[width - 1];

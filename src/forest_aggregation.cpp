@@ -5,7 +5,6 @@
 #include "forest_aggregation.hpp"
 #include "forest_aggregation.simd.hpp"
 #include "forest_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "nonlocal_refinement.hpp"
 
 #include <cmath>
 #include <mutex>
@@ -50,51 +49,53 @@ int countLanes(int candidates, int treeSize)
 }
 
 //! Evaluates and aggregates the costs of a run of candidates; see aggregateRun().
-template <typename Cost>
-void takeRun(const TreeWalk& walk, int size, const Cost& cost, const EdgeSimilarity& similarity, const Range& run,
-             int lanes, bool joins, std::vector<float>& costs, RunWinner* winners)
+void takeRun(const TreeWalk& walk, int size, const AggregationProblem& problem, const EdgeSimilarity& similarity,
+             const Range& run, int lanes, bool joins, std::vector<float>& costs, RunWinner* winners)
 {
     if (costs.size() < (size_t)size * lanes)
         costs.resize((size_t)size * lanes);
-    cost.evaluate(walk.pixels.data(), size, run.start, lanes, costs.data());
+    problem.evaluate(walk.pixels.data(), size, run.start, lanes, costs.data());
     CV_CPU_DISPATCH(aggregateRun, (walk, size, similarity.table, run, lanes, joins, costs.data(), winners),
                     CV_CPU_DISPATCH_MODES_ALL);
 }
 
 //! Winner-takes-all over the matching cost
-class Matching
+class Matching CV_FINAL : public AggregationProblem
 {
 public:
     Matching(const MatchingCost& cost, bool subpixel) : cost_(cost), subpixel_(subpixel) {}
 
-    Range candidates(const TreeWalk&, const DisparityTree& tree) const
+    Range candidates(const TreeWalk&, const DisparityTree& tree) const CV_OVERRIDE
     {
         return tree.interval.empty() ? Range() : Range(tree.interval.first, tree.interval.last + 1);
     }
 
-    void evaluate(const int* pixels, int count, int first, int lanes, float* costs) const
+    void evaluate(const int* pixels, int count, int first, int lanes, float* costs) const CV_OVERRIDE
     {
         cost_.evaluate(pixels, count, first, lanes, costs);
     }
 
-    int disparity(int, const RunWinner& winner) const
+    void setDisparities(const int* pixels, const RunWinner* winners, int count, ushort* disparity) const CV_OVERRIDE
     {
-        if (!subpixel_)
-            return winner.disparity;
-        const bool hasParabola = winner.before >= 0 && winner.after >= 0;
-        return winner.disparity * subpixelScale +
-               (hasParabola ? parabolaOffset(winner.before, winner.lowest, winner.after) : 0);
+        for (int i = 0; i < count; ++i)
+            disparity[pixels[i]] = (ushort)(winners[i].disparity * subpixelScale + offset(winners[i]));
     }
 
 private:
+    int offset(const RunWinner& winner) const
+    {
+        const bool hasParabola = winner.before >= 0 && winner.after >= 0;
+        return subpixel_ && hasParabola ? parabolaOffset(winner.before, winner.lowest, winner.after) : 0;
+    }
+
     const MatchingCost& cost_;
     const bool subpixel_;
 };
 
-template <typename Problem> struct Aggregation
+struct Aggregation
 {
     const DisparityForest& forest;
-    const Problem& problem;
+    const AggregationProblem& problem;
     const EdgeSimilarity similarity;
     ushort* disparity;
 
@@ -120,13 +121,7 @@ template <typename Problem> struct Aggregation
         if (candidates.empty())
             return;
         takeWinners(scratch.walk, tree.size, candidates, scratch.costs, scratch.winners);
-        for (int i = 0; i < tree.size; ++i)
-            setDisparity(scratch.walk.pixels[i], scratch.winners[i]);
-    }
-
-    void setDisparity(int pixel, const RunWinner& winner) const
-    {
-        disparity[pixel] = (ushort)problem.disparity(pixel, winner);
+        problem.setDisparities(scratch.walk.pixels.data(), scratch.winners.data(), tree.size, disparity);
     }
 };
 
@@ -159,8 +154,7 @@ private:
 };
 
 //! A large tree with many candidates: groups of them side by side
-template <typename Problem>
-void processLarge(const Aggregation<Problem>& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
+void processLarge(const Aggregation& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
 {
     std::mutex mutex;
     ScratchLoan result(buffers, mutex);
@@ -187,12 +181,10 @@ void processLarge(const Aggregation<Problem>& aggregation, const DisparityTree& 
 
     parallel_for_(Range(0, tree.size), [&](const Range& range) {
         for (int i = range.start; i < range.end; ++i)
-        {
-            RunWinner winner = groups[0][i];
             for (int g = 1; g < count; ++g)
-                cpu_baseline::joinWinner(winner, groups[g][i], firstOf(g));
-            aggregation.setDisparity(walk.pixels[i], winner);
-        }
+                cpu_baseline::joinWinner(groups[0][i], groups[g][i], firstOf(g));
+        aggregation.problem.setDisparities(&walk.pixels[range.start], &groups[0][range.start], range.size(),
+                                           aggregation.disparity);
     });
 }
 
@@ -208,15 +200,15 @@ int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, cons
                   int count, std::vector<float>& aggregated)
 {
     const int lanes = countLanes(count, 1);
-    takeRun(walk, size, cost, similarity, Range(first, first + count), lanes, false, aggregated, nullptr);
+    takeRun(walk, size, Matching(cost, false), similarity, Range(first, first + count), lanes, false, aggregated,
+            nullptr);
     return lanes;
 }
 
-template <typename Problem>
-void takeWinners(const DisparityForest& forest, const Problem& problem, double gamma, AggregationBuffers& buffers,
-                 Mat& disparity)
+void takeWinners(const DisparityForest& forest, const AggregationProblem& problem, double gamma,
+                 AggregationBuffers& buffers, Mat& disparity)
 {
-    const Aggregation<Problem> aggregation = { forest, problem, EdgeSimilarity(gamma), disparity.ptr<ushort>() };
+    const Aggregation aggregation = { forest, problem, EdgeSimilarity(gamma), disparity.ptr<ushort>() };
 
     // Tasks of about the same work, in the order of the trees; large trees with many candidates are done one by one.
     std::vector<Range> tasks;
@@ -247,9 +239,6 @@ void takeWinners(const DisparityForest& forest, const Problem& problem, double g
                 aggregation.processSmall(forest.trees[t], *scratch);
     });
 }
-
-template CV_EXPORTS void takeWinners(const DisparityForest& forest, const NonLocalRefinement& problem, double gamma,
-                                     AggregationBuffers& buffers, Mat& disparity);
 
 void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
                      AggregationBuffers& buffers, Mat& disparity)

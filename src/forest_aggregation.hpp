@@ -55,24 +55,38 @@ struct AggregationBuffers
     std::vector<std::vector<RunWinner>> groups; // of a large tree's candidates
 };
 
+//! What winners are taken of: the candidates of each tree, their costs, and the disparity that a winner stands for
+class AggregationProblem
+{
+public:
+    virtual ~AggregationProblem() {}
+
+    virtual Range candidates(const TreeWalk& walk, const DisparityTree& tree) const = 0;
+
+    //! The cost of pixel i and candidate first + k at [i * lanes + k], k < lanes; pixels: y * width + x each.
+    virtual void evaluate(const int* pixels, int count, int first, int lanes, float* costs) const = 0;
+
+    //! From the winners of some pixels to disparity[pixels[i]]
+    virtual void setDisparities(const int* pixels, const RunWinner* winners, int count, ushort* disparity) const = 0;
+};
+
 /** Winner-takes-all over an aggregated cost; the lowest candidate wins a tie.
 @param forest The forest.
-@param problem Its candidates() of a tree, their cost (evaluate()), and the disparity() that a winner stands for; see
-NonLocalRefinement.
+@param problem Candidates, cost and disparities.
 @param gamma Of the similarity.
 @param buffers Memory to work in.
 @param disparity CV_16UC1 of the layer's size; pixels of trees without candidates keep what they have. */
-template <typename Problem>
-void takeWinners(const DisparityForest& forest, const Problem& problem, double gamma, AggregationBuffers& buffers,
-                 Mat& disparity);
+void takeWinners(const DisparityForest& forest, const AggregationProblem& problem, double gamma,
+                 AggregationBuffers& buffers, Mat& disparity);
 
 /** Winner-takes-all over C(p, x), x in TreeIntv of the pixel's tree; the lowest disparity wins a tie.
 @param forest The forest.
 @param cost The layer's matching cost.
 @param gamma Of the similarity.
-@param subpixel Whether to add the minimum of the parabola through the winner's cost and its neighbours' in TreeIntv.
+@param subpixel Whether to add the minimum of the parabola through the winner's cost and its neighbours' in TreeIntv; else
+all disparities are whole.
 @param buffers Memory to work in.
-@param disparity Receives CV_16UC1 of the layer's size, times subpixelScale if subpixel; 0 where TreeIntv is empty. */
+@param disparity Receives CV_16UC1 of the layer's size, a disparity map; 0 where TreeIntv is empty. */
 CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
                                 AggregationBuffers& buffers, Mat& disparity);
 

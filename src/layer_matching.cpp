@@ -38,8 +38,7 @@ void estimatePrior(const LayerInput& in, LayerBuffers& buffers, StageClock& cloc
 {
     const int disparities = disparitiesOf(in);
     if (in.parameters.disparityPrior == HDPTreeMatcher::PRIOR_UPPER_LAYER)
-        return clock.run("disparity prediction",
-                         [&] { upperHistogram(in.upper, in.settings.scale, disparities, buffers.prior); });
+        return clock.run("disparity prediction", [&] { upperHistogram(in.upper, disparities, buffers.prior); });
     clock.run("support points", [&] {
         Mat left = in.images.left, right = in.images.right;
         if (left.depth() != CV_8U) // greyLevels()
@@ -66,7 +65,7 @@ void predict(const LayerInput& in, LayerBuffers& buffers, Mat& pixelIntv)
     const int upperDisparities = layerDisparities(in.parameters.numDisparities, in.layer + 1);
     predictIntervals(*settings.model, in.layer, buffers.prior, upperDisparities, settings.delta0 * (1 << in.layer),
                      in.parameters.intervalMargin, buffers.intervals);
-    assignIntervals(in.upper, settings.scale, size, buffers.intervals, pixelIntv);
+    assignIntervals(in.upper, size, buffers.intervals, pixelIntv);
 }
 
 //! Section 3.2
@@ -85,19 +84,19 @@ void growForest(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& match
 void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
 {
     const MatcherParameters& p = in.parameters;
-    const int scale = in.settings.scale;
     if (!in.isTop())
         estimatePrior(in, buffers, clock);
     clock.run("disparity prediction", [&] { predict(in, buffers, matched.pixelIntv); });
     clock.run("disparity forest", [&] { growForest(in, buffers, matched); });
     matched.searchRatio = searchRatio(buffers.forest, disparitiesOf(in));
     clock.run("cost aggregation", [&] {
-        aggregateForest(buffers.forest, matched.cost, p.gamma, scale > 1, buffers.aggregation, matched.winner);
+        aggregateForest(buffers.forest, matched.cost, p.gamma, in.settings.subpixel, buffers.aggregation,
+                        matched.winner);
     });
     if (p.fillOcclusions)
         clock.run("occlusions", [&] {
-            matched.cost.censusCosts(matched.winner, scale, matched.residual);
-            fillOccluded(matched.winner, matched.residual, scale);
+            matched.cost.censusCosts(matched.winner, matched.residual);
+            fillOccluded(matched.winner, matched.residual);
         });
 }
 
@@ -125,7 +124,7 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
                                buffers.scanlines, matched.winner, matched.residual);
         });
         if (p.fillOcclusions)
-            clock.run("occlusions", [&] { fillOccluded(matched.winner, matched.residual, in.settings.scale); });
+            clock.run("occlusions", [&] { fillOccluded(matched.winner, matched.residual); });
     }
 }
 
@@ -138,11 +137,10 @@ void refine(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
         matched.pixelIntv.setTo(Scalar::all(0)); // one tree
         growForest(in, buffers, matched);
     }
-    const int scale = in.settings.scale;
     swap(matched.winner, matched.disparity);
-    findStable(matched.disparity, scale, stableMaxDiff, matched.stable);
-    refineNonLocal(buffers.forest, matched.disparity, scale, matched.stable, in.parameters.gamma * refinementGamma,
-                   buffers.aggregation, matched.winner);
+    findStable(matched.disparity, stableMaxDiff, matched.stable);
+    refineNonLocal(buffers.forest, matched.disparity, matched.stable, in.parameters.gamma * refinementGamma,
+                   in.settings.subpixel, buffers.aggregation, matched.winner);
 }
 
 //! From the winners to the layer's disparities

@@ -32,7 +32,7 @@ struct LayerInput
 //! A layer's result, and memory that is kept for the next pair
 struct MatchedLayer
 {
-    Mat disparity;      // CV_16UC1, times PairSettings::scale
+    Mat disparity;      // CV_16UC1, a disparity map
     MatchingCost cost;  // M(p, x)
     double searchRatio; // R_l of the paper's Table 1
 

@@ -6,7 +6,6 @@
 
 #include "candidate_windows.hpp"
 #include "disparity_output.hpp"
-#include "disparity_prediction.hpp"
 #include "image_pyramid.hpp"
 #include "pair_pyramids.hpp"
 #include "scanline_aggregation.hpp"
@@ -307,7 +306,7 @@ PairSettings resolve(const MatcherParameters& p, const Mat& left)
         CV_Error(Error::StsOutOfRange,
                  format("minDisparity must not be %d for an image of %d x %d: as many columns are added to it",
                         p.minDisparity, size.width, size.height));
-    settings.scale = p.useSubpixel || p.aggregation == M::AGGREGATION_SCANLINES ? subpixelScale : 1;
+    settings.subpixel = p.useSubpixel || p.aggregation == M::AGGREGATION_SCANLINES;
 
     const bool isLarge = size.width >= largeImageWidth;
     settings.model = p.predictionModel;

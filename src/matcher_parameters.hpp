@@ -73,7 +73,7 @@ struct PairSettings
     Ptr<DisparityPredictionModel> model;
     double delta0 = 0, beta = 0;
     int medianSize = 0;
-    int scale = 1; // units of a disparity in one pixel
+    bool subpixel = false; // whether the disparities of a layer have a fraction
 };
 
 //! Throws if parameters do not go with one another or with the images. left: the left image.

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
-#include "disparity_prediction.hpp"
+#include "disparity_units.hpp"
 #include "image_pyramid.hpp"
 #include "matching_cost.hpp"
 #include "matching_cost.simd.hpp"
@@ -193,7 +193,7 @@ void MatchingCost::evaluate(const int* pixels, int count, int first, int lanes, 
     CV_CPU_DISPATCH(evaluateCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-void MatchingCost::censusCosts(const Mat& disparity, int scale, Mat& costs) const
+void MatchingCost::censusCosts(const Mat& disparity, Mat& costs) const
 {
     costs.create(disparity.size(), CV_8U);
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
@@ -210,7 +210,7 @@ void MatchingCost::censusCosts(const Mat& disparity, int scale, Mat& costs) cons
             const unsigned mask = 0xffffff >> (8 * (3 - planes()));
             for (int x = 0; x < disparity.cols; ++x)
             {
-                const int at = wholeDisparity(candidate[x], scale) - x;
+                const int at = wholeDisparity(candidate[x]) - x;
                 unsigned bits = (unsigned)(left[0][4 * x] ^ right[0][at]) |
                                 (unsigned)(left[1][4 * x] ^ right[1][at]) << 8 |
                                 (unsigned)(left[2][4 * x] ^ right[2][at]) << 16;

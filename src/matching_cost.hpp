@@ -63,8 +63,8 @@ public:
     @param cost Receives M(pixels[i], first + k) at [i * lanes + k]. */
     void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const;
 
-    //! The census cost of one candidate of each pixel, CV_8UC1. disparity: CV_16UC1, times scale.
-    void censusCosts(const Mat& disparity, int scale, Mat& costs) const;
+    //! The census cost of one candidate of each pixel, CV_8UC1. disparity: CV_16UC1, a disparity map.
+    void censusCosts(const Mat& disparity, Mat& costs) const;
 
     //! The number of planes of 8 bits that hold the census of a pixel; 0 for the cost of colour and gradient
     int planes() const { return planes_.census ? planes_.count : 0; }

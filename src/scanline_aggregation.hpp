@@ -5,7 +5,7 @@
 #define OPENCV_HDPSTEREO_SCANLINE_AGGREGATION_HPP
 
 #include "candidate_windows.hpp"
-#include "disparity_prediction.hpp"
+#include "disparity_units.hpp"
 #include "matching_cost.hpp"
 
 namespace cv {
@@ -32,10 +32,6 @@ struct ScanlineProblem
     int numDisparities;
     const Mat* windows;
     ScanlinePenalties penalties;
-    enum
-    {
-        scale = subpixelScale // of disparities
-    };
 };
 
 //! Memory of one stripe
@@ -82,10 +78,10 @@ above each of them.
 @param cost The layer's census cost.
 @param size Of the layer.
 @param numDisparities Of the layer.
-@param windows From predictWindows(), with disparities times subpixelScale.
+@param windows From predictWindows().
 @param penalties The penalties.
 @param buffers Memory to work in.
-@param disparity Receives CV_16UC1, times subpixelScale.
+@param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
 CV_EXPORTS void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,
                                    const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity,

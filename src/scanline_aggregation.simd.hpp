@@ -122,13 +122,13 @@ private:
         for (int distance = -priorRange; distance < priorRange; ++distance)
             for (int i = 0; i < Window::candidates; ++i)
                 priorTable_[distance + priorRange][i] =
-                    (uchar)(p_.penalties.large + p_.penalties.prior * std::abs(distance + i * ScanlineProblem::scale) /
-                                                     (2 * ScanlineProblem::scale));
+                    (uchar)(p_.penalties.large +
+                            p_.penalties.prior * std::abs(distance + i * subpixelScale) / (2 * subpixelScale));
     }
 
     const uchar* priorOf(const Window& own, int run) const
     {
-        const int distance = own.first[run] * ScanlineProblem::scale - own.predicted[run];
+        const int distance = own.first[run] * subpixelScale - own.predicted[run];
         return priorTable_[std::min(std::max(distance, -priorRange), priorRange - 1) + priorRange];
     }
 
@@ -420,15 +420,15 @@ private:
                 ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
             const float slope = (float)std::max(std::max(before, after) - sum, 1);
             const float rise = (float)((before - after) & -isInner);
-            const float offset = rise * (ScanlineProblem::scale / 2) / slope;
-            disparity[x] = (ushort)(whole * ScanlineProblem::scale + (int)((offset + wholes) - wholes));
+            const float offset = rise * (subpixelScale / 2) / slope;
+            disparity[x] = (ushort)(whole * subpixelScale + (int)((offset + wholes) - wholes));
         }
         HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - large);
     }
 
     enum
     {
-        priorRange = 3 * Window::candidates / 2 * ScanlineProblem::scale
+        priorRange = 3 * Window::candidates / 2 * subpixelScale
     };
 
     const ScanlineProblem& p_;

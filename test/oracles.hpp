@@ -290,7 +290,7 @@ inline std::vector<double> histogram(const Mat& points, int numDisparities)
 }
 
 //! P(D_l) from the layer above: the pixels there that have half the disparity, and the mean of these numbers.
-inline std::vector<double> upperHistogram(const Mat& upper, int scale, int numDisparities)
+inline std::vector<double> upperHistogram(const Mat& upper, int numDisparities)
 {
     const int upperDisparities = (numDisparities - 1) / 2 + 1;
     std::vector<double> result;
@@ -299,7 +299,7 @@ inline std::vector<double> upperHistogram(const Mat& upper, int scale, int numDi
         int count = 0;
         for (int y = 0; y < upper.rows; ++y)
             for (int x = 0; x < upper.cols; ++x)
-                if (std::floor((double)upper.at<ushort>(y, x) / scale + 0.5) == d / 2)
+                if (std::floor((double)upper.at<ushort>(y, x) / 16 + 0.5) == d / 2)
                     ++count;
         result.push_back(count + (double)upper.rows * upper.cols / upperDisparities);
     }
@@ -695,7 +695,7 @@ private:
 
 //! The disparities of a layer from those above: bilinear over the four pixels above that are nearest, those outside of
 //! the image being the nearest inside. Where one of them is off by more than a pixel, the nearest one stands for it.
-inline Mat upsampled(const Mat& upper, int scale, Size size)
+inline Mat upsampled(const Mat& upper, Size size)
 {
     Mat result(size, CV_16UC1);
     const auto at = [&](int y, int x) {
@@ -712,7 +712,7 @@ inline Mat upsampled(const Mat& upper, int scale, Size size)
                     // The centre of a pixel is a quarter from that of the pixel above, towards the next one.
                     const double other = at(y % 2 ? y / 2 + dy : y / 2 - dy, x % 2 ? x / 2 + dx : x / 2 - dx);
                     const double weight = (dy ? 0.25 : 0.75) * (dx ? 0.25 : 0.75);
-                    sum += weight * (std::abs(other - own) <= scale ? other : own);
+                    sum += weight * (std::abs(other - own) <= 16 ? other : own);
                 }
             result.at<ushort>(y, x) = (ushort)std::floor(2 * sum + 0.5);
         }

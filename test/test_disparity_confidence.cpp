@@ -6,6 +6,7 @@
 #include "synthetic_pair.hpp"
 #include "systems.hpp"
 #include "../src/disparity_confidence.hpp"
+#include "../src/disparity_units.hpp"
 #include "../src/image_pyramid.hpp"
 #include "../src/pair_pyramids.hpp"
 
@@ -30,7 +31,7 @@ void prepareCost(const Mat& left, const Mat& right, int numDisparities, const hd
 }
 
 //! The confidence of one pixel, from its definition.
-double confidenceOf(int x, int y, const Mat& disparity, int scale, int numDisparities, const hdp::MatchingCost& cost)
+double confidenceOf(int x, int y, const Mat& disparity, int numDisparities, const hdp::MatchingCost& cost)
 {
     const auto d = [&](int column, int row) { return (int)disparity.at<ushort>(row, column); };
     const Rect image(0, 0, disparity.cols, disparity.rows);
@@ -38,7 +39,8 @@ double confidenceOf(int x, int y, const Mat& disparity, int scale, int numDispar
     for (int v = 0; v < disparity.rows; ++v)
         for (int u = 0; u < disparity.cols; ++u)
             for (const Point& step : { Point(1, 0), Point(-1, 0), Point(0, 1), Point(0, -1) })
-                if (image.contains(Point(u, v) + step) && std::abs(d(u, v) - d(u + step.x, v + step.y)) > 1.5 * scale)
+                if (image.contains(Point(u, v) + step) &&
+                    std::abs(d(u, v) - d(u + step.x, v + step.y)) > 1.5 * hdp::subpixelScale)
                     distance = std::min(distance, std::sqrt((double)(x - u) * (x - u) + (double)(y - v) * (y - v)));
 
     double own = 0, others = 0;
@@ -47,7 +49,7 @@ double confidenceOf(int x, int y, const Mat& disparity, int scale, int numDispar
         {
             const int column = std::min(std::max(u, 0), disparity.cols - 1);
             const int row = std::min(std::max(v, 0), disparity.rows - 1), pixel = row * disparity.cols + column;
-            const int winner = (d(column, row) + scale / 2) / scale;
+            const int winner = hdp::wholeDisparity(d(column, row));
             const auto costOf = [&](int candidate) {
                 float costs[4];
                 cost.evaluate(&pixel, 1, candidate, 4, costs);
@@ -66,10 +68,10 @@ double confidenceOf(int x, int y, const Mat& disparity, int scale, int numDispar
         }
     const double unique = others > own ? (others - own) / (others + own) : 0;
 
-    const auto right = [&](int column) { return column - cvRound(d(column, y) / (double)scale); };
+    const auto right = [&](int column) { return column - cvRound(d(column, y) / (double)hdp::subpixelScale); };
     bool isVisible = right(x) >= 0;
     for (int u = 0; u < disparity.cols; ++u)
-        if (right(u) == right(x) && d(u, y) - d(x, y) > scale)
+        if (right(u) == right(x) && d(u, y) - d(x, y) > hdp::subpixelScale)
             isVisible = false;
     return 255 * std::sqrt(distance / 64 * unique) / (isVisible ? 1 : 2);
 }
@@ -80,30 +82,29 @@ TEST(HDPStereo_DisparityConfidence, by_its_definition)
     for (const hdp::MatchingCostParams& params : { censusCost, colorCost })
         for (const Size& size : { Size(1, 1), Size(1, 9), Size(9, 1), Size(43, 31), Size(5, 300) })
             for (int numDisparities : { 1, 2, 3, 12 })
-                for (int scale : { 1, 16 })
+            {
+                SCOPED_TRACE(testing::Message()
+                             << "census " << params.census << ", " << size << ", " << numDisparities << " disparities");
+                const Mat right = patchyImage(rng, size, CV_8UC1);
+                Mat left, disparity;
+                cv::add(right, randomImage(rng, size, CV_8UC1, 10), left);
+                hdp::MatchingCost cost;
+                prepareCost(left, right, numDisparities, params, cost);
+                // Blocks of disparities that differ within themselves by less than a pixel
+                patchyImage(rng, size, CV_8UC1, 12)
+                    .convertTo(disparity, CV_16U, (numDisparities - 1) * hdp::subpixelScale / 255.);
+                Mat confidence;
+                hdp::disparityConfidence(disparity, numDisparities, cost, confidence);
+                ASSERT_EQ(CV_8UC1, confidence.type());
+                ASSERT_EQ(size, confidence.size());
+                const int step = size.area() > 1000 ? 7 : 1; // the definition is slow
+                for (int i = 0; i < size.area(); i += step)
                 {
-                    SCOPED_TRACE(testing::Message() << "census " << params.census << ", " << size << ", "
-                                                    << numDisparities << " disparities, scale " << scale);
-                    const Mat right = patchyImage(rng, size, CV_8UC1);
-                    Mat left, disparity;
-                    cv::add(right, randomImage(rng, size, CV_8UC1, 10), left);
-                    hdp::MatchingCost cost;
-                    prepareCost(left, right, numDisparities, params, cost);
-                    // Blocks of disparities that differ within themselves by less than a pixel
-                    patchyImage(rng, size, CV_8UC1, 12)
-                        .convertTo(disparity, CV_16U, (numDisparities - 1) * scale / 255.);
-                    Mat confidence;
-                    hdp::disparityConfidence(disparity, scale, numDisparities, cost, confidence);
-                    ASSERT_EQ(CV_8UC1, confidence.type());
-                    ASSERT_EQ(size, confidence.size());
-                    const int step = size.area() > 1000 ? 7 : 1; // the definition is slow
-                    for (int i = 0; i < size.area(); i += step)
-                    {
-                        const int x = i % size.width, y = i / size.width;
-                        const double expected = confidenceOf(x, y, disparity, scale, numDisparities, cost);
-                        ASSERT_NEAR(expected, confidence.at<uchar>(y, x), 0.51) << "at " << x << ", " << y;
-                    }
+                    const int x = i % size.width, y = i / size.width;
+                    const double expected = confidenceOf(x, y, disparity, numDisparities, cost);
+                    ASSERT_NEAR(expected, confidence.at<uchar>(y, x), 0.51) << "at " << x << ", " << y;
                 }
+            }
 }
 
 //! A pair of a textured plane in front of nothing, with some noise, and its confidence for a map
@@ -134,7 +135,7 @@ struct TexturedPlane
         hdp::MatchingCost cost;
         prepareCost(left, right, numDisparities, params, cost);
         Mat result;
-        hdp::disparityConfidence(map, 16, numDisparities, cost, result);
+        hdp::disparityConfidence(map, numDisparities, cost, result);
         return result;
     }
 };
@@ -221,7 +222,7 @@ TEST(HDPStereo_DisparityConfidence, any_number_of_threads)
         {
             Mat confidence;
             cv::setNumThreads(n);
-            hdp::disparityConfidence(disparity, 16, 9, cost, confidence);
+            hdp::disparityConfidence(disparity, 9, cost, confidence);
             cv::setNumThreads(threads);
             if (expected.empty())
                 expected = confidence;

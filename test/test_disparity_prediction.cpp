@@ -348,16 +348,15 @@ TEST(HDPStereo_PixelIntervals, prior_from_the_layer_above)
 {
     RNG rng(35);
     for (const Size& size : { Size(1, 1), Size(1, 9), Size(30, 20) })
-        for (int scale : { 1, 16 })
-            for (int numDisparities : { 1, 2, 3, 16, 31, 300 })
-            {
-                SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities, times " << scale);
-                const int largest = (numDisparities - 1) / 2;
-                const Mat upper = randomImage(rng, size, CV_16UC1, scale * largest + 1);
-                Numbers histogram(5, 7.); // a buffer of another size
-                hdp::upperHistogram(upper, scale, numDisparities, histogram);
-                EXPECT_EQ(oracle::upperHistogram(upper, scale, numDisparities), histogram);
-            }
+        for (int numDisparities : { 1, 2, 3, 16, 31, 300 })
+        {
+            SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
+            const int largest = (numDisparities - 1) / 2;
+            const Mat upper = randomImage(rng, size, CV_16UC1, hdp::subpixelScale * largest + 1);
+            Numbers histogram(5, 7.); // a buffer of another size
+            hdp::upperHistogram(upper, numDisparities, histogram);
+            EXPECT_EQ(oracle::upperHistogram(upper, numDisparities), histogram);
+        }
 }
 
 TEST(HDPStereo_PixelIntervals, assigned_from_the_pixel_above)
@@ -370,23 +369,23 @@ TEST(HDPStereo_PixelIntervals, assigned_from_the_pixel_above)
         intervals.push_back(interval);
     }
     for (const Size& size : { Size(2, 2), Size(3, 2), Size(2, 5), Size(40, 30), Size(41, 31) })
-        for (int scale : { 1, 16 })
-        {
-            SCOPED_TRACE(testing::Message() << size << ", times " << scale);
-            const Mat upper = randomImage(rng, Size(size.width / 2, size.height / 2), CV_16UC1, 49 * scale + 1);
-            Mat assigned;
-            hdp::assignIntervals(upper, scale, size, intervals, assigned);
-            Mat expected(size, CV_16UC2);
-            for (int y = 0; y < size.height; ++y)
-                for (int x = 0; x < size.width; ++x)
-                {
-                    const ushort above =
-                        upper.at<ushort>(oracle::clamped(y / 2, upper.rows), oracle::clamped(x / 2, upper.cols));
-                    const int nearest = (int)std::floor((double)above / scale + 0.5);
-                    expected.at<Vec2w>(y, x) = Vec2w(intervals[nearest].first, intervals[nearest].last);
-                }
-            expectIdentical(expected, assigned);
-        }
+    {
+        SCOPED_TRACE(testing::Message() << size);
+        const Mat upper =
+            randomImage(rng, Size(size.width / 2, size.height / 2), CV_16UC1, 49 * hdp::subpixelScale + 1);
+        Mat assigned;
+        hdp::assignIntervals(upper, size, intervals, assigned);
+        Mat expected(size, CV_16UC2);
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+            {
+                const ushort above =
+                    upper.at<ushort>(oracle::clamped(y / 2, upper.rows), oracle::clamped(x / 2, upper.cols));
+                const int nearest = (int)std::floor((double)above / hdp::subpixelScale + 0.5);
+                expected.at<Vec2w>(y, x) = Vec2w(intervals[nearest].first, intervals[nearest].last);
+            }
+        expectIdentical(expected, assigned);
+    }
 }
 
 } // namespace

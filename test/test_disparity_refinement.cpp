@@ -41,26 +41,24 @@ TEST(HDPStereo_DisparityRefinement, upsampled_bilinearly_inside_surfaces)
 {
     RNG rng(45);
     for (const Size& size : { Size(2, 2), Size(3, 2), Size(2, 9), Size(3, 3), Size(64, 40), Size(65, 41) })
-        for (int scale : { 1, 16 })
-            for (int levels : { 1, 3, 40, 1024 * scale }) // within a pixel, and anything
-            {
-                SCOPED_TRACE(testing::Message() << size << ", scale " << scale << ", levels " << levels);
-                const Mat upper = randomImage(rng, size / 2, CV_16UC1, levels);
-                Mat disparity(5, 5, CV_16UC1);
-                hdp::upsampleDisparity(upper, scale, size, disparity);
-                expectIdentical(oracle::upsampled(upper, scale, size), disparity);
-            }
+        for (int levels : { 1, 3, 40, 1024 * 16 }) // within a pixel, and anything
+        {
+            SCOPED_TRACE(testing::Message() << size << ", levels " << levels);
+            const Mat upper = randomImage(rng, size / 2, CV_16UC1, levels);
+            Mat disparity(5, 5, CV_16UC1);
+            hdp::upsampleDisparity(upper, size, disparity);
+            expectIdentical(oracle::upsampled(upper, size), disparity);
+        }
 }
 
 //! A slanted plane stays one, at twice the size; a step stays sharp.
 TEST(HDPStereo_DisparityRefinement, upsampled_planes_and_steps)
 {
-    const int scale = 16;
     Mat upper(20, 30, CV_16UC1), disparity;
     for (int y = 0; y < upper.rows; ++y)
         for (int x = 0; x < upper.cols; ++x)
             upper.at<ushort>(y, x) = (ushort)((x < 15 ? 100 : 400) + 8 * x + 4 * y);
-    hdp::upsampleDisparity(upper, scale, Size(60, 40), disparity);
+    hdp::upsampleDisparity(upper, Size(60, 40), disparity);
     for (int y = 1; y < 39; ++y)
         for (int x = 1; x < 59; ++x)
             if (std::abs(x - 29.5) > 1) // beside the step the slope has but one side
@@ -135,7 +133,7 @@ Mat filled(const std::vector<int>& disparities, const std::vector<int>& residual
         disparity.at<ushort>(x) = (ushort)(16 * disparities[x]);
         residual.at<uchar>(x) = (uchar)residuals[x];
     }
-    hdp::fillOccluded(disparity, residual, 16);
+    hdp::fillOccluded(disparity, residual);
     return disparity / 16;
 }
 
@@ -175,7 +173,7 @@ TEST(HDPStereo_DisparityRefinement, visible_pixels_are_not_filled)
     RNG rng(47);
     Mat disparity(40, 60, CV_16UC1, Scalar(16 * 5 + 3)), residual = randomImage(rng, Size(60, 40), CV_8UC1, 30), result;
     disparity.copyTo(result);
-    hdp::fillOccluded(result, residual, 16);
+    hdp::fillOccluded(result, residual);
     expectIdentical(disparity, result); // a plane, and its left border
 }
 

@@ -120,7 +120,7 @@ bool isWinner(const std::vector<double>& sums, int best, int disparity, bool sub
     for (int k = 0; k < (int)sums.size(); ++k)
     {
         const Range offset = subpixel ? oracle::parabolaOffset(sums, k, sumError) : Range(0, 0);
-        const int whole = subpixel ? 16 * k : k;
+        const int whole = hdp::subpixelScale * k;
         if (sums[k] <= sums[best] * (1 + sumError) && disparity >= whole + offset.start &&
             disparity <= whole + offset.end)
             return true;
@@ -132,7 +132,7 @@ bool isWinner(const std::vector<double>& sums, int best, int disparity, bool sub
 void expectWinners(const Layer& layer, double gamma, bool subpixel, hdp::AggregationBuffers& buffers, int step = 1)
 {
     SCOPED_TRACE(testing::Message() << "gamma " << gamma << (subpixel ? ", sub-pixel" : ""));
-    const int scale = subpixel ? 16 : 1;
+    const int scale = hdp::subpixelScale;
     Mat disparity;
     hdp::aggregateForest(layer.forest, layer.cost, gamma, subpixel, buffers, disparity);
     ASSERT_EQ(CV_16UC1, disparity.type());
@@ -154,7 +154,7 @@ void expectWinners(const Layer& layer, double gamma, bool subpixel, hdp::Aggrega
         ASSERT_TRUE(isWinner(sums, best, actual - scale * tree.first, subpixel))
             << "pixel " << p << ", disparity " << actual << ", best " << best + tree.first;
         ++compared;
-        const int exact = subpixel ? 16 * best + oracle::parabolaOffset(sums, best, 0).start : best;
+        const int exact = scale * best + (subpixel ? oracle::parabolaOffset(sums, best, 0).start : 0);
         rounded += actual - scale * tree.first != exact;
     }
     EXPECT_LE(rounded, compared / 5) << "too many winners depend on rounding to say anything";
@@ -231,8 +231,7 @@ TEST(HDPStereo_ForestAggregation, lowest_disparity_wins_a_tie)
             {
                 // Equal costs have no parabola.
                 hdp::aggregateForest(forest, cost, 25.5, subpixel, buffers, disparity);
-                const int expected = subpixel ? hdp::subpixelScale * first : first;
-                EXPECT_EQ((int)size.area(), cv::countNonZero(disparity == expected)) << "from " << first;
+                EXPECT_EQ(size.area(), cv::countNonZero(disparity == hdp::subpixelScale * first)) << "from " << first;
             }
         }
 }

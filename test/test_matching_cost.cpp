@@ -307,20 +307,19 @@ TEST(HDPStereo_MatchingCostCensus, of_one_candidate_a_pixel)
     const int numDisparities = 50;
     const Mat left = randomImage(rng, size, CV_16UC1, 1021), right = randomImage(rng, size, CV_16UC1, 1021);
     for (int blockSize : { 3, 5, 7 })
-        for (int scale : { 1, hdp::subpixelScale })
-        {
-            const hdp::MatchingCostParams params = { true, 0, 0, 0, blockSize };
-            hdp::MatchingCost cost;
-            cost.prepare(left, right, numDisparities, params);
-            const oracle::CensusCost census(left, right, blockSize);
-            Mat disparity = randomImage(rng, size, CV_16UC1, (numDisparities - 1) * scale + 1), costs;
-            cost.censusCosts(disparity, scale, costs);
-            Mat expected(size, CV_8UC1);
-            for (int y = 0; y < size.height; ++y)
-                for (int x = 0; x < size.width; ++x)
-                    expected.at<uchar>(y, x) = (uchar)census(y, x, (disparity.at<ushort>(y, x) + scale / 2) / scale);
-            expectIdentical(expected, costs);
-        }
+    {
+        const hdp::MatchingCostParams params = { true, 0, 0, 0, blockSize };
+        hdp::MatchingCost cost;
+        cost.prepare(left, right, numDisparities, params);
+        const oracle::CensusCost census(left, right, blockSize);
+        Mat disparity = randomImage(rng, size, CV_16UC1, (numDisparities - 1) * hdp::subpixelScale + 1), costs;
+        cost.censusCosts(disparity, costs);
+        Mat expected(size, CV_8UC1);
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+                expected.at<uchar>(y, x) = (uchar)census(y, x, hdp::wholeDisparity(disparity.at<ushort>(y, x)));
+        expectIdentical(expected, costs);
+    }
 }
 
 } // namespace

@@ -11,6 +11,7 @@ namespace opencv_test {
 namespace {
 
 const int numDisparities = 24;
+const int scale = hdp::subpixelScale;
 
 //! A layer's forest, and the same one built by the rules
 struct Layer
@@ -50,11 +51,19 @@ Mat randomMask(RNG& rng, Size size, double share)
     return mask;
 }
 
-Mat refine(const Layer& layer, const Mat& disparity, int scale, const Mat& stable, double gamma)
+//! Disparities below count, with a fraction or whole
+Mat randomDisparity(RNG& rng, Size size, int count, bool subpixel)
+{
+    if (subpixel)
+        return randomImage(rng, size, CV_16UC1, (count - 1) * scale + 1);
+    return randomImage(rng, size, CV_16UC1, count) * scale;
+}
+
+Mat refine(const Layer& layer, const Mat& disparity, const Mat& stable, double gamma, bool subpixel = true)
 {
     hdp::AggregationBuffers buffers;
     Mat refined;
-    hdp::refineNonLocal(layer.forest, disparity, scale, stable, gamma, buffers, refined);
+    hdp::refineNonLocal(layer.forest, disparity, stable, gamma, subpixel, buffers, refined);
     return refined;
 }
 
@@ -75,7 +84,7 @@ struct Votes // of the stable pixels of a tree for one pixel
     }
 
     //! The sum of S |x - d_stable|, x a whole disparity
-    double cost(int x, int scale) const
+    double cost(int x) const
     {
         double sum = 0;
         for (const auto& d : disparities)
@@ -88,20 +97,26 @@ struct Votes // of the stable pixels of a tree for one pixel
 const double sumError = 4e-6;
 
 //! Whether a refined disparity is that of a whole winner, or of one that is as good but for rounding.
-bool isWinner(const Votes& votes, int scale, int own, bool isStable, int refined)
+bool isWinner(const Votes& votes, bool subpixel, int own, bool isStable, int refined)
 {
     std::vector<double> costs; // of -1, 0, ..., numDisparities
     for (int x = -1; x <= numDisparities; ++x)
-        costs.push_back(votes.cost(x, scale));
+        costs.push_back(votes.cost(x));
     const double lowest = *std::min_element(costs.begin(), costs.end());
     for (int x = 0; x < numDisparities; ++x)
     {
         const double middle = costs[x + 1], before = costs[x] - middle, after = costs[x + 2] - middle;
         if (middle > lowest + sumError * (lowest + votes.total))
             continue;
-        if (isStable && (own + scale / 2) / scale == x)
+        if (isStable && hdp::wholeDisparity(own) == x)
         {
             if (refined == own)
+                return true;
+            continue;
+        }
+        if (!subpixel)
+        {
+            if (refined == x * scale)
                 return true;
             continue;
         }
@@ -117,11 +132,12 @@ bool isWinner(const Votes& votes, int scale, int own, bool isStable, int refined
 }
 
 //! Every n-th pixel against the explicit sums
-void expectWinners(const Layer& layer, const Mat& disparity, int scale, const Mat& stable, double gamma, int step = 1)
+void expectWinners(const Layer& layer, const Mat& disparity, bool subpixel, const Mat& stable, double gamma,
+                   int step = 1)
 {
-    SCOPED_TRACE(testing::Message() << disparity.size() << ", trees " << layer.forest.trees.size() << ", scale "
-                                    << scale << ", gamma " << gamma << ", stable " << cv::countNonZero(stable));
-    const Mat refined = refine(layer, disparity, scale, stable, gamma);
+    SCOPED_TRACE(testing::Message() << disparity.size() << ", trees " << layer.forest.trees.size() << ", sub-pixel "
+                                    << subpixel << ", gamma " << gamma << ", stable " << cv::countNonZero(stable));
+    const Mat refined = refine(layer, disparity, stable, gamma, subpixel);
     ASSERT_EQ(CV_16UC1, refined.type());
     ASSERT_EQ(disparity.size(), refined.size());
     for (int p = 0; p < (int)disparity.total(); p += step)
@@ -134,7 +150,7 @@ void expectWinners(const Layer& layer, const Mat& disparity, int scale, const Ma
         }
         else if (votes.total > 1e-36) // else it has lost its digits
         {
-            ASSERT_TRUE(isWinner(votes, scale, own, stable.ptr()[p] != 0, actual))
+            ASSERT_TRUE(isWinner(votes, subpixel, own, stable.ptr()[p] != 0, actual))
                 << "pixel " << p << " of disparity " << own << ", refined " << actual;
         }
     }
@@ -149,12 +165,12 @@ TEST(HDPStereo_NonLocalRefinement, winner_of_explicit_sums)
             for (const Mat& pixelIntv : { Mat(size, CV_16UC2, Scalar(0, numDisparities - 1)), stripedIntervals(size) })
             {
                 const Layer layer(patchyImage(rng, size, CV_8UC3), *strategy, pixelIntv);
-                for (int scale : { 1, 16 })
+                for (bool subpixel : { false, true })
                 {
-                    const Mat disparity = randomImage(rng, size, CV_16UC1, (numDisparities - 1) * scale + 1);
+                    const Mat disparity = randomDisparity(rng, size, numDisparities, subpixel);
                     for (double share : { 0., 0.05, 0.7, 1. })
                         for (double gamma : { 5., 25.5 })
-                            expectWinners(layer, disparity, scale, randomMask(rng, size, share), gamma);
+                            expectWinners(layer, disparity, subpixel, randomMask(rng, size, share), gamma);
                 }
             }
 }
@@ -165,13 +181,13 @@ TEST(HDPStereo_NonLocalRefinement, winner_among_any_number_of_candidates)
     RNG rng(32);
     const Size size(14, 11);
     const Layer layer = oneTree(patchyImage(rng, size, CV_8UC1));
-    for (int scale : { 1, 16 })
+    for (bool subpixel : { false, true })
         for (int first : { 0, 2 })
             for (int count = 1; first + count <= numDisparities; ++count)
             {
-                const Mat disparity = randomImage(rng, size, CV_16UC1, (count - 1) * scale + 1) + first * scale;
+                const Mat disparity = randomDisparity(rng, size, count, subpixel) + first * scale;
                 for (double gamma : { 2., 25.5 })
-                    expectWinners(layer, disparity, scale, randomMask(rng, size, 0.8), gamma);
+                    expectWinners(layer, disparity, subpixel, randomMask(rng, size, 0.8), gamma);
             }
 }
 
@@ -182,11 +198,11 @@ TEST(HDPStereo_NonLocalRefinement, winner_in_a_large_tree)
     const Size size(210, 160);
     const Layer layer = oneTree(patchyImage(rng, size, CV_8UC3));
     ASSERT_EQ(1u, layer.forest.trees.size());
-    for (int scale : { 1, 16 })
+    for (bool subpixel : { false, true })
     {
-        const Mat disparity = randomImage(rng, size, CV_16UC1, (numDisparities - 1) * scale + 1);
-        expectWinners(layer, disparity, scale, randomMask(rng, size, 0.5), 5, 997);
-        expectWinners(layer, disparity, scale, Mat(size, CV_8UC1, Scalar(0)), 5, 997);
+        const Mat disparity = randomDisparity(rng, size, numDisparities, subpixel);
+        expectWinners(layer, disparity, subpixel, randomMask(rng, size, 0.5), 5, 997);
+        expectWinners(layer, disparity, subpixel, Mat(size, CV_8UC1, Scalar(0)), 5, 997);
     }
 }
 
@@ -196,8 +212,8 @@ TEST(HDPStereo_NonLocalRefinement, weighted_median)
     RNG rng(34);
     const Size size(25, 20);
     const Layer layer = oneTree(patchyImage(rng, size, CV_8UC3));
-    const Mat disparity = randomImage(rng, size, CV_16UC1, numDisparities), stable = randomMask(rng, size, 0.6);
-    const Mat refined = refine(layer, disparity, 1, stable, 10);
+    const Mat disparity = randomDisparity(rng, size, numDisparities, false), stable = randomMask(rng, size, 0.6);
+    const Mat refined = refine(layer, disparity, stable, 10, false);
     int ambiguous = 0;
     for (int p = 0; p < size.area(); ++p)
     {
@@ -221,20 +237,19 @@ TEST(HDPStereo_NonLocalRefinement, one_stable_disparity)
     RNG rng(35);
     const Size size(30, 20);
     const Layer layer = oneTree(patchyImage(rng, size, CV_8UC3));
-    for (int scale : { 1, 16 })
-        for (int value : { 0, 3, 5, 8, 13, 16, 160, 167, 168, 169, 367 })
-        {
-            SCOPED_TRACE(testing::Message() << value << " / " << scale);
-            const Mat constant(size, CV_16UC1, Scalar(value));
-            for (double share : { 1., 0.5, 0. })
-                expectIdentical(constant, refine(layer, constant, scale, randomMask(rng, size, share), 25.5));
+    for (int value : { 0, 3, 5, 8, 13, 16, 160, 167, 168, 169, 367 })
+    {
+        SCOPED_TRACE(testing::Message() << value);
+        const Mat constant(size, CV_16UC1, Scalar(value));
+        for (double share : { 1., 0.5, 0. })
+            expectIdentical(constant, refine(layer, constant, randomMask(rng, size, share), 25.5));
 
-            const Mat stable = randomMask(rng, size, 0.1);
-            Mat disparity = randomImage(rng, size, CV_16UC1, 400);
-            disparity.setTo(Scalar(value), stable);
-            ASSERT_GT(countDifferent(constant, disparity), 0);
-            expectIdentical(constant, refine(layer, disparity, scale, stable, 25.5));
-        }
+        const Mat stable = randomMask(rng, size, 0.1);
+        Mat disparity = randomImage(rng, size, CV_16UC1, 400);
+        disparity.setTo(Scalar(value), stable);
+        ASSERT_GT(countDifferent(constant, disparity), 0);
+        expectIdentical(constant, refine(layer, disparity, stable, 25.5));
+    }
 }
 
 TEST(HDPStereo_NonLocalRefinement, outliers_in_a_flat_region)
@@ -245,7 +260,7 @@ TEST(HDPStereo_NonLocalRefinement, outliers_in_a_flat_region)
     Mat disparity = constant.clone();
     for (int i = 0; i < 20; ++i)
         disparity.at<ushort>(i, (7 * i) % size.width) = (ushort)(37 * i);
-    expectIdentical(constant, refine(layer, disparity, 16, stable, 25.5));
+    expectIdentical(constant, refine(layer, disparity, stable, 25.5));
 }
 
 //! Two surfaces of one color and disparity each: unstable pixels take the disparity of their color, which wins over
@@ -267,7 +282,7 @@ TEST(HDPStereo_NonLocalRefinement, unstable_pixels_take_the_disparity_of_similar
     stable.colRange(10, 30).setTo(Scalar(0)); // on both sides of the edge
     Mat disparity = randomImage(rng, size, CV_16UC1, 16 * numDisparities);
     truth.copyTo(disparity, stable);
-    expectIdentical(truth, refine(layer, disparity, 16, stable, 10));
+    expectIdentical(truth, refine(layer, disparity, stable, 10));
 }
 
 //! S underflows: no stable pixel says anything, as if there were none.
@@ -275,19 +290,18 @@ TEST(HDPStereo_NonLocalRefinement, pixels_similar_to_no_stable_one)
 {
     RNG rng(37);
     const Size size(20, 10);
-    for (int scale : { 1, 16 })
-        for (int levels : { 1, numDisparities }) // one or several runs of candidates
-        {
-            Mat image(size, CV_8UC1, Scalar(0)), stable(size, CV_8UC1, Scalar(255));
-            image.colRange(12, 20).setTo(Scalar(255));
-            stable.colRange(12, 20).setTo(Scalar(0));
-            const Layer layer = oneTree(image);
-            ASSERT_EQ(1u, layer.forest.trees.size());
-            Mat disparity = randomImage(rng, size, CV_16UC1, levels * scale);
-            disparity.colRange(12, 20) = 23 * scale;
-            const Mat refined = refine(layer, disparity, scale, stable, 1);
-            expectIdentical(disparity.colRange(12, 20), refined.colRange(12, 20));
-        }
+    for (int levels : { 1, numDisparities }) // one or several runs of candidates
+    {
+        Mat image(size, CV_8UC1, Scalar(0)), stable(size, CV_8UC1, Scalar(255));
+        image.colRange(12, 20).setTo(Scalar(255));
+        stable.colRange(12, 20).setTo(Scalar(0));
+        const Layer layer = oneTree(image);
+        ASSERT_EQ(1u, layer.forest.trees.size());
+        Mat disparity = randomImage(rng, size, CV_16UC1, levels * scale);
+        disparity.colRange(12, 20) = 23 * scale;
+        const Mat refined = refine(layer, disparity, stable, 1);
+        expectIdentical(disparity.colRange(12, 20), refined.colRange(12, 20));
+    }
 }
 
 TEST(HDPStereo_NonLocalRefinement, any_number_of_threads)
@@ -304,8 +318,8 @@ TEST(HDPStereo_NonLocalRefinement, any_number_of_threads)
         {
             cv::setNumThreads(n);
             Mat stable;
-            hdp::findStable(disparity, 16, 1, stable);
-            refined.push_back(refine(layer, disparity, 16, stable, 10));
+            hdp::findStable(disparity, 1, stable);
+            refined.push_back(refine(layer, disparity, stable, 10));
         }
         cv::setNumThreads(threads);
         expectIdentical(refined[0], refined[1]);
@@ -320,12 +334,11 @@ TEST(HDPStereo_NonLocalRefinement, bad_arguments)
     const Mat disparity(size, CV_16UC1, Scalar(7)), stable(size, CV_8UC1, Scalar(255));
     hdp::AggregationBuffers buffers;
     Mat refined, same = disparity;
-    EXPECT_THROW(refine(layer, disparity.colRange(0, 5), 16, stable, 10), cv::Exception);
-    EXPECT_THROW(refine(layer, Mat(size, CV_16SC1, Scalar(7)), 16, stable, 10), cv::Exception);
-    EXPECT_THROW(refine(layer, disparity, 16, stable.rowRange(0, 4), 10), cv::Exception);
-    EXPECT_THROW(refine(layer, disparity, 16, disparity, 10), cv::Exception);
-    EXPECT_THROW(refine(layer, disparity, 3, stable, 10), cv::Exception);
-    EXPECT_THROW(hdp::refineNonLocal(layer.forest, disparity, 16, stable, 10, buffers, same), cv::Exception);
+    EXPECT_THROW(refine(layer, disparity.colRange(0, 5), stable, 10), cv::Exception);
+    EXPECT_THROW(refine(layer, Mat(size, CV_16SC1, Scalar(7)), stable, 10), cv::Exception);
+    EXPECT_THROW(refine(layer, disparity, stable.rowRange(0, 4), 10), cv::Exception);
+    EXPECT_THROW(refine(layer, disparity, disparity, 10), cv::Exception);
+    EXPECT_THROW(hdp::refineNonLocal(layer.forest, disparity, stable, 10, true, buffers, same), cv::Exception);
 }
 
 //! Stable: maps to a column of the right image, to which no disparity maps that is larger by more than maxDiff.
@@ -333,29 +346,27 @@ TEST(HDPStereo_NonLocalRefinement, stable_pixels_by_comparing_all_pairs)
 {
     RNG rng(39);
     const Size size(50, 20);
-    for (int scale : { 1, 16 })
-        for (int maxDiff : { 0, 1, 3, INT_MAX })
-        {
-            const Mat disparity = randomImage(rng, size, CV_16UC1, 20 * scale);
-            Mat expected(size, CV_8UC1), stable;
-            for (int y = 0; y < size.height; ++y)
-                for (int x = 0; x < size.width; ++x)
+    for (int maxDiff : { 0, 1, 3, INT_MAX })
+    {
+        const Mat disparity = randomImage(rng, size, CV_16UC1, 20 * scale);
+        Mat expected(size, CV_8UC1), stable;
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+            {
+                const int own = disparity.at<ushort>(y, x), column = x - cvRound(own / (double)scale);
+                bool isStable = column >= 0;
+                for (int other = 0; other < size.width; ++other)
                 {
-                    const int own = disparity.at<ushort>(y, x), column = x - cvRound(own / (double)scale);
-                    bool isStable = column >= 0;
-                    for (int other = 0; other < size.width; ++other)
-                    {
-                        const int theirs = disparity.at<ushort>(y, other);
-                        if (other - cvRound(theirs / (double)scale) == column &&
-                            (theirs - own) / (double)scale > maxDiff)
-                            isStable = false;
-                    }
-                    expected.at<uchar>(y, x) = isStable ? 255 : 0;
+                    const int theirs = disparity.at<ushort>(y, other);
+                    if (other - cvRound(theirs / (double)scale) == column && (theirs - own) / (double)scale > maxDiff)
+                        isStable = false;
                 }
-            hdp::findStable(disparity, scale, maxDiff, stable);
-            expectIdentical(expected, stable);
-            EXPECT_GT(cv::countNonZero(stable == 0), 0);
-        }
+                expected.at<uchar>(y, x) = isStable ? 255 : 0;
+            }
+        hdp::findStable(disparity, maxDiff, stable);
+        expectIdentical(expected, stable);
+        EXPECT_GT(cv::countNonZero(stable == 0), 0);
+    }
 }
 
 //! So far from all stable pixels that few bits are left of the costs, candidates tie: the result stays between them.
@@ -366,20 +377,19 @@ TEST(HDPStereo_NonLocalRefinement, vanishing_similarities)
     for (int x = 0; x < width; ++x)
         image.at<uchar>(0, x) = (uchar)(x % 2 * step);
     const Layer layer = oneTree(image);
-    for (int scale : { 1, 16 })
-        for (double gamma : { 2., 5., 7.5, 9. }) // the similarity becomes 0 in float within the row
-            for (int highest : { 0, 1, 7, numDisparities - 1 })
-            {
-                SCOPED_TRACE(testing::Message() << "scale " << scale << ", gamma " << gamma << ", to " << highest);
-                Mat disparity(1, width, CV_16UC1, Scalar(highest / 2 * scale)), stable(1, width, CV_8UC1, Scalar(0));
-                disparity.at<ushort>(0, 1) = (ushort)(highest * scale);
-                disparity.at<ushort>(0, 0) = 0;
-                stable.colRange(0, 2).setTo(255);
-                double lowest, largest;
-                cv::minMaxLoc(refine(layer, disparity, scale, stable, gamma), &lowest, &largest);
-                EXPECT_GE(lowest, 0);
-                EXPECT_LE(largest, highest * scale);
-            }
+    for (double gamma : { 2., 5., 7.5, 9. }) // the similarity becomes 0 in float within the row
+        for (int highest : { 0, 1, 7, numDisparities - 1 })
+        {
+            SCOPED_TRACE(testing::Message() << "gamma " << gamma << ", to " << highest);
+            Mat disparity(1, width, CV_16UC1, Scalar(highest / 2 * scale)), stable(1, width, CV_8UC1, Scalar(0));
+            disparity.at<ushort>(0, 1) = (ushort)(highest * scale);
+            disparity.at<ushort>(0, 0) = 0;
+            stable.colRange(0, 2).setTo(255);
+            double lowest, largest;
+            cv::minMaxLoc(refine(layer, disparity, stable, gamma), &lowest, &largest);
+            EXPECT_GE(lowest, 0);
+            EXPECT_LE(largest, highest * scale);
+        }
 }
 
 } // namespace
