@@ -129,7 +129,7 @@ void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered
 void fillOccluded(Mat& disparity, const Mat& residual)
 {
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        OcclusionScratch scratch;
+        OcclusionScratch scratch(disparity.cols);
         for (int y = rows.start; y < rows.end; ++y)
             dispatchFill(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, scratch);
     });

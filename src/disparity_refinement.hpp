@@ -16,6 +16,11 @@ CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& stripes, Ma
 //! Memory for a row of fillOccluded()
 struct OcclusionScratch
 {
+    explicit OcclusionScratch(int width)
+        : columns(width), keys(width), there((size_t)width + 1), visible(width), atBorder(width)
+    {
+    }
+
     std::vector<int> columns;             // of the right image that each pixel maps to, from 1 on; 0: none
     std::vector<unsigned> keys;           // of each pixel, by which the lowest wins its column: residual and disparity
     std::vector<unsigned> there;          // the key that won each column

@@ -13,7 +13,7 @@ namespace stereo {
 namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! fillOccluded() for one row.
+//! fillOccluded() for one row. scratch: of this width.
 void fillOccludedRow(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch);
 
 /** A row of the median of size x size pixels.
@@ -61,14 +61,10 @@ int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int wid
 
 void fillOccludedRow(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch)
 {
-    scratch.there.assign(width + 1, UINT_MAX);
-    scratch.columns.resize(width);
-    scratch.keys.resize(width);
-    scratch.visible.resize(width);
-    scratch.atBorder.resize(width);
     unsigned *there = scratch.there.data(), *keys = scratch.keys.data();
     int* columns = scratch.columns.data();
     uchar *visible = scratch.visible.data(), *atBorder = scratch.atBorder.data();
+    std::fill(there, there + width + 1, UINT_MAX);
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         columns[x] = std::max(x + 1 - wholeDisparity(disparity[x]), 0);

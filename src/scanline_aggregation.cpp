@@ -26,6 +26,25 @@ void dispatchStripe(const ScanlineProblem& problem, int above, const Range& rows
 
 } // namespace
 
+void ScanlineScratch::prepare(int width)
+{
+    const size_t pairs = ((size_t)width + 1) / 2, upperColumns = pairs + 2 * margin;
+    const size_t stepBytes = 2 * maxBlock * CandidateWindow::candidates,
+                 blockBytes = (pairs + maxBlock - 1) * stepBytes;
+    const size_t blockColumns = maxBlock * (2 * pairs + 2 * margin);
+    costs.resize(blockBytes);
+    fromRight.resize(blockBytes);
+    fromAbove.assign((2 * pairs + 2 * margin) * CandidateWindow::candidates, 0);
+    columns.assign(upperColumns, Column()); // of the margins' candidates, too, the addresses are valid
+    for (std::vector<uchar>* stored : { &priors, &intoRight, &intoLeft, &intoBelow })
+        stored->resize(upperColumns * CandidateWindow::candidates);
+    for (std::vector<short>& run : first)
+        run.resize(2 * pairs);
+    winners.resize(blockColumns);
+    winnerCosts.resize(blockColumns);
+    winnerSums.resize(blockColumns);
+}
+
 void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,
                         const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
@@ -40,6 +59,7 @@ void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities,
         {
             const auto border = [&](int64 index) { return (int)(size.height * index / stripes / 2 * 2); };
             const Range rows(border(i), i + 1 < stripes ? border(i + 1) : size.height);
+            buffers.stripes[i].prepare(size.width);
             dispatchStripe(problem, std::max(rows.start - warmUpRows, 0), rows, buffers.stripes[i], disparity,
                            residual);
         }

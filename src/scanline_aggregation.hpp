@@ -34,20 +34,28 @@ struct ScanlineProblem
     ScanlinePenalties penalties;
 };
 
-//! Memory of one stripe
+/** Memory of a sweep over one stripe. A block is the rows that a sweep does at once, at most maxBlock. */
 struct ScanlineScratch
 {
+    enum
+    {
+        maxBlock = 2,
+        margin = 2 * maxBlock // of all that is stored by column, on both sides
+    };
     struct Column // of the layer above
     {
         short first[CandidateWindow::runs];
-        bool isContiguous; // and so are those that a step does with it
+        bool isContiguous; // and so are those of the other rows of the block in the same step
     };
-    std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel
-    std::vector<Column> columns;
-    std::vector<uchar> priors, intoRight, intoLeft,
-        intoBelow;                                   // CandidateWindow::candidates per column of the layer above
-    std::vector<short> first[CandidateWindow::runs]; // by column
-    // Of the winners of some rows: their lanes, sums, each with those of the lanes before and behind, and costs
+
+    //! Provides the memory for a layer of this width, and clears what a sweep starts from.
+    CV_EXPORTS void prepare(int width);
+
+    std::vector<uchar> costs, fromRight, fromAbove;            // CandidateWindow::candidates per pixel of a block
+    std::vector<Column> columns;                               // of the layer above
+    std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // CandidateWindow::candidates per such column
+    std::vector<short> first[CandidateWindow::runs];           // by column
+    // Of the winners of a block: their lanes, sums, each with those of the lanes before and behind, and costs
     std::vector<uchar> winners, winnerCosts;
     std::vector<unsigned> winnerSums;
 };

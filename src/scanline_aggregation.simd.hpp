@@ -19,7 +19,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param problem The layer.
 @param above First row of the direction from above, even.
 @param rows Rows of the result, from an even one on.
-@param scratch Memory to work in.
+@param scratch Memory to work in, prepared.
 @param disparity As in aggregateScanlines().
 @param residual As in aggregateScanlines(). */
 void aggregateStripe(const ScanlineProblem& problem, int above, const Range& rows, ScanlineScratch& scratch,
@@ -49,23 +49,9 @@ public:
           large_(ByteLanes::repeat(problem.penalties.large)), zero_(ByteLanes::repeat(0)), windows_(0), upperRow_(-1),
           entersUpperRow_(false)
     {
-        const size_t columns = 2 * ((size_t)pairs_ + margin), upperColumns = (size_t)pairs_ + 2 * margin;
-        s_.costs.resize((size_t)steps_ * 2 * lanes);
-        s_.fromRight.resize((size_t)steps_ * 2 * lanes);
-        s_.fromAbove.assign(columns * Window::candidates, 0);
-        s_.columns.assign(upperColumns, Column()); // also the margins' addresses are valid
-        s_.priors.resize(upperColumns * Window::candidates);
-        s_.intoRight.resize(upperColumns * Window::candidates);
-        s_.intoLeft.resize(upperColumns * Window::candidates);
-        s_.intoBelow.resize(upperColumns * Window::candidates);
-        for (int run = 0; run < Window::runs; ++run)
-            s_.first[run].resize(2 * (size_t)pairs_);
-        s_.winners.resize(groups * columns);
-        s_.winnerSums.resize(groups * columns);
-        s_.winnerCosts.resize(groups * columns);
         for (int r = 0; r < groups; ++r)
         {
-            const size_t row = r * columns + margin;
+            const size_t row = r * (2 * (size_t)pairs_ + 2 * margin) + margin;
             winners_[r] = &s_.winners[row];
             sums_[r] = &s_.winnerSums[row];
             costs_[r] = &s_.winnerCosts[row];
@@ -99,9 +85,10 @@ private:
     enum
     {
         groups = ByteLanes::groups,
-        lanes = groups * 16,
-        margin = 2 * groups
+        lanes = groups * Window::candidates,
+        margin = ScanlineScratch::margin
     };
+    static_assert(groups <= (int)ScanlineScratch::maxBlock, "the scratch memory is for larger blocks");
     typedef ScanlineScratch::Column Column;
 
     template <class One, class Two, class Three>

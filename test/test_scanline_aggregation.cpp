@@ -155,6 +155,7 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
             const hdp::MatchingCost cost = layer.cost();
             const hdp::ScanlineProblem problem = { &cost, size, numDisparities, &layer.windows, usualPenalties };
             Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
+            scratch.prepare(size.width);
             hdp::opt_emulated::aggregateStripe(problem, 0, Range(0, size.height), scratch, disparity, residual);
             expectIdentical(aggregate(layer, usualPenalties, buffers), Layer::beside(disparity, residual));
         }
