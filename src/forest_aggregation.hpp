@@ -5,8 +5,8 @@
 #define OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
 
 #include <memory>
-#include "disparity_forest.hpp"
 #include "matching_cost.hpp"
+#include "tree_walk.hpp"
 
 namespace cv {
 namespace stereo {

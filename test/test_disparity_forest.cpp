@@ -4,6 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
+#include "../src/tree_walk.hpp"
 
 namespace opencv_test {
 namespace {
@@ -38,12 +39,12 @@ std::vector<int> joinedEdges(const DisparityForest& forest)
         for (int x = 0; x < links.cols; ++x)
         {
             const int p = y * links.cols + x, link = links.at<uchar>(y, x);
-            const bool right = (link & DisparityForest::RIGHT) != 0, below = (link & DisparityForest::BELOW) != 0;
+            const bool right = (link & hdp::TreeLink::RIGHT) != 0, below = (link & hdp::TreeLink::BELOW) != 0;
             // Both ends say the same, and nothing leads out of the image.
-            EXPECT_EQ(right, x + 1 < links.cols && (links.at<uchar>(y, x + 1) & DisparityForest::LEFT) != 0);
-            EXPECT_EQ(below, y + 1 < links.rows && (links.at<uchar>(y + 1, x) & DisparityForest::ABOVE) != 0);
-            EXPECT_FALSE(x == 0 && (link & DisparityForest::LEFT));
-            EXPECT_FALSE(y == 0 && (link & DisparityForest::ABOVE));
+            EXPECT_EQ(right, x + 1 < links.cols && (links.at<uchar>(y, x + 1) & hdp::TreeLink::LEFT) != 0);
+            EXPECT_EQ(below, y + 1 < links.rows && (links.at<uchar>(y + 1, x) & hdp::TreeLink::ABOVE) != 0);
+            EXPECT_FALSE(x == 0 && (link & hdp::TreeLink::LEFT));
+            EXPECT_FALSE(y == 0 && (link & hdp::TreeLink::ABOVE));
             if (right)
                 joined.push_back(2 * p);
             if (below)
@@ -309,13 +310,13 @@ void testWalk(const DisparityForest& forest)
             ASSERT_LT(walk.parents[i], i) << "parents come first";
             const int parent = walk.pixels[walk.parents[i]], link = forest.links.ptr()[p];
             const uchar* weights = forest.weights.ptr();
-            const bool linked = (parent == p + 1 && (link & DisparityForest::RIGHT)) ||
-                                (parent == p - 1 && (link & DisparityForest::LEFT)) ||
-                                (parent == p + width && (link & DisparityForest::BELOW)) ||
-                                (parent == p - width && (link & DisparityForest::ABOVE));
+            const bool linked = (parent == p + 1 && (link & hdp::TreeLink::RIGHT)) ||
+                                (parent == p - 1 && (link & hdp::TreeLink::LEFT)) ||
+                                (parent == p + width && (link & hdp::TreeLink::BELOW)) ||
+                                (parent == p - width && (link & hdp::TreeLink::ABOVE));
             ASSERT_TRUE(linked) << parent << " is not a neighbour in the tree of " << p;
             const int lower = std::min(p, parent);
-            const bool vertical = (link & (parent < p ? DisparityForest::ABOVE : DisparityForest::BELOW)) != 0 &&
+            const bool vertical = (link & (parent < p ? hdp::TreeLink::ABOVE : hdp::TreeLink::BELOW)) != 0 &&
                                   std::abs(parent - p) == width;
             ASSERT_EQ(weights[2 * lower + (vertical ? 1 : 0)], walk.weights[i]);
         }
