@@ -179,9 +179,9 @@ struct ByteLanes
         uchar lanes[32], orders[16], permuted[16];
         store(lanes);
         repeat(0).store(lanes + 16);
-        order.store(orders);
+        (order & repeat(31)).store(orders);
         for (int i = 0; i < 16; ++i)
-            permuted[i] = lanes[orders[i] & 31];
+            permuted[i] = lanes[orders[i]];
         return load(permuted);
 #endif
     }

@@ -31,15 +31,24 @@ namespace {
 
 typedef CandidateWindow Window;
 
-/** A sweep over a stripe. Rows are done in blocks of ByteLanes::groups, skewed: when group r is at column x of the
-block's row r, group r + 1 is at column x - 2 of the next row, so that it finds what the group before left there two steps
-ago, and all groups enter a pixel of the layer above, which is two columns wide, at the same step.
+/** A sweep over a stripe. With the notation of aggregateScanlines(), and m the minimum of L(q, k) over k, a direction
+carries what a candidate saves against the large penalty, instead of its cost:
 
-Instead of the costs L(q, d) of the pixel before, a direction carries H(q, d) = max(m + large - L(q, d), 0): 0 stands for
-a candidate that q does not have as well as for one not worth to come from.
+H(q, d) = max(m + large - L(q, d), 0), which is also right, 0, for candidates that q does not have.
+As min(x, m + large) = m + large - max(m + large - x, 0) for any x,
+min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large) - m = large - gain(d) with
+gain(d) = max(H(q, d), H(q, d - 1) - small, H(q, d + 1) - small, 0), so that
+L(p, d) = (C(p, d) + large) - gain(d), and with its minimum m' over the candidates of p
+H(p, d) = max(large - (L(p, d) - m'), 0).
 
-A step is a pair of columns, those of pixel T - r of the layer above for group r. Groups that are beside the image compute
-what nobody reads: all that is stored by column has a margin. */
+All of these are bytes, and the differences saturate at 0 by themselves. What aggregateScanlines() says, step by step, is
+oracle::Scanlines of test/oracles.hpp; the two are compared.
+
+Rows are done in blocks of ByteLanes::groups, skewed: when group r is at column x of the block's row r, group r + 1 is at
+column x - 2 of the next row. So it finds what the group before left there two steps ago, and all groups enter a pixel of
+the layer above, which is two columns wide, at the same step. A step is a pair of columns, for group r those of pixel
+t - r of the layer above. Groups that are beside the image compute what nobody reads: all that is stored by column has a
+margin. */
 class Sweep
 {
 public:
@@ -64,18 +73,32 @@ public:
     void warmUp(int y)
     {
         enterRows(y);
-        dispatchPlanes([&](std::integral_constant<int, 1>) { warmUpBlock<1>(); },
-                       [&](std::integral_constant<int, 2>) { warmUpBlock<2>(); },
-                       [&](std::integral_constant<int, 3>) { warmUpBlock<3>(); });
+        switch (p_.cost->planes())
+        {
+        case 1:
+            return warmUpBlock<1>();
+        case 2:
+            return warmUpBlock<2>();
+        default:
+            return warmUpBlock<3>();
+        }
     }
 
     //! All directions and the winners of a block of rows, y to end - 1 at most.
     void run(int y, int end, Mat& disparity, Mat& residual)
     {
         enterRows(y);
-        dispatchPlanes([&](std::integral_constant<int, 1>) { fromRight<1>(); },
-                       [&](std::integral_constant<int, 2>) { fromRight<2>(); },
-                       [&](std::integral_constant<int, 3>) { fromRight<3>(); });
+        switch (p_.cost->planes())
+        {
+        case 1:
+            fromRight<1>();
+            break;
+        case 2:
+            fromRight<2>();
+            break;
+        default:
+            fromRight<3>();
+        }
         fromLeftAndAbove();
         for (int r = 0; r < groups && y + r < end; ++r)
             finishRow(r, disparity.ptr<ushort>(y + r), residual.ptr(y + r));
@@ -90,17 +113,6 @@ private:
     };
     static_assert(groups <= (int)ScanlineScratch::maxBlock, "the scratch memory is for larger blocks");
     typedef ScanlineScratch::Column Column;
-
-    template <class One, class Two, class Three>
-    void dispatchPlanes(const One& one, const Two& two, const Three& three) const
-    {
-        if (p_.cost->planes() == 1)
-            one(std::integral_constant<int, 1>());
-        else if (p_.cost->planes() == 2)
-            two(std::integral_constant<int, 2>());
-        else
-            three(std::integral_constant<int, 3>());
-    }
 
     //! The prior of a run, or of two runs that follow one another, by the distance of its first candidate from the
     //! predicted disparity; with the large penalty, which is a part of all costs in a sweep.
@@ -388,6 +400,15 @@ private:
         }
     }
 
+    //! How far to the right an unsigned is to be shifted for the byte in place i of its memory
+    static int shiftOfByte(int i)
+    {
+        const unsigned one = 1;
+        uchar first;
+        std::memcpy(&first, &one, 1);
+        return 8 * (first == 1 ? i : 3 - i); // a constant for the compiler
+    }
+
     //! A row's disparities, each at the tip of two lines of opposite slope through the sums of the winner and of those
     //! beside it, and residuals
     void finishRow(int group, ushort* disparity, uchar* residual) const
@@ -397,11 +418,13 @@ private:
         const short *firstOfLow = &s_.first[0][0], *firstOfHigh = &s_.first[1][0];
         const uchar *winners = winners_[group], *costs = costs_[group];
         const unsigned* sums = sums_[group];
+        const int toBefore = shiftOfByte(0), toSum = shiftOfByte(1), toAfter = shiftOfByte(2);
         HDP_VECTORIZED for (int x = 0; x < width_; ++x)
         {
             const int lane = winners[x], low = firstOfLow[x], high = firstOfHigh[x] - Window::runLength;
             const int whole = lane + (lane < Window::runLength ? low : high);
-            const int before = sums[x] & 255, sum = sums[x] >> 8 & 255, after = sums[x] >> 16 & 255;
+            const int before = sums[x] >> toBefore & 255, sum = sums[x] >> toSum & 255,
+                      after = sums[x] >> toAfter & 255;
             // Whether there are candidates on both sides
             const int isInner =
                 ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
