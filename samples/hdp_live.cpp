@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "opencv2/core/utility.hpp"
+#include "opencv2/core/utils/logger.hpp"
 #include "opencv2/hdpstereo.hpp"
 #include "opencv2/imgproc.hpp"
 #include "opencv2/opencv_modules.hpp"
@@ -251,6 +252,7 @@ static void run(const CommandLineParser& parser)
 
 int main(int argc, char** argv)
 {
+    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below
     CommandLineParser parser(argc, argv, keys);
     parser.about("Disparities of a live source: two cameras or videos, or one side by side.");
     if (parser.has("help"))

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "opencv2/core/utility.hpp"
+#include "opencv2/core/utils/logger.hpp"
 #include "opencv2/hdpstereo.hpp"
 #include "opencv2/imgcodecs.hpp"
 
@@ -106,6 +107,7 @@ static void run(const CommandLineParser& parser)
 
 int main(int argc, char** argv)
 {
+    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below
     CommandLineParser parser(argc, argv, keys);
     parser.about("A TreeStrategy of one's own, beside the minimum spanning tree.");
     if (parser.has("help"))

@@ -2,7 +2,7 @@
 # The long checks, one after the other, that continuous integration leaves out; a few hours in all on two processors.
 #   scripts/check_all.sh [--fuzz-seconds=N] [STEP...]   all of them, or these:
 #     warnings   everything built by Clang and by GCC with warnings as errors
-#     widths     the tests with each instruction set that the library is built for
+#     widths     the unit tests with each instruction set that the library is built for
 #     threads    the tests of threads under ThreadSanitizer
 #     memory     10,000 calls of compute() under LeakSanitizer, and what is allocated meanwhile
 #     fuzz       scripts/fuzz.sh, for 1800 s or N
@@ -35,7 +35,7 @@ build_tests()
     export OPENCV_TEST_DATA_PATH=$checkout/testdata OPENCV_SAMPLES_DATA_PATH=$OPENCV_SOURCE_DIR/samples/data
 }
 
-# Slow enough to build with a sanitizer, and fast enough to run
+# Fast enough to build with a sanitizer, and to run
 sanitized=(-DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1")
 
 check_warnings()
@@ -53,17 +53,18 @@ check_widths()
     local without
     for without in "${disabled_sets[@]}"; do
         say "OPENCV_CPU_DISABLE=$without"
-        OPENCV_CPU_DISABLE=$without "$checkout/scripts/test.sh" '--gtest_filter=-HDPStereo_Slow*'
+        OPENCV_CPU_DISABLE=$without "$checkout/scripts/test.sh" -L unit
     done
 }
 
 check_threads()
 {
     install_packages build-essential cmake libopencv-dev
-    build_tests "$build/threads" opencv_test_hdpstereo -DHDPSTEREO_SANITIZE=thread "${sanitized[@]}"
-    # Every stage, by each preset and by matchers in several threads
-    TSAN_OPTIONS=halt_on_error=1${TSAN_OPTIONS:+:$TSAN_OPTIONS} "$build/threads/bin/opencv_test_hdpstereo" \
-        '--gtest_filter=HDPStereo_Threads*:HDPStereo_Endurance*:HDPStereo_MatcherContract.*thread*:HDPStereo_MatcherContract.matchers*'
+    find_opencv_source
+    cd "$checkout"
+    cmake --preset tsan -DOPENCV_SOURCE_DIR="$OPENCV_SOURCE_DIR"
+    cmake --build --preset tsan --parallel "$jobs"
+    ctest --preset tsan
 }
 
 check_memory()
@@ -137,7 +138,7 @@ for step in "${steps[@]}"; do
         tail -n 15 "$log"
     fi
     # What tells most of it
-    detail=$(grep -aE '^\[  (PASSED|FAILED)  \]|^[0-9]+ passed,|^[0-9]+ calls:|^Done [0-9]+ runs|^SUMMARY|WARNING: Thread' "$log" |
+    detail=$(grep -aE '^\[  (PASSED|FAILED)  \]|^[0-9]+% tests passed|^[0-9]+ calls:|^Done [0-9]+ runs|^SUMMARY|WARNING: Thread' "$log" |
         sed 's/^\[  //; s/  \]//' | paste -sd ';' | cut -c1-160) || true
     summary+=$(printf '%-10s %s %6d s  %s' "$step" "$result" $((SECONDS - begin)) "$detail")$'\n'
 done

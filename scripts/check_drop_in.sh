@@ -2,14 +2,14 @@
 # Changes two lines of OpenCV's own samples stereo_match.cpp and stereo_match.py, so that they match by HDPTreeMatcher, and
 # runs them on the Aloe pair: the disparities and the point clouds must be right. The C++ one is built against the module
 # as it is installed, by find_package(hdpstereo).
+#   scripts/check_drop_in.sh BUILD OPENCV_SOURCE_DIR PYTHON   with a cv2 that has the module in PYTHONPATH
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-find_opencv_source || fail "no samples without OpenCV's source"
-OPENCV_SOURCE_DIR=$(realpath "$OPENCV_SOURCE_DIR")
-export OPENCV_SOURCE_DIR
-samples=$OPENCV_SOURCE_DIR/samples
-directory=$build/drop_in
+module_build=$1
+samples=$2/samples
+python=$3
+directory=$module_build/drop_in
 mkdir -p "$directory"
 cd "$directory"
 
@@ -34,8 +34,7 @@ find_package(hdpstereo REQUIRED)
 add_executable(stereo_match stereo_match.cpp)
 target_link_libraries(stereo_match opencv_hdpstereo opencv_imgcodecs opencv_highgui)
 CMAKE
-{ cmake -S "$checkout" -B "$build/release" && cmake --build "$build/release" --parallel "$jobs" --target opencv_hdpstereo &&
-    cmake --install "$build/release" --prefix "$directory/installed" &&
+{ cmake --install "$module_build" --prefix "$directory/installed" &&
     cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$directory/installed" &&
     cmake --build build; } >log 2>&1 || { tail -n 20 log >&2; fail "could not build it (all of the messages: $directory/log)"; }
 
@@ -102,4 +101,4 @@ check('out.ply', disparity, truth[::2, ::2] / 2, 0.7, 0.1)
 colors = cv2.cvtColor(cv2.pyrDown(cv2.imread(cv2.samples.findFile('aloeL.jpg'))), cv2.COLOR_BGR2RGB)
 assert (colors[rows, columns] == vertices[:, 3:]).all()
 PYTHON
-OPENCV_LOG_LEVEL=ERROR "$checkout/scripts/build_python.sh" check.py
+"$python" check.py

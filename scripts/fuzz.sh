@@ -14,9 +14,9 @@ seconds=${1:-60}
 [ $# -eq 0 ] || shift
 directory=$build/fuzz
 say "Building in $directory"
-cmake -S "$checkout" -B "$directory" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1" -DHDPSTEREO_BUILD_FUZZERS=ON
-cmake --build "$directory" --parallel "$jobs" --target hdpstereo_fuzz_compute
+cd "$checkout"
+cmake --preset fuzz
+cmake --build --preset fuzz --parallel "$jobs"
 
 export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1:detect_leaks=1${ASAN_OPTIONS:+:$ASAN_OPTIONS}
 export UBSAN_OPTIONS=print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}

@@ -1,0 +1,71 @@
+# Dispatch as OpenCV's build does it, by the installed opencv2/core/cv_cpu_*.h and what that build would generate. The
+# CPU decides which instruction set runs (OPENCV_CPU_DISABLE="AVX512-ICL,AVX512-SKX" in the environment leaves some out).
+# Only the files of dispatched stages are compiled with __OPENCV_BUILD, which turns those headers on.
+#
+# To add a stage: its name in dispatched_stages, and
+# - src/NAME.simd.hpp, without include guard: in namespace cv::stereo::hdp, between CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN and
+#   CV_CPU_OPTIMIZATION_NAMESPACE_END, declarations of the functions to be dispatched, then their definitions under
+#   #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY; what it includes must not define functions that are not inlined;
+# - src/NAME.cpp: includes NAME.simd.hpp (that is the baseline) and NAME.simd_declarations.hpp (generated, the others),
+#   and calls a function by CV_CPU_DISPATCH(function, (arguments), CV_CPU_DISPATCH_MODES_ALL), which returns its result.
+
+set(AVX2_flags -mavx2 -mfma -mf16c -mpopcnt)
+set(AVX2_features SSE3 SSSE3 SSE4_1 POPCNT SSE4_2 AVX FP16 FMA3 AVX2)
+set(AVX512_SKX_flags ${AVX2_flags} -mavx512f -mavx512cd -mavx512bw -mavx512dq -mavx512vl)
+set(AVX512_SKX_features ${AVX2_features} AVX_512F AVX512_COMMON AVX512_SKX)
+set(AVX512_ICL_flags ${AVX512_SKX_flags} -mavx512ifma -mavx512vbmi -mavx512vbmi2 -mavx512bitalg -mavx512vnni
+    -mavx512vpopcntdq)
+set(AVX512_ICL_features ${AVX512_SKX_features} AVX512_ICL)
+set(dispatched_options)
+if(HDPSTEREO_BUILD_FUZZERS)
+  # The coverage of loops over pixels tells a fuzzer nothing, and would take nearly all of its time.
+  set(dispatched_options -O2 -fno-sanitize=fuzzer-no-link)
+endif()
+set(cpu_config "")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|amd64|AMD64)$" AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NOT MSVC)
+  foreach(feature SSE SSE2)
+    string(APPEND cpu_config "#define CV_CPU_COMPILE_${feature} 1\n#define CV_CPU_BASELINE_COMPILE_${feature} 1\n")
+  endforeach()
+  foreach(mode IN LISTS dispatched_modes)
+    string(APPEND cpu_config "#define CV_CPU_DISPATCH_COMPILE_${mode} 1\n")
+  endforeach()
+else()
+  set(dispatched_modes) # the baseline alone
+endif()
+
+# The stages of a target for each of dispatched_modes
+function(add_dispatched_stages target)
+  set(dispatch_generated "${CMAKE_BINARY_DIR}/dispatch")
+  file(GENERATE OUTPUT "${dispatch_generated}/cvconfig.h" CONTENT "#define CV_ENABLE_INTRINSICS\n")
+  file(GENERATE OUTPUT "${dispatch_generated}/cv_cpu_config.h" CONTENT "${cpu_config}")
+  foreach(stage IN LISTS dispatched_stages)
+    set_property(SOURCE src/${stage}.cpp APPEND PROPERTY COMPILE_DEFINITIONS __OPENCV_BUILD=1)
+    set(declarations "")
+    set(all_modes BASELINE)
+    foreach(mode IN LISTS dispatched_modes)
+      set(source "${dispatch_generated}/${stage}.${mode}.cpp")
+      file(GENERATE OUTPUT "${source}" CONTENT "#include \"precomp.hpp\"\n#include \"${stage}.simd.hpp\"\n")
+      set(definitions __OPENCV_BUILD=1 CV_CPU_DISPATCH_MODE=${mode})
+      foreach(feature IN LISTS ${mode}_features)
+        list(APPEND definitions CV_CPU_COMPILE_${feature}=1)
+      endforeach()
+      set_source_files_properties("${source}" PROPERTIES GENERATED TRUE
+        COMPILE_OPTIONS "${${mode}_flags};${dispatched_options}" COMPILE_DEFINITIONS "${definitions}")
+      target_sources(${target} PRIVATE "${source}")
+      string(APPEND declarations
+"#undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+#undef CV_CPU_OPTIMIZATION_NAMESPACE_END
+#define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_${mode} {
+#define CV_CPU_OPTIMIZATION_NAMESPACE_END }
+#include \"${stage}.simd.hpp\"
+")
+      set(all_modes "${mode}, ${all_modes}")
+    endforeach()
+    file(GENERATE OUTPUT "${dispatch_generated}/${stage}.simd_declarations.hpp" CONTENT
+"#undef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#define CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+${declarations}#define CV_CPU_DISPATCH_MODES_ALL ${all_modes}
+")
+  endforeach()
+  target_include_directories(${target} PRIVATE "${dispatch_generated}")
+endfunction()

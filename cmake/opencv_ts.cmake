@@ -1,0 +1,23 @@
+# OpenCV's test framework, the target opencv_ts, from OPENCV_SOURCE_DIR: it is in no Debian package.
+
+if(NOT EXISTS "${OPENCV_SOURCE_DIR}/modules/ts/include/opencv2/ts.hpp")
+  message(FATAL_ERROR "OPENCV_SOURCE_DIR=${OPENCV_SOURCE_DIR} is not OpenCV's source: it has no modules/ts")
+endif()
+find_package(Threads REQUIRED)
+
+# It reads three headers that OpenCV's build generates; empty ones will do, and leave out what is optional in it
+# (file(GENERATE) touches a file only if it changes).
+set(ts_generated "${CMAKE_BINARY_DIR}/opencv_ts")
+foreach(header cvconfig.h cv_cpu_config.h opencv_tests_config.hpp)
+  file(GENERATE OUTPUT "${ts_generated}/${header}" CONTENT "")
+endforeach()
+file(GLOB ts_sources "${OPENCV_SOURCE_DIR}/modules/ts/src/*.cpp")
+add_library(opencv_ts STATIC ${ts_sources})
+target_compile_definitions(opencv_ts PRIVATE __OPENCV_BUILD=1)
+target_include_directories(opencv_ts SYSTEM PUBLIC
+  "${ts_generated}" "${OPENCV_SOURCE_DIR}/modules/ts/include" "${OPENCV_SOURCE_DIR}/modules/core/include")
+if(HDPSTEREO_SANITIZE)
+  target_compile_options(opencv_ts PRIVATE -fno-sanitize=all) # it is not what is tested, and takes long
+endif()
+target_link_libraries(opencv_ts PUBLIC
+  opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio opencv_highgui Threads::Threads)

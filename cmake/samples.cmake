@@ -1,0 +1,18 @@
+# The programs of samples/; hdp_live if OpenCV has videos.
+
+file(GLOB samples CONFIGURE_DEPENDS samples/*.cpp)
+set(samples_libraries opencv_hdpstereo opencv_imgcodecs)
+if(TARGET opencv_videoio)
+  list(APPEND samples_libraries opencv_videoio)
+else()
+  list(FILTER samples EXCLUDE REGEX "/hdp_live[.]cpp$")
+endif()
+if(TARGET opencv_highgui)
+  list(APPEND samples_libraries opencv_highgui)
+endif()
+foreach(sample IN LISTS samples)
+  get_filename_component(name "${sample}" NAME_WE)
+  add_executable(example_hdpstereo_${name} "${sample}")
+  target_link_libraries(example_hdpstereo_${name} PRIVATE ${samples_libraries})
+  target_compile_options(example_hdpstereo_${name} PRIVATE ${warnings})
+endforeach()

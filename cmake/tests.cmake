@@ -1,0 +1,147 @@
+# The suite, for CTest; CMakePresets.json has the builds to run it in. Labels:
+#   unit, tools       one test for each test suite of opencv_test_hdpstereo and opencv_test_hdpstereo_tools
+#   slow, threads     unit tests that take minutes under a sanitizer; those for ThreadSanitizer
+#   instruction-sets  unit tests, and the maps to the bit, without the wider instruction sets
+#   samples, python   programs of samples/ and of OpenCV's own samples; the Python module
+#   performance       one round of the performance tests: that they run, not how fast
+#   documentation     the reference and the tutorials, without a warning
+# What cannot run for want of something is shown as skipped.
+
+foreach(kind test perf)
+  if(kind STREQUAL "perf" AND HDPSTEREO_SANITIZE)
+    continue()
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${kind}/*.cpp ${kind}/*.hpp)
+  add_executable(opencv_${kind}_hdpstereo ${sources})
+  target_include_directories(opencv_${kind}_hdpstereo PRIVATE ${kind})
+  target_link_libraries(opencv_${kind}_hdpstereo PRIVATE opencv_hdpstereo opencv_ts)
+  target_compile_options(opencv_${kind}_hdpstereo PRIVATE ${warnings})
+endforeach()
+# Optional: a filter of ximgproc on our disparities. Inside OpenCV's build that test skips itself: there, a module's tests
+# see what the module itself depends on.
+if(TARGET opencv_ximgproc)
+  target_link_libraries(opencv_test_hdpstereo PRIVATE opencv_ximgproc)
+  target_compile_definitions(opencv_test_hdpstereo PRIVATE HDPSTEREO_TEST_XIMGPROC)
+endif()
+
+# Where programs find reference data and the Aloe pair; and no messages about bad input, which is tested a lot
+set(samples_data "${OPENCV_SOURCE_DIR}/samples/data")
+set(test_environment
+  "OPENCV_TEST_DATA_PATH=${PROJECT_SOURCE_DIR}/testdata"
+  "OPENCV_SAMPLES_DATA_PATH=${samples_data}"
+  "OPENCV_LOG_LEVEL=FATAL")
+if(HDPSTEREO_SANITIZE)
+  list(APPEND test_environment
+    # opencv_ts catches SIGSEGV, which would hide where it came from.
+    "ASAN_OPTIONS=handle_segv=2:detect_stack_use_after_return=1:strict_string_checks=1"
+    "UBSAN_OPTIONS=print_stacktrace=1"
+    "TSAN_OPTIONS=halt_on_error=1")
+endif()
+
+# add_check(NAME LABELS COMMAND...): a test in this environment
+function(add_check name labels)
+  add_test(NAME ${name} COMMAND ${ARGN})
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}" ENVIRONMENT "${test_environment}" TIMEOUT 3000
+    SKIP_RETURN_CODE 77)
+endfunction()
+
+# As add_check(), if there is nothing missing; otherwise it is skipped, and says so.
+function(add_optional_check name labels missing)
+  if(missing)
+    add_test(NAME ${name} COMMAND "${CMAKE_COMMAND}" -E echo "skipped: there is no ${missing}")
+    set_tests_properties(${name} PROPERTIES LABELS "${labels}" SKIP_REGULAR_EXPRESSION "^skipped: ")
+  else()
+    add_check(${name} "${labels}" ${ARGN})
+  endif()
+endfunction()
+
+# A run of a program of tests. It is skipped if it passes and one of its tests has skipped itself.
+function(add_unit_tests name labels program filter)
+  add_check(${name} "${labels}" ${program} "--gtest_filter=${filter}")
+  set_tests_properties(${name} PROPERTIES
+    FAIL_REGULAR_EXPRESSION "Running 0 tests"
+    SKIP_REGULAR_EXPRESSION "\\[     SKIP \\].*\\[  PASSED  \\] [0-9]+ tests?\\.[\r\n ]*$")
+endfunction()
+
+# One test for each test suite in the sources of a program
+function(add_suites program label)
+  set(suites "")
+  foreach(source IN LISTS ARGN)
+    file(STRINGS "${source}" tests REGEX "^TEST(_P)?[(]")
+    list(TRANSFORM tests REPLACE "^TEST(_P)?[(]([A-Za-z0-9_]+).*" "\\2")
+    list(APPEND suites ${tests})
+  endforeach()
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
+  list(REMOVE_DUPLICATES suites)
+  foreach(suite IN LISTS suites)
+    set(labels ${label})
+    if(suite MATCHES "_Slow")
+      set(labels slow)
+    elseif(suite MATCHES "_(Threads|Endurance|MatcherContract)$")
+      list(APPEND labels threads)
+    endif()
+    add_unit_tests(${suite} "${labels}" ${program} "${suite}.*:*/${suite}.*")
+  endforeach()
+endfunction()
+
+file(GLOB test_sources CONFIGURE_DEPENDS test/test_*.cpp)
+add_suites(opencv_test_hdpstereo unit ${test_sources})
+file(GLOB tools_test_sources CONFIGURE_DEPENDS tools/test/test_*.cpp)
+add_suites(opencv_test_hdpstereo_tools tools ${tools_test_sources})
+
+# Samples. These figures are checked elsewhere; this is the only place where the programs see a pair of full size.
+set(aloe "${samples_data}/aloeL.jpg" "${samples_data}/aloeR.jpg" "--truth=${samples_data}/aloeGT.png" --num-disparities=256)
+add_check(sample_stereo_match samples example_hdpstereo_hdp_stereo_match ${aloe} --output=aloe.png --picture=aloe_picture.png
+  --point-cloud=aloe.ply --focal=1000 --baseline=1)
+add_check(sample_own_tree samples example_hdpstereo_hdp_own_tree ${aloe})
+set(missing "")
+if(NOT TARGET example_hdpstereo_hdp_live)
+  set(missing "opencv_videoio")
+endif()
+add_optional_check(sample_live samples "${missing}" example_hdpstereo_hdp_live
+  "${samples_data}/left%02d.jpg" "${samples_data}/right%02d.jpg" --frames=3 --no-gui --output=live.avi)
+add_check(benchmark_small tools hdp_benchmark ${aloe} --resize=160x136 --num-disparities=32 --runs=2 --stages)
+
+if(HDPSTEREO_SANITIZE)
+  return() # the rest is not built with sanitizers, or would test the same
+endif()
+
+# Once more with the slower instruction sets: all that has an oracle, and the reference outputs
+foreach(without AVX512-ICL "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2")
+  add_unit_tests(unit_without_${without} instruction-sets opencv_test_hdpstereo
+    "HDPStereo_*Cost*:HDPStereo_*Aggregation*:*HDPStereo_ReferenceOutput*")
+  set_property(TEST unit_without_${without} APPEND PROPERTY ENVIRONMENT "OPENCV_CPU_DISABLE=${without}")
+endforeach()
+add_check(maps_of_instruction_sets instruction-sets "${PROJECT_SOURCE_DIR}/scripts/check_instruction_sets.sh"
+  $<TARGET_FILE:opencv_test_hdpstereo> "${CMAKE_BINARY_DIR}/maps")
+
+add_check(performance_tests performance opencv_perf_hdpstereo
+  "--gtest_param_filter=*640x480*" --perf_min_samples=1 --perf_force_samples=1)
+set_tests_properties(performance_tests PROPERTIES FAIL_REGULAR_EXPRESSION "Running 0 tests")
+
+set(missing "")
+if(NOT HDPSTEREO_PYTHON)
+  set(missing "HDPSTEREO_PYTHON in this build")
+else()
+  find_package(Python3 COMPONENTS Interpreter)
+endif()
+add_optional_check(python python "${missing}"
+  "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/misc/python/test/test_hdpstereo.py" --verbose)
+add_optional_check(sample_stereo_match_python "samples;python" "${missing}"
+  "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/samples/hdp_stereo_match.py" ${aloe} --compare --runs=1
+  --output=aloe_python.pfm --picture=aloe_python.jpg)
+add_optional_check(drop_in "samples;python" "${missing}"
+  "${PROJECT_SOURCE_DIR}/scripts/check_drop_in.sh" "${CMAKE_BINARY_DIR}" "${OPENCV_SOURCE_DIR}" "${Python3_EXECUTABLE}")
+if(NOT missing)
+  set_property(TEST python sample_stereo_match_python drop_in APPEND PROPERTY ENVIRONMENT
+    "PYTHONPATH=${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/python3")
+  set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "OK \\(skipped=")
+endif()
+
+set(missing "")
+find_program(DOXYGEN doxygen)
+find_program(BIBTEX bibtex)
+if(NOT DOXYGEN OR NOT BIBTEX)
+  set(missing "doxygen or bibtex")
+endif()
+add_optional_check(documentation documentation "${missing}" "${PROJECT_SOURCE_DIR}/scripts/docs.sh")

@@ -1,0 +1,226 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// The programs as a user calls them: exit status, and what they print and write.
+
+#include "test_precomp.hpp"
+#include "dataset_folder.hpp"
+#include "synthetic_pair.hpp"
+
+#include <cstdlib>
+
+#ifdef __unix__
+#include <sys/wait.h>
+
+namespace opencv_test {
+namespace {
+
+struct Execution
+{
+    int status;
+    String output, errors;
+};
+
+String readText(const String& path)
+{
+    std::ifstream file(path.c_str(), std::ios::binary);
+    return String(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+}
+
+//! Runs a program of the build's bin/, by the shell.
+Execution run(const DatasetFolder& folder, const String& command, const String& output = String())
+{
+    const String out = output.empty() ? folder.path("stdout") : output, err = folder.path("stderr");
+    const String line = String(HDP_PROGRAMS) + "/" + command + " >'" + out + "' 2>'" + err + "'";
+    const int status = std::system(line.c_str());
+    const bool exited = status != -1 && WIFEXITED(status);
+    EXPECT_TRUE(exited) << command;
+    return { exited ? WEXITSTATUS(status) : -1, output.empty() ? readText(out) : String(), readText(err) };
+}
+
+//! A pair of 160 x 120 pixels and 32 disparities, and three scenes of it: dataset/half/{a,b,c}
+void writePair(const DatasetFolder& folder)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 21);
+    Mat truth;
+    pair.truth.convertTo(truth, CV_16U, 256);
+    truth.setTo(0, ~pair.visible);
+    for (const char* scene : { "dataset/a/", "dataset/b/", "dataset/c/" })
+    {
+        folder.write(String(scene) + "left.png", pair.left);
+        folder.write(String(scene) + "right.png", pair.right);
+        folder.write(String(scene) + "disp_left.png", truth);
+    }
+}
+
+String pairOf(const DatasetFolder& folder)
+{
+    return " " + folder.path("dataset/a/left.png") + " " + folder.path("dataset/a/right.png") + " --num-disparities=32";
+}
+
+String firstLine(const String& text) { return text.substr(0, text.find('\n')); }
+
+TEST(HDPStereo_Programs, help_and_wrong_arguments)
+{
+    const DatasetFolder folder;
+    for (const char* program : { "hdp_evaluate", "hdp_benchmark", "hdp_train", "hdp_parameters", "hdp_pictures",
+                                 "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
+    {
+        SCOPED_TRACE(program);
+        const Execution help = run(folder, String(program) + " --help");
+        EXPECT_EQ(0, help.status);
+        EXPECT_NE(String::npos, help.output.find("--help"));
+        for (const char* arguments : { "", "--no-such-option=1", "no/such/file.png no/such/file.png" })
+        {
+            SCOPED_TRACE(arguments);
+            const Execution wrong = run(folder, String(program) + " " + arguments);
+            EXPECT_EQ(1, wrong.status);
+            EXPECT_EQ(0u, wrong.errors.find("error: ")) << wrong.errors;
+            EXPECT_EQ(firstLine(wrong.errors) + "\n", wrong.errors); // one line
+        }
+    }
+}
+
+#ifdef __linux__
+//! Tables that are lost on a full disk are an error.
+TEST(HDPStereo_Programs, full_disk)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String pair = pairOf(folder), truth = " --truth=" + folder.path("dataset/a/disp_left.png"),
+                 dataset = " " + folder.path("dataset");
+    for (const String& command :
+         { "hdp_evaluate --help" + String(), "hdp_evaluate --methods=fast,bm" + dataset,
+           "hdp_benchmark --methods=fast --runs=1" + pair, "hdp_benchmark --memory-of=fast" + pair,
+           "hdp_train --layers=2 --max-components=1" + dataset + " -o " + folder.path("model.yml"),
+           "hdp_parameters --presets=fast --runs=1" + dataset, "hdp_pictures --output=" + folder.root + pair + truth,
+           "example_hdpstereo_hdp_stereo_match" + pair, "example_hdpstereo_hdp_own_tree" + pair })
+    {
+        SCOPED_TRACE(command);
+        EXPECT_EQ(1, run(folder, command, "/dev/full").status);
+    }
+}
+#endif
+
+TEST(HDPStereo_Programs, evaluate)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String common = "hdp_evaluate --num-disparities=32 " + folder.path("dataset") +
+                          " --methods=fast,opencv,paper,mst --csv=" + folder.path("tables.csv") +
+                          " --report=" + folder.path("report") + " --maps=" + folder.path("maps");
+    const Execution all = run(folder, common + " --jobs=2");
+    EXPECT_EQ(0, all.status) << all.errors;
+    EXPECT_NE(String::npos, all.output.find("| scene | fast | bm | sgbm | sgbm-3way | sgbm-hh4 | paper | mst |"));
+    EXPECT_NE(String::npos, all.output.find("| mean of 3 |"));
+    EXPECT_NE(String::npos, readText(folder.path("tables.csv")).find("dataset,b,sgbm-3way,"));
+    const String page = readText(folder.path("report/index.html"));
+    EXPECT_NE(String::npos, page.find("Table 1"));
+    EXPECT_NE(String::npos, page.find("data:image/jpeg"));
+    EXPECT_EQ(Size(160, 120), cv::imread(folder.path("maps/fast/dataset/b.png"), IMREAD_UNCHANGED).size());
+
+    // A pair that cannot be read is named and left out.
+    std::remove(folder.path("dataset/b/right.png").c_str());
+    const Execution two = run(folder, common);
+    EXPECT_EQ(2, two.status);
+    EXPECT_NE(String::npos, two.errors.find("skipped dataset/b"));
+    EXPECT_NE(String::npos, two.output.find("| mean of 2 |"));
+
+    const Execution unknown = run(folder, "hdp_evaluate --methods=FAST " + folder.path("dataset"));
+    EXPECT_EQ(1, unknown.status);
+    EXPECT_NE(String::npos, unknown.errors.find("'FAST' is unknown, there are: "));
+}
+
+//! The same names of methods, and the same errors, as those of hdp_evaluate
+TEST(HDPStereo_Programs, benchmark)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const Execution result = run(folder, "hdp_benchmark --methods=fast,sgbm-3way --runs=2 --stages" + pairOf(folder) +
+                                             " --truth=" + folder.path("dataset/a/disp_left.png"));
+    EXPECT_EQ(0, result.status) << result.errors;
+    for (const char* row : { "\n| fast | ", "\n| sgbm-3way | ", "\n| fast | image pyramid | " })
+        EXPECT_NE(String::npos, result.output.find(row)) << result.output;
+    EXPECT_EQ(1, run(folder, "hdp_benchmark --methods=none" + pairOf(folder)).status);
+}
+
+TEST(HDPStereo_Programs, train_then_evaluate)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String model = folder.path("model.yml"), dataset = folder.path("dataset");
+    const Execution trained = run(folder, "hdp_train " + dataset + " --fraction=0.7 --max-components=1 -o " + model);
+    EXPECT_EQ(0, trained.status) << trained.errors;
+    EXPECT_NE(String::npos, trained.output.find("held out"));
+    EXPECT_EQ(0, run(folder, "hdp_evaluate " + dataset + " --methods=paper --model=" + model).status);
+}
+
+TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String png = folder.path("map.png"), pfm = folder.path("map.pfm"), ply = folder.path("points.ply");
+    const String program = "example_hdpstereo_hdp_stereo_match" + pairOf(folder);
+    const Execution result =
+        run(folder, program + " --preset=quality --output=" + png + " --picture=" + folder.path("picture.jpg") +
+                        " --point-cloud=" + ply +
+                        " --focal=100 --baseline=2 --truth=" + folder.path("dataset/a/disp_left.png"));
+    EXPECT_EQ(0, result.status) << result.errors;
+    EXPECT_NE(String::npos, result.output.find("err>=2"));
+    EXPECT_EQ(0, run(folder, program + " --preset=quality --output=" + pfm).status);
+    const Mat map = cv::imread(png, IMREAD_UNCHANGED), exact = cv::imread(pfm, IMREAD_UNCHANGED);
+    ASSERT_EQ(CV_16UC1, map.type());
+    ASSERT_EQ(CV_32FC1, exact.type());
+    Mat fromPng;
+    map.convertTo(fromPng, CV_32F, 1. / 256);
+    EXPECT_LT(cv::norm(fromPng, exact, NORM_INF), 1. / 128);
+    EXPECT_EQ(Size(160, 120), cv::imread(folder.path("picture.jpg")).size());
+
+    // Every pixel has a disparity above 0 here, and so is a point: 3 floats and 3 bytes.
+    const String points = readText(ply), end = "end_header\n";
+    EXPECT_NE(String::npos, points.find("element vertex 19200\n"));
+    EXPECT_EQ(19200u * 15, points.size() - points.find(end) - end.size());
+    float z = 0;
+    std::memcpy(&z, points.data() + points.find(end) + end.size() + 8, sizeof(z));
+    EXPECT_NEAR(100 * 2 / exact.at<float>(0, 0), z, 1e-3 * z);
+
+    for (const char* wrong :
+         { " --preset=FAST", " --tree=x", " --num-disparities=0", " --output=/no/such/folder/map.png",
+           " --output=map.unknown", " --point-cloud=x.ply", " --truth=/no/such/file.png" })
+        EXPECT_EQ(1, run(folder, program + wrong).status) << wrong;
+}
+
+//! Two numbered sequences, with the calibration of cameras that are rectified already
+TEST(HDPStereo_Programs, live)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 22);
+    for (const char* number : { "01", "02", "03" })
+    {
+        folder.write(String("left") + number + ".png", pair.left);
+        folder.write(String("right") + number + ".png", pair.right);
+    }
+    const Mat camera = (Mat_<double>(3, 3) << 200, 0, 79.5, 0, 200, 59.5, 0, 0, 1), none = Mat::zeros(1, 5, CV_64F);
+    const String intrinsics = folder.path("intrinsics.yml"), extrinsics = folder.path("extrinsics.yml");
+    FileStorage in(intrinsics, FileStorage::WRITE), out(extrinsics, FileStorage::WRITE);
+    in << "M1" << camera << "D1" << none << "M2" << camera << "D2" << none;
+    out << "R" << Mat::eye(3, 3, CV_64F) << "T" << (Mat_<double>(3, 1) << -2, 0, 0);
+    in.release();
+    out.release();
+    const String command = "example_hdpstereo_hdp_live " + folder.path("left%02d.png") + " " +
+                           folder.path("right%02d.png") + " --no-gui --num-disparities=32 -i=" + intrinsics +
+                           " -e=" + extrinsics;
+    const Execution all = run(folder, command + " --output=" + folder.path("shown%02d.png"));
+    EXPECT_EQ(0, all.status) << all.errors;
+    EXPECT_EQ(0u, all.output.find("3 frames, ")) << all.output;
+    EXPECT_EQ(Size(320, 120), cv::imread(folder.path("shown02.png")).size());
+    EXPECT_EQ(0u, run(folder, command + " --frames=2 --scale=0.5").output.find("2 frames, "));
+    EXPECT_EQ(1, run(folder, command + " --preset=tree").status);
+    EXPECT_EQ(1, run(folder, "example_hdpstereo_hdp_live no/such/video.avi --no-gui").status);
+}
+
+} // namespace
+} // namespace opencv_test
+
+#endif
