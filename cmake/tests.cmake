@@ -1,7 +1,7 @@
 # The suite, for CTest; CMakePresets.json has the builds to run it in. Labels:
 #   unit, tools       one test for each test suite of opencv_test_hdpstereo and opencv_test_hdpstereo_tools
 #   slow, threads     unit tests that take minutes under a sanitizer; those for ThreadSanitizer
-#   instruction-sets  unit tests, and the maps to the bit, without the wider instruction sets
+#   instruction-sets  unit tests, and the maps to the bit, without the wider instruction sets; the objects for those
 #   samples, python   programs of samples/ and of OpenCV's own samples; the Python module
 #   performance       one round of the performance tests: that they run, not how fast
 #   documentation     the reference and the tutorials, without a warning
@@ -114,6 +114,13 @@ foreach(without AVX512-ICL "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2")
 endforeach()
 add_check(maps_of_instruction_sets instruction-sets "${PROJECT_SOURCE_DIR}/scripts/check_instruction_sets.sh"
   $<TARGET_FILE:opencv_test_hdpstereo> "${CMAKE_BINARY_DIR}/maps")
+
+set(missing "")
+if(NOT dispatched_modes)
+  set(missing "instruction set but the baseline")
+endif()
+add_optional_check(dispatched_objects instruction-sets "${missing}"
+  "${PROJECT_SOURCE_DIR}/scripts/check_dispatch_objects.sh" "${CMAKE_BINARY_DIR}")
 
 add_check(performance_tests performance opencv_perf_hdpstereo
   "--gtest_param_filter=*640x480*" --perf_min_samples=1 --perf_force_samples=1)
