@@ -53,17 +53,23 @@ class Sweep
 {
 public:
     Sweep(const ScanlineProblem& problem, ScanlineScratch& scratch)
-        : p_(problem), s_(scratch), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
+        : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
           planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)),
-          large_(ByteLanes::repeat(problem.penalties.large)), zero_(ByteLanes::repeat(0)), windows_(0), upperRow_(-1),
+          large_(ByteLanes::repeat(problem.penalties.large)), zero_(ByteLanes::repeat(0)),
+          blockCosts_(scratch.costs.data()), fromRight_(scratch.fromRight.data()),
+          fromAbove_(scratch.fromAbove.data() + margin * Window::candidates), columns_(scratch.columns.data() + margin),
+          priors_(firstStep(scratch.priors)), intoRight_(firstStep(scratch.intoRight)),
+          intoLeft_(firstStep(scratch.intoLeft)), intoBelow_(firstStep(scratch.intoBelow)), windows_(0), upperRow_(-1),
           entersUpperRow_(false)
     {
+        for (int run = 0; run < Window::runs; ++run)
+            first_[run] = scratch.first[run].data();
         for (int r = 0; r < groups; ++r)
         {
             const size_t row = r * (2 * (size_t)pairs_ + 2 * margin) + margin;
-            winners_[r] = &s_.winners[row];
-            sums_[r] = &s_.winnerSums[row];
-            costs_[r] = &s_.winnerCosts[row];
+            winners_[r] = scratch.winners.data() + row;
+            sums_[r] = scratch.winnerSums.data() + row;
+            costs_[r] = scratch.winnerCosts.data() + row;
         }
         preparePriorTable();
         prepareOrderTables();
@@ -196,10 +202,10 @@ private:
         // An odd last column belongs to the pixel of the layer above that the one before belongs to.
         const int pairs = pairs_, lastWindow = p_.windows->cols - 1;
         const int lanesUsed = std::min<int>(Window::candidates, p_.numDisparities);
-        Column* column = &s_.columns[margin];
-        short *firstOfLow = &s_.first[0][0], *firstOfHigh = &s_.first[1][0];
-        uchar *prior = ofUpper(s_.priors, 0), *intoRight = ofUpper(s_.intoRight, 0),
-              *intoLeft = ofUpper(s_.intoLeft, -1), *intoBelow = ofUpper(s_.intoBelow, 0);
+        Column* column = columns_;
+        short *firstOfLow = first_[0], *firstOfHigh = first_[1];
+        uchar *prior = priors_, *intoRight = intoRight_, *intoLeft = intoLeft_ + Window::candidates,
+              *intoBelow = intoBelow_;
         Window before = windows[0];
         bool wasContiguous = false; // the window before
         for (int x = 0; x < pairs; ++x)
@@ -235,14 +241,14 @@ private:
         }
     }
 
-    //! What is stored for a pixel of the layer above; from right to left, as in the groups of a step
-    uchar* ofUpper(std::vector<uchar>& stored, int x) const
+    //! What is stored for the pixels of the layer above lies from right to left, as in the groups of a step.
+    uchar* firstStep(std::vector<uchar>& stored) const
     {
-        return &stored[0] + (ptrdiff_t)(pairs_ - 1 - x + margin) * Window::candidates;
+        return stored.data() + (ptrdiff_t)(pairs_ - 1 + margin) * Window::candidates;
     }
-    ByteLanes ofStep(const std::vector<uchar>& stored, int step) const
+    static const uchar* ofStep(const uchar* firstStep, int step)
     {
-        return ByteLanes::load(&stored[0] + (ptrdiff_t)(pairs_ - 1 - step + margin) * Window::candidates);
+        return firstStep - (ptrdiff_t)step * Window::candidates;
     }
 
     //! The candidates' costs C(p, d) + large at both columns of a step
@@ -251,14 +257,14 @@ private:
         const uchar *left[groups], *low[groups], *high[groups];
         for (int r = 0; r < groups; ++r)
         {
-            const Column& column = s_.columns[step - r + margin];
+            const Column& column = columns_[step - r];
             const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
             left[r] = left_[r] + 4 * x;
             low[r] = right_[r] - x + column.first[0];
             high[r] = right_[r] - x + column.first[1];
         }
-        const ByteLanes prior = ofStep(s_.priors, step);
-        if (s_.columns[step + margin].isContiguous)
+        const ByteLanes prior = ByteLanes::load(ofStep(priors_, step));
+        if (columns_[step].isContiguous)
         {
             const auto load = [&](ptrdiff_t offset) { return ByteLanes::load(low, offset); };
             cost[0] = prior + costs<planes, 0>(left, load);
@@ -325,9 +331,9 @@ private:
         for (int t = steps_ - 1; t >= 0; --t)
         {
             costs<planes>(t, cost);
-            uchar* costs = &s_.costs[(size_t)t * 2 * lanes];
-            uchar* directions = &s_.fromRight[(size_t)t * 2 * lanes];
-            h = h.permute(ofStep(s_.intoLeft, t));
+            uchar* costs = blockCosts_ + (size_t)t * 2 * lanes;
+            uchar* directions = fromRight_ + (size_t)t * 2 * lanes;
+            h = h.permute(ByteLanes::load(ofStep(intoLeft_, t)));
             for (int column = 1; column >= 0; --column)
             {
                 const ByteLanes direction = advance(h, cost[column]);
@@ -342,10 +348,10 @@ private:
     //! The direction from above: before holds H of the last step's columns.
     ByteLanes fromAbove(const ByteLanes& cost, int t, int column, ByteLanes& before)
     {
-        uchar* above = &s_.fromAbove[0] + (ptrdiff_t)(2 * t + column + margin) * Window::candidates;
+        uchar* above = fromAbove_ + (ptrdiff_t)(2 * t + column) * Window::candidates;
         ByteLanes h = ByteLanes::shiftIn(above, before);
         if (entersUpperRow_) // only the block's first row may
-            h = h.permute(ByteLanes::first(ofUpper(s_.intoBelow, t)));
+            h = h.permute(ByteLanes::first(ofStep(intoBelow_, t)));
         const ByteLanes direction = advance(h, cost);
         before = h;
         h.storeLast(above - 2 * (groups - 1) * Window::candidates);
@@ -368,9 +374,9 @@ private:
         ByteLanes h = zero_, before[2] = { zero_, zero_ };
         for (int t = 0; t < steps_; ++t)
         {
-            const uchar* costs = &s_.costs[(size_t)t * 2 * lanes];
-            const uchar* directions = &s_.fromRight[(size_t)t * 2 * lanes];
-            h = h.permute(ofStep(s_.intoRight, t));
+            const uchar* costs = blockCosts_ + (size_t)t * 2 * lanes;
+            const uchar* directions = fromRight_ + (size_t)t * 2 * lanes;
+            h = h.permute(ByteLanes::load(ofStep(intoRight_, t)));
             for (int column = 0; column < 2; ++column)
             {
                 const ByteLanes cost = ByteLanes::load(costs + column * lanes);
@@ -415,7 +421,7 @@ private:
     {
         const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers, rounded to the nearest
         const int last = std::min<int>(Window::candidates, p_.numDisparities) - 1, large = p_.penalties.large;
-        const short *firstOfLow = &s_.first[0][0], *firstOfHigh = &s_.first[1][0];
+        const short *firstOfLow = first_[0], *firstOfHigh = first_[1];
         const uchar *winners = winners_[group], *costs = costs_[group];
         const unsigned* sums = sums_[group];
         const int toBefore = shiftOfByte(0), toSum = shiftOfByte(1), toAfter = shiftOfByte(2);
@@ -442,16 +448,20 @@ private:
     };
 
     const ScanlineProblem& p_;
-    ScanlineScratch& s_;
     const int width_, pairs_, steps_; // columns, pairs of them, and steps over all groups
     const size_t planeStride_;        // from a plane of the cost to the next
     const ByteLanes small_, large_, zero_;
+    // The scratch memory, from column or step 0 on
+    uchar *const blockCosts_, *const fromRight_, *const fromAbove_;
+    Column* const columns_;
+    uchar *const priors_, *const intoRight_, *const intoLeft_, *const intoBelow_;
+    short* first_[Window::runs];
+    uchar *winners_[groups], *costs_[groups];
+    unsigned* sums_[groups];
     const Window* windows_; // of the block's row of the upper layer
     int upperRow_;          // that row
     bool entersUpperRow_;   // whether it is not that of the block before
     const uchar *left_[groups], *right_[groups];
-    uchar *winners_[groups], *costs_[groups];
-    unsigned* sums_[groups];
     uchar priorTable_[2 * priorRange][Window::candidates];
     uchar pairOrder_[3 * Window::candidates], runOrder_[Window::runs][3 * Window::candidates];
 };
