@@ -21,11 +21,19 @@ if(HDPSTEREO_BUILD_FUZZERS)
   # The coverage of loops over pixels tells a fuzzer nothing, and would take nearly all of its time.
   set(dispatched_options -O2 -fno-sanitize=fuzzer-no-link)
 endif()
-set(cpu_config "")
+# The baseline is what the compiler has without an option, as far as the stages have something for it.
+set(cpu_config
+"#if defined __SSE2__ || defined _M_X64
+#define CV_CPU_COMPILE_SSE 1
+#define CV_CPU_BASELINE_COMPILE_SSE 1
+#define CV_CPU_COMPILE_SSE2 1
+#define CV_CPU_BASELINE_COMPILE_SSE2 1
+#elif defined __ARM_NEON || defined _M_ARM64
+#define CV_CPU_COMPILE_NEON 1
+#define CV_CPU_BASELINE_COMPILE_NEON 1
+#endif
+")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|amd64|AMD64)$" AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NOT MSVC)
-  foreach(feature SSE SSE2)
-    string(APPEND cpu_config "#define CV_CPU_COMPILE_${feature} 1\n#define CV_CPU_BASELINE_COMPILE_${feature} 1\n")
-  endforeach()
   foreach(mode IN LISTS dispatched_modes)
     string(APPEND cpu_config "#define CV_CPU_DISPATCH_COMPILE_${mode} 1\n")
   endforeach()
