@@ -316,7 +316,7 @@ static int numDisparitiesOf(const Scene& scene, const Pair& pair)
     {
         // ETH3D gives the width, for it does not know the range.
         const int count = readDisparityCount(scene.calibration);
-        return count == width ? std::min(ofEth3d, width) : count;
+        return count == width ? ofEth3d : count;
     }
     if (pair.protocol == Pair::KITTI)
         return 256;

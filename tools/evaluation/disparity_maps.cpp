@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <fstream>
+#include <vector>
 
 #include "opencv2/imgcodecs.hpp"
 
@@ -45,15 +47,13 @@ Mat readImage(const String& path, int flags)
 
 void writeImage(const String& path, const Mat& image)
 {
-    bool written = false;
-    try
-    {
-        written = cv::imwrite(path, image);
-    }
-    catch (const cv::Exception&)
-    {
-    }
-    if (!written)
+    std::vector<uchar> bytes;
+    cv::imencode(path.substr(std::min(path.rfind('.'), path.size())), image, bytes);
+    // Unlike that of cv::imwrite(), this file notices a full disk.
+    std::ofstream file(path.c_str(), std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    file.close();
+    if (!file)
         fail("cannot write '" + path + "'");
 }
 

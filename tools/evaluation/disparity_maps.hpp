@@ -33,6 +33,7 @@ bool hasExtension(const String& path, const String& extension);
 //! Reads an image; throws an exception that names the file.
 Mat readImage(const String& path, int flags);
 
+//! Writes an image in the format of the path's extension; fails on a full disk, too.
 void writeImage(const String& path, const Mat& image);
 
 /** Converts an image that was read from the path to a map.

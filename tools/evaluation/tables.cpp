@@ -107,7 +107,9 @@ String htmlText(const String& text)
 String toHtml(const Table& table)
 {
     std::ostringstream out;
-    out << "<h3>" << htmlText(table.title) << "</h3>\n<div class=\"scroll\"><table>\n<tr>";
+    const bool isWide = table.header.size() > 8; // its header stands upright, so that it fits on the page
+    out << "<h3>" << htmlText(table.title) << "</h3>\n<div class=\"scroll\"><table" << (isWide ? " class=\"wide\"" : "")
+        << ">\n<tr>";
     for (const String& cell : table.header)
         out << "<th>" << htmlText(cell) << "</th>";
     out << "</tr>\n";

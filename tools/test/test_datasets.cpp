@@ -213,6 +213,65 @@ TEST(HDPStereo_Datasets, middlebury_2014_and_eval3)
     expectFailure([&] { readPair(findScenes(folder.root)[0]); }, "calib.txt");
 }
 
+//! MiddEval3 and ETH3D with plain names: truth in PFM, and a mask
+TEST(HDPStereo_Datasets, plain_names_with_a_mask)
+{
+    DatasetFolder folder;
+    Mat truth = DatasetFolder::halves(pairSize, CV_32F, 4, 8), mask(pairSize, CV_8U, Scalar(255));
+    truth.at<float>(0, 5) = std::numeric_limits<float>::infinity();
+    truth.at<float>(1, 5) = 0; // known
+    mask.col(23).setTo(128);
+    for (const char* scene : { "eth3d/forest/", "middeval3/Piano/" })
+    {
+        folder.writePicture(String(scene) + "left.png", 50);
+        folder.writePicture(String(scene) + "right.png", 60);
+        folder.write(String(scene) + "disp_left.pfm", truth);
+        folder.write(String(scene) + "nonoccluded.png", mask);
+    }
+    // ETH3D does not know the range, and gives the width.
+    folder.writeText("eth3d/forest/calib.txt", cv::format("width=%d\nndisp=%d\n", pairSize.width, pairSize.width));
+    folder.writeText("middeval3/Piano/calib.txt", "ndisp=70\n");
+    const std::vector<Scene> scenes = findScenes(folder.root);
+    ASSERT_EQ((std::vector<String>{ "eth3d/forest", "middeval3/Piano" }), setsAndNames(scenes));
+    for (int i = 0; i < 2; ++i)
+    {
+        const Pair pair = readPair(scenes[i]);
+        EXPECT_EQ(Pair::BAD, pair.protocol);
+        EXPECT_EQ(i == 0 ? 64 : 70, pair.disparities.end);
+        EXPECT_EQ(0.f, pair.truth.at<float>(1, 5));
+        EXPECT_EQ(0, pair.judged.at<uchar>(0, 5));
+        EXPECT_EQ(23 * 12 - 1, countNonZero(pair.judged));
+    }
+
+    // A pair without truth may have a calibration, too.
+    folder.writePicture("video/still/left.png");
+    folder.writePicture("video/still/right.png");
+    folder.writeText("video/still/calib.txt", "ndisp=290\n");
+    EXPECT_EQ(290, readPair(findScenes(folder.path("video")).at(0)).disparities.end);
+}
+
+TEST(HDPStereo_Datasets, kitti_video)
+{
+    DatasetFolder folder;
+    Mat truth = Mat::zeros(pairSize, CV_16U); // of a few pixels only
+    truth.at<ushort>(3, 7) = 5 * 256;
+    truth.at<ushort>(4, 20) = 6 * 256 + 64;
+    for (const char* frame : { "0000000000.png", "0000000001.png" })
+    {
+        folder.write(String("video/left/") + frame, Mat(pairSize, CV_8U, Scalar(50)));
+        folder.write(String("video/right/") + frame, Mat(pairSize, CV_8U, Scalar(60)));
+        folder.write(String("video/disp_lidar/") + frame, truth);
+    }
+    const std::vector<Scene> scenes = findScenes(folder.path("video"));
+    ASSERT_EQ((std::vector<String>{ "video/0000000000", "video/0000000001" }), setsAndNames(scenes));
+    const Pair pair = readPair(scenes[1]);
+    EXPECT_EQ(Pair::KITTI, pair.protocol);
+    EXPECT_EQ(CV_8UC3, pair.left.type());
+    EXPECT_EQ(2, countNonZero(pair.judged));
+    EXPECT_EQ(6.25f, pair.truth.at<float>(4, 20));
+    EXPECT_TRUE(pair.judgedNonOccluded.empty());
+}
+
 TEST(HDPStereo_Datasets, kitti)
 {
     DatasetFolder folder;

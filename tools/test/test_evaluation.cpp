@@ -58,6 +58,23 @@ TEST(HDPStereo_Evaluation, kitti_by_hand)
     EXPECT_TRUE(std::isnan(scoreMap(map, pair).d1NonOccluded));
 }
 
+TEST(HDPStereo_Evaluation, bad_pixels_by_hand)
+{
+    const Mat truth = Mat_<float>({ 1, 9 }, { 10, 10, 10, 10, 10, 10, 10, none, 10 });
+    // Errors: 0, 0.5 (not above), 0.75, 1 (not above 1), 2, 2.5, 4.25; of unknown truth; none
+    const Mat map = Mat_<float>({ 1, 9 }, { 10, 10.5f, 9.25f, 11, 8, 12.5f, 14.25f, 10, none });
+    const Pair pair = makePair(Pair::BAD, truth, knownPixels(truth));
+    const Score score = scoreMap(map, pair);
+    EXPECT_DOUBLE_EQ(100. * 6 / 8, score.badHalf);
+    EXPECT_DOUBLE_EQ(100. * 4 / 8, score.bad1);
+    EXPECT_DOUBLE_EQ(100. * 3 / 8, score.bad2);
+    EXPECT_DOUBLE_EQ(100. * 2 / 8, score.bad4);
+    EXPECT_DOUBLE_EQ(100. * 1 / 8, score.invalid);
+    EXPECT_NEAR((0 + 0.5 + 0.75 + 1 + 2 + 2.5 + 4.25 + 64) / 8, score.average, 1e-6);
+    EXPECT_EQ(score.bad2, mainScore(score, pair.protocol));
+    expectIdentical(Mat_<uchar>({ 1, 9 }, { 0, 0, 0, 0, 0, 255, 255, 0, 255 }), wrongPixels(map, pair));
+}
+
 TEST(HDPStereo_Evaluation, no_truth_no_score)
 {
     const Score score = scoreMap(Mat(3, 3, CV_32F, Scalar(1)), makePair(Pair::NO_TRUTH, Mat(), Mat()));
@@ -95,6 +112,9 @@ TEST(HDPStereo_Evaluation, tables)
     const String html = toHtml(table);
     EXPECT_NE(String::npos, html.find("A, &quot;B&quot; &amp; &lt;C&gt;"));
     EXPECT_NE(String::npos, html.find("<td>3.14</td><td>-</td><td class=\"best\">2.00</td>"));
+    EXPECT_EQ(String::npos, html.find("class=\"wide\""));
+    table.header.resize(18, "a system");
+    EXPECT_NE(String::npos, toHtml(table).find("<table class=\"wide\">"));
 }
 
 TEST(HDPStereo_Evaluation, base64_of_rfc_4648)
