@@ -390,7 +390,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         return input.ConsumeBool() && input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-1, last + 1);
     };
     change(m, [&] {
-        switch (input.ConsumeIntegralInRange(0, 34))
+        switch (input.ConsumeIntegralInRange(0, 35))
         {
         case 0:
             return m.setMinDisparity(input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-200, 200));
@@ -419,7 +419,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         case 13:
             return m.setUseMedianPrefilter(input.ConsumeBool());
         case 14:
-            return m.setNumLayers(input.ConsumeBool() ? input.ConsumeIntegralInRange(-3, 17) : anyInt(input));
+            return m.setNumLayers(input.ConsumeBool() ? upTo(16) : anyInt(input));
         case 15:
             return m.setDelta0(anyDouble(input));
         case 16:
@@ -433,7 +433,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         case 20:
             return m.setColorWeight(anyDouble(input));
         case 21:
-            return m.setDisparityMedianSize(input.ConsumeBool() ? oddUpTo(31) : upTo(5));
+            return m.setDisparityMedianSize(input.ConsumeBool() ? oddUpTo(7) : upTo(5));
         case 22:
             return m.setDisparityMedianPasses(upTo(8));
         case 23:
@@ -447,7 +447,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         case 27:
             return m.setAggregation(upTo(1));
         case 28:
-            return m.setSmallPenalty(upTo(100));
+            return m.setP1(upTo(100));
         case 29:
             return m.setFinestLayer(upTo(15));
         case 30:
@@ -457,7 +457,9 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         case 32:
             return m.setFillOcclusions(input.ConsumeBool());
         case 33:
-            return m.setLargePenalty(upTo(100));
+            return m.setP2(upTo(100));
+        case 34:
+            return m.setMaxTopDisparities(upTo(100));
         default:
             return m.setUseNonLocalRefinement(input.ConsumeBool());
         }
@@ -508,7 +510,13 @@ void query(const HDPTreeMatcher& matcher, Size size, bool hasPair)
     matcher.getForest(trees, intervals);
     require(trees.size() == intervals.size() && (!hasPair || !trees.empty()), "no forest");
     std::vector<double> values;
-    matcher.getLayerPrior(values);
+    for (int layer = 0; layer < 17; ++layer)
+    {
+        Mat disparity;
+        matcher.getLayerPrior(layer, values);
+        matcher.getLayerDisparity(layer, disparity);
+        require(hasPair || (values.empty() && disparity.empty()), "a layer without a pair");
+    }
     matcher.getSearchRatios(values);
     std::vector<String> names;
     matcher.getStageTimes(names, values);

@@ -36,7 +36,8 @@ void removeSpeckles(Mat& disparity, const MatcherParameters& p, short invalid, M
     const int bytes = (int)disparity.total() * speckleBytes + 1;
     if (speckles.cols < bytes)
         speckles.create(1, bytes, CV_8U);
-    filterSpeckles(disparity, invalid, p.speckleWindowSize, unit * p.speckleRange, speckles);
+    const int range = std::min(p.speckleRange, SHRT_MAX / unit); // cv::filterSpeckles may have it in 16 bits
+    filterSpeckles(disparity, invalid, p.speckleWindowSize, unit * range, speckles);
 }
 
 } // namespace

@@ -478,21 +478,13 @@ Ptr<DisparityPredictionModel> DisparityPredictionModel::createPublished(int whic
         { PUBLISHED_SMALL,
           { { 1.049875, 0.176738, -5.205266 }, { 2.700242, 0.594091, 10.932382 }, { 0.123876, 0.705882, 0.170241 } } },
         { PUBLISHED_SMALL, { { -0.838225, 0.174887 }, { 5.652754, 0.543740 }, { 0.218403, 0.781597 } } },
-        { TRAINED_LARGE,
-          { { 0.329919, -4.260328, -2.655667 }, { 0.553600, 25.284493, 5.034016 }, { 0.821447, 0.126041, 0.052512 } } },
-        { TRAINED_LARGE,
-          { { 0.432623, 0.386757, -26.476434, -4.879265, 4.492725, 30.984780 },
-            { 0.552105, 0.541498, 6.619108, 8.432916, 8.442339, 7.746195 },
-            { 0.420857, 0.412048, 0.063069, 0.054264, 0.046565, 0.003197 } } },
-        { TRAINED_SMALL, { { 0.406815, -3.751345 }, { 0.551240, 10.796282 }, { 0.858077, 0.141923 } } },
-        { TRAINED_SMALL, { { 0.454783, -3.769769 }, { 0.568188, 8.097687 }, { 0.887671, 0.112329 } } },
     };
     const Ptr<DisparityPredictionModel> model = create();
     for (const auto& layer : layers)
         if (layer.which == which)
             model->addLayer(layer.mixture.means, layer.mixture.sigmas, layer.mixture.weights);
     if (model->empty())
-        CV_Error(Error::StsBadArg, "which must be PUBLISHED_LARGE, PUBLISHED_SMALL, TRAINED_LARGE or TRAINED_SMALL");
+        CV_Error(Error::StsBadArg, "which must be PUBLISHED_LARGE or PUBLISHED_SMALL");
     return model;
 }
 

@@ -13,25 +13,6 @@ namespace hdp {
 
 namespace {
 
-//! cv::medianBlur in horizontal stripes side by side; each stripe sees its neighbours' rows.
-void medianBlurStripes(const Mat& image, int size, Mat& stripesBuffer, Mat& filtered)
-{
-    const int radius = size / 2, stripes = std::max(1, std::min(16, image.rows / (4 * size)));
-    filtered.create(image.size(), image.type());
-    stripesBuffer.create(image.rows + 2 * radius * stripes, image.cols, image.type());
-    parallel_for_(Range(0, stripes), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-        {
-            const Range rows(image.rows * i / stripes, image.rows * (i + 1) / stripes);
-            const Range seen(std::max(rows.start - radius, 0), std::min(rows.end + radius, image.rows));
-            const int begin = seen.start + 2 * radius * i;
-            Mat stripe = stripesBuffer.rowRange(begin, begin + seen.size());
-            medianBlur(image.rowRange(seen), stripe, size);
-            stripe.rowRange(rows.start - seen.start, rows.end - seen.start).copyTo(filtered.rowRange(rows));
-        }
-    });
-}
-
 void dispatchFill(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch)
 {
     CV_CPU_DISPATCH(fillOccludedRow, (disparity, residual, width, scratch), CV_CPU_DISPATCH_MODES_ALL);
@@ -40,26 +21,6 @@ void dispatchFill(ushort* disparity, const uchar* residual, int width, Occlusion
 void dispatchMedian(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
 {
     CV_CPU_DISPATCH(medianRow, (rows, size, width, sorted, filtered), CV_CPU_DISPATCH_MODES_ALL);
-}
-
-//! As cv::medianBlur, which takes several times as long: it does not share the work on a column of the window.
-void medianOfRows(const Mat& image, int size, Mat& filtered)
-{
-    filtered.create(image.size(), CV_16U);
-    parallel_for_(Range(0, image.rows), [&](const Range& range) {
-        const int radius = size / 2, width = image.cols;
-        Mat buffer(size, width + 2 * radius, CV_16S);
-        std::vector<short*> sorted(size);
-        std::vector<const ushort*> rows(size);
-        for (int i = 0; i < size; ++i)
-            sorted[i] = buffer.ptr<short>(i) + radius;
-        for (int y = range.start; y < range.end; ++y)
-        {
-            for (int i = 0; i < size; ++i)
-                rows[i] = image.ptr<ushort>(std::min(std::max(y + i - radius, 0), image.rows - 1));
-            dispatchMedian(rows.data(), size, width, sorted.data(), filtered.ptr<ushort>(y));
-        }
-    });
 }
 
 //! What the right image has at a pixel's match
@@ -104,26 +65,23 @@ void checkLeftRight(const Mat& disparity, int maxDiff, int invalid, const Visit&
 
 } // namespace
 
-void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered)
+void medianDisparity(const Mat& disparity, int size, Mat& filtered)
 {
-    if (size == 5 || size == 7)
-        return medianOfRows(disparity, size, filtered);
-    if (size == 3)
-        return medianBlurStripes(disparity, size, stripes, filtered);
-    // cv::medianBlur takes large windows in 8 bit only. A median commutes with monotone functions, and a value is the
-    // sum of its slices min(max(value - 255 k, 0), 255), so it is the sum of the slices' medians.
-    double largest;
-    minMaxLoc(disparity, 0, &largest);
-    Mat slice, median;
-    disparity.convertTo(slice, CV_8U);
-    medianBlurStripes(slice, size, stripes, median);
-    median.convertTo(filtered, CV_16U);
-    for (int below = 255; below < largest; below += 255)
-    {
-        disparity.convertTo(slice, CV_8U, 1, -below);
-        medianBlurStripes(slice, size, stripes, median);
-        add(filtered, median, filtered, noArray(), CV_16U);
-    }
+    filtered.create(disparity.size(), CV_16U);
+    parallel_for_(Range(0, disparity.rows), [&](const Range& range) {
+        const int radius = size / 2, width = disparity.cols;
+        Mat buffer(size, width + 2 * radius, CV_16S);
+        std::vector<short*> sorted(size);
+        std::vector<const ushort*> rows(size);
+        for (int i = 0; i < size; ++i)
+            sorted[i] = buffer.ptr<short>(i) + radius;
+        for (int y = range.start; y < range.end; ++y)
+        {
+            for (int i = 0; i < size; ++i)
+                rows[i] = disparity.ptr<ushort>(std::min(std::max(y + i - radius, 0), disparity.rows - 1));
+            dispatchMedian(rows.data(), size, width, sorted.data(), filtered.ptr<ushort>(y));
+        }
+    });
 }
 
 void fillOccluded(Mat& disparity, const Mat& residual)

@@ -10,8 +10,9 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
-//! Median of size x size pixels, borders replicated. disparity: CV_16UC1; stripes: memory to work in.
-CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& stripes, Mat& filtered);
+//! Median of size x size pixels, 3, 5 or 7, borders replicated: several times faster than cv::medianBlur, which does not
+//! share the work on a column of the window. disparity: CV_16UC1; filtered: another Mat.
+CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& filtered);
 
 //! Memory for a row of fillOccluded()
 struct OcclusionScratch

@@ -18,7 +18,7 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, Occlus
 
 /** A row of the median of size x size pixels.
 @param rows The `size` rows around it.
-@param size 5 or 7.
+@param size 3, 5 or 7.
 @param width Of the rows.
 @param sorted As many rows to work in, with size / 2 more columns on each side.
 @param filtered Receives the row. */
@@ -124,6 +124,8 @@ inline void sortFour(short& a, short& b, short& c, short& d)
     sortPair(b, c);
 }
 
+inline void sort(short (&v)[3]) { sortThree(v[0], v[1], v[2]); }
+
 inline void sort(short (&v)[5])
 {
     sortFour(v[0], v[1], v[2], v[3]);
@@ -170,6 +172,8 @@ template <> struct Forgetful<3>
 // The median of a window, sorted by rows and columns. The element in row i and column j is not smaller than
 // (i + 1) (j + 1) elements, itself included, and not larger than (size - i) (size - j), which leaves some diagonals. Of
 // two on the outer ones the smaller, or larger, may have too many above, or below, it.
+
+inline short medianOfSorted(const short (&d)[3][3]) { return medianOfThree(d[0][2], d[1][1], d[2][0]); }
 
 inline short medianOfSorted(const short (&d)[5][5])
 {
@@ -248,7 +252,9 @@ template <int size> void medianRow(const ushort* const* rows, int width, short* 
 
 void medianRow(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
 {
-    if (size == 5)
+    if (size == 3)
+        medianRow<3>(rows, width, sorted, filtered);
+    else if (size == 5)
         medianRow<5>(rows, width, sorted, filtered);
     else
         medianRow<7>(rows, width, sorted, filtered);

@@ -5,6 +5,7 @@
 
 #include "disparity_confidence.hpp"
 #include "disparity_output.hpp"
+#include "disparity_units.hpp"
 #include "image_pyramid.hpp"
 #include "layer_matching.hpp"
 #include "matcher_parameters.hpp"
@@ -37,8 +38,6 @@ public:
         const int depth = outputDepth(disparityArray);
         const PairSettings settings = resolve(p_, left);
         clock_.restart();
-        buffers_.forestLayer = -1; // what getForest() and getLayerPrior() give is of this pair, or nothing
-        buffers_.prior.clear();
 
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
@@ -81,6 +80,7 @@ public:
     HDP_PARAMETER(bool, UsePrediction, usePrediction)
     HDP_PARAMETER(bool, UseMedianPrefilter, useMedianPrefilter)
     HDP_PARAMETER(int, NumLayers, numLayers)
+    HDP_PARAMETER(int, MaxTopDisparities, maxTopDisparities)
     HDP_PARAMETER(double, Delta0, delta0)
     HDP_PARAMETER(double, Beta, beta)
     HDP_PARAMETER(double, Gamma, gamma)
@@ -94,8 +94,8 @@ public:
     HDP_PARAMETER(int, IntervalMargin, intervalMargin)
     HDP_PARAMETER(bool, UseSubpixel, useSubpixel)
     HDP_PARAMETER(int, Aggregation, aggregation)
-    HDP_PARAMETER(int, SmallPenalty, smallPenalty)
-    HDP_PARAMETER(int, LargePenalty, largePenalty)
+    HDP_PARAMETER(int, P1, P1)
+    HDP_PARAMETER(int, P2, P2)
     HDP_PARAMETER(int, FinestLayer, finestLayer)
     HDP_PARAMETER(int, ScanlinePasses, scanlinePasses)
     HDP_PARAMETER(bool, FillOcclusions, fillOcclusions)
@@ -112,11 +112,10 @@ public:
     void getForest(OutputArray treesArray, OutputArray intervalsArray) const CV_OVERRIDE
     {
         const DisparityForest& forest = buffers_.forest;
-        const bool hasForest = isMatched() && buffers_.forestLayer >= 0;
-        const Size size = hasForest ? forest.links.size() : Size();
+        const Size size = isMatched() ? forest.links.size() : Size();
         Mat trees(size, CV_32S), intervals(size, CV_16UC2);
         TreeWalk walk;
-        for (size_t t = 0; hasForest && t < forest.trees.size(); ++t)
+        for (size_t t = 0; isMatched() && t < forest.trees.size(); ++t)
         {
             const DisparityTree& tree = forest.trees[t];
             walkTree(forest, tree, walk);
@@ -126,14 +125,21 @@ public:
                 intervals.ptr<DisparityInterval>()[walk.pixels[i]] = tree.interval;
             }
         }
-        const Range columns(hasForest ? result_.settings.extension >> buffers_.forestLayer : 0, size.width);
-        trees.colRange(columns).copyTo(treesArray);
-        intervals.colRange(columns).copyTo(intervalsArray);
+        copyLayer(trees, buffers_.forestLayer, treesArray);
+        copyLayer(intervals, buffers_.forestLayer, intervalsArray);
     }
 
-    void getLayerPrior(std::vector<double>& prior) const CV_OVERRIDE
+    void getLayerPrior(int layer, std::vector<double>& prior) const CV_OVERRIDE
     {
-        prior = isMatched() ? buffers_.prior : std::vector<double>();
+        prior = hasLayer(layer) ? layers_[layer].prior : std::vector<double>();
+    }
+
+    void getLayerDisparity(int layer, OutputArray disparityArray) const CV_OVERRIDE
+    {
+        Mat disparity;
+        if (hasLayer(layer))
+            layers_[layer].disparity.convertTo(disparity, CV_32F, 1. / subpixelScale);
+        copyLayer(disparity, layer, disparityArray);
     }
 
     void getConfidence(OutputArray confidenceArray) const CV_OVERRIDE
@@ -189,6 +195,24 @@ private:
     };
 
     bool isMatched() const { return !result_.size.empty(); }
+
+    //! Whether the last compute() matched this layer
+    bool hasLayer(int layer) const
+    {
+        if (layer < 0)
+            CV_Error(Error::StsOutOfRange, format("layer must be >= 0, not %d", layer));
+        return isMatched() && layer >= result_.settings.finestLayer && layer < result_.settings.layers;
+    }
+
+    //! Without the columns that are added to the images
+    void copyLayer(const Mat& ofLayer, int layer, OutputArray array) const
+    {
+        if (!array.needed())
+            return;
+        if (ofLayer.empty())
+            return array.release();
+        ofLayer.colRange(result_.settings.extension >> layer, ofLayer.cols).copyTo(array);
+    }
 
     //! Of the disparities: what the caller's array has, if its type is fixed
     int outputDepth(OutputArray disparity) const

@@ -34,11 +34,11 @@ void prepareCost(const LayerInput& in, MatchedLayer& matched)
 }
 
 //! P(D_l) of section 3.1
-void estimatePrior(const LayerInput& in, LayerBuffers& buffers, StageClock& clock)
+void estimatePrior(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
 {
     const int disparities = disparitiesOf(in);
     if (in.parameters.disparityPrior == HDPTreeMatcher::PRIOR_UPPER_LAYER)
-        return clock.run("disparity prediction", [&] { upperHistogram(in.upper, disparities, buffers.prior); });
+        return clock.run("disparity prediction", [&] { upperHistogram(in.upper, disparities, matched.prior); });
     clock.run("support points", [&] {
         Mat left = in.images.left, right = in.images.right;
         if (left.depth() != CV_8U) // greyLevels()
@@ -47,25 +47,25 @@ void estimatePrior(const LayerInput& in, LayerBuffers& buffers, StageClock& cloc
             right.convertTo(right, CV_8U, 1. / greyScale);
         }
         findSupportPoints(left, right, disparities, buffers.supportPoints, buffers.points);
-        disparityHistogram(buffers.points, disparities, buffers.prior);
+        disparityHistogram(buffers.points, disparities, matched.prior);
     });
 }
 
 //! PixelIntv of section 3.1; at the top layer the full range
-void predict(const LayerInput& in, LayerBuffers& buffers, Mat& pixelIntv)
+void predict(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 {
     const Size size = in.images.guide.size();
     if (in.isTop())
     {
-        pixelIntv.create(size, CV_16UC2);
-        pixelIntv.setTo(Scalar(0, disparitiesOf(in) - 1));
+        matched.pixelIntv.create(size, CV_16UC2);
+        matched.pixelIntv.setTo(Scalar(0, disparitiesOf(in) - 1));
         return;
     }
     const PairSettings& settings = in.settings;
     const int upperDisparities = layerDisparities(in.parameters.numDisparities, in.layer + 1);
-    predictIntervals(*settings.model, in.layer, buffers.prior, upperDisparities, settings.delta0 * (1 << in.layer),
+    predictIntervals(*settings.model, in.layer, matched.prior, upperDisparities, settings.delta0 * (1 << in.layer),
                      in.parameters.intervalMargin, buffers.intervals);
-    assignIntervals(in.upper, size, buffers.intervals, pixelIntv);
+    assignIntervals(in.upper, size, buffers.intervals, matched.pixelIntv);
 }
 
 //! Section 3.2
@@ -85,8 +85,8 @@ void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clo
 {
     const MatcherParameters& p = in.parameters;
     if (!in.isTop())
-        estimatePrior(in, buffers, clock);
-    clock.run("disparity prediction", [&] { predict(in, buffers, matched.pixelIntv); });
+        estimatePrior(in, buffers, clock, matched);
+    clock.run("disparity prediction", [&] { predict(in, buffers, matched); });
     clock.run("disparity forest", [&] { growForest(in, buffers, matched); });
     matched.searchRatio = searchRatio(buffers.forest, disparitiesOf(in));
     clock.run("cost aggregation", [&] {
@@ -111,7 +111,7 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
     {
         if (pass > 0)
             clock.run("disparity median", [&] {
-                medianDisparity(matched.winner, secondPassMedian, matched.medianStripes, matched.filtered);
+                medianDisparity(matched.winner, secondPassMedian, matched.filtered);
                 halveDisparity(matched.filtered, matched.lastPass);
             });
         clock.run("disparity prediction", [&] {
@@ -119,7 +119,7 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
             predictWindows(guess, disparities, matched.smallest, matched.largest, matched.windows);
         });
         clock.run("cost aggregation", [&] {
-            const ScanlinePenalties penalties = { p.smallPenalty, p.largePenalty, pass == 0 ? 1 : 2 };
+            const ScanlinePenalties penalties = { p.P1, p.P2, pass == 0 ? 1 : 2 };
             aggregateScanlines(matched.cost, in.images.left.size(), disparities, matched.windows, penalties,
                                buffers.scanlines, matched.winner, matched.residual);
         });
@@ -131,12 +131,6 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
 //! Refines the winners over the layer's forest.
 void refine(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 {
-    if (buffers.forestLayer != in.layer)
-    {
-        matched.pixelIntv.create(matched.winner.size(), CV_16UC2);
-        matched.pixelIntv.setTo(Scalar::all(0)); // one tree
-        growForest(in, buffers, matched);
-    }
     swap(matched.winner, matched.disparity);
     findStable(matched.disparity, stableMaxDiff, matched.stable);
     refineNonLocal(buffers.forest, matched.disparity, matched.stable, in.parameters.gamma * refinementGamma,
@@ -149,7 +143,7 @@ void filter(const LayerInput& in, MatchedLayer& matched)
     swap(matched.winner, matched.disparity);
     for (int pass = 0; in.settings.medianSize > 0 && pass < in.parameters.disparityMedianPasses; ++pass)
     {
-        medianDisparity(matched.disparity, in.settings.medianSize, matched.medianStripes, matched.winner);
+        medianDisparity(matched.disparity, in.settings.medianSize, matched.winner);
         swap(matched.winner, matched.disparity);
     }
 }
@@ -158,12 +152,14 @@ void filter(const LayerInput& in, MatchedLayer& matched)
 
 void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
 {
+    matched.prior.clear();
+    const bool hasTrees = in.parameters.aggregation == HDPTreeMatcher::AGGREGATION_TREES;
     clock.run("matching cost", [&] { prepareCost(in, matched); });
-    if (in.isTop() || in.parameters.aggregation == HDPTreeMatcher::AGGREGATION_TREES)
+    if (in.isTop() || hasTrees)
         aggregateTrees(in, buffers, clock, matched);
     else
         aggregateScanlines(in, buffers, clock, matched);
-    if (in.parameters.useNonLocalRefinement)
+    if (in.parameters.useNonLocalRefinement && hasTrees)
         clock.run("non-local refinement", [&] { refine(in, buffers, matched); });
     clock.run("disparity median", [&] { filter(in, matched); });
 }

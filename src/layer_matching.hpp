@@ -32,21 +32,21 @@ struct LayerInput
 //! A layer's result, and memory that is kept for the next pair
 struct MatchedLayer
 {
-    Mat disparity;      // CV_16UC1, a disparity map
-    MatchingCost cost;  // M(p, x)
-    double searchRatio; // R_l of the paper's Table 1
+    Mat disparity;             // CV_16UC1, a disparity map
+    MatchingCost cost;         // M(p, x)
+    double searchRatio;        // R_l of the paper's Table 1
+    std::vector<double> prior; // P(D_l) up to a factor; empty if the layer was not predicted from one
 
     Mat guide, pixelIntv;
     Mat smallest, largest, windows;
-    Mat winner, residual, filtered, lastPass, medianStripes, stable;
+    Mat winner, residual, filtered, lastPass, stable;
 };
 
 //! What the layers of a pair make one after the other in the same memory
 struct LayerBuffers
 {
     DisparityForest forest;
-    int forestLayer = -1;      // the layer that the forest is of; -1: there is none
-    std::vector<double> prior; // P(D_l) of the last layer that was predicted from a prior
+    int forestLayer = -1; // the layer that the forest is of
 
     SupportPointBuffers supportPoints;
     Mat points;

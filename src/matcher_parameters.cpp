@@ -23,8 +23,7 @@ typedef MatcherParameters P;
 typedef HDPTreeMatcher M;
 
 const int largeImageWidth = 1000;
-const int leastTopDisparities = CandidateWindow::candidates; // of a third layer
-const int mostTopDisparities = 64;
+const int leastTopDisparities = CandidateWindow::candidates; // of more than two layers
 const int maxPenalty = ScanlinePenalties::largest;
 
 bool isAny(int) { return true; }
@@ -47,21 +46,21 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
     visit("minDisparity", &P::minDisparity, "any", isAny);
     visit("numDisparities", &P::numDisparities, "> 0", [](int v) { return v > 0; });
     visit("blockSize", &P::blockSize, "odd, in 1..31", [](int v) { return isOddIn(v, 1, 31); });
-    visit("speckleWindowSize", &P::speckleWindowSize, ">= 0", [](int v) { return v >= 0; });
-    visit("speckleRange", &P::speckleRange, "in 0..2047", [](int v) { return isIn(v, 0, SHRT_MAX / M::DISP_SCALE); });
+    visit("speckleWindowSize", &P::speckleWindowSize, "any", isAny);
+    visit("speckleRange", &P::speckleRange, ">= 0", [](int v) { return v >= 0; });
     visit("disp12MaxDiff", &P::disp12MaxDiff, "any", isAny);
     visit("usePrediction", &P::usePrediction, "any", isFlag);
     visit("useMedianPrefilter", &P::useMedianPrefilter, "any", isFlag);
-    visit("numLayers", &P::numLayers, "in 1..16, AUTO or FEWEST_LAYERS",
-          [](int v) { return v == M::AUTO || v == M::FEWEST_LAYERS || isIn(v, 1, 16); });
+    visit("numLayers", &P::numLayers, "in 1..16", [](int v) { return isIn(v, 1, 16); });
+    visit("maxTopDisparities", &P::maxTopDisparities, ">= 0", [](int v) { return v >= 0; });
     visit("delta0", &P::delta0, "in [0, 1) or AUTO", [](double v) { return v == M::AUTO || (v >= 0 && v < 1); });
     visit("beta", &P::beta, "in [0, 1] or AUTO", [](double v) { return v == M::AUTO || (v >= 0 && v <= 1); });
     visit("gamma", &P::gamma, "finite and > 0", isPositive);
     visit("colorTruncation", &P::colorTruncation, "finite and >= 0", isNotNegative);
     visit("gradientTruncation", &P::gradientTruncation, "finite and >= 0", isNotNegative);
     visit("colorWeight", &P::colorWeight, "in [0, 1]", [](double v) { return v >= 0 && v <= 1; });
-    visit("disparityMedianSize", &P::disparityMedianSize, "0, odd in 3..31, or AUTO",
-          [](int v) { return v == M::AUTO || v == 0 || isOddIn(v, 3, 31); });
+    visit("disparityMedianSize", &P::disparityMedianSize, "0, 3, 5, 7 or AUTO",
+          [](int v) { return v == M::AUTO || v == 0 || isOddIn(v, 3, 7); });
     visit("disparityMedianPasses", &P::disparityMedianPasses, "in 1..8", [](int v) { return isIn(v, 1, 8); });
     visit("matchingCost", &P::matchingCost, "COST_COLOR_GRADIENT or COST_CENSUS",
           [](int v) { return v == M::COST_COLOR_GRADIENT || v == M::COST_CENSUS; });
@@ -71,8 +70,8 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
     visit("useSubpixel", &P::useSubpixel, "any", isFlag);
     visit("aggregation", &P::aggregation, "AGGREGATION_TREES or AGGREGATION_SCANLINES",
           [](int v) { return v == M::AGGREGATION_TREES || v == M::AGGREGATION_SCANLINES; });
-    visit("smallPenalty", &P::smallPenalty, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
-    visit("largePenalty", &P::largePenalty, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
+    visit("P1", &P::P1, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
+    visit("P2", &P::P2, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
     visit("finestLayer", &P::finestLayer, "in 0..15", [](int v) { return isIn(v, 0, 15); });
     visit("scanlinePasses", &P::scanlinePasses, "in 1..4", [](int v) { return isIn(v, 1, 4); });
     visit("fillOcclusions", &P::fillOcclusions, "any", isFlag);
@@ -170,16 +169,6 @@ Ptr<TreeStrategy> readStrategy(const FileNode& fn, const Ptr<TreeStrategy>& own)
     return own;
 }
 
-int numLayers(const MatcherParameters& p)
-{
-    if (p.numLayers > 0)
-        return p.numLayers;
-    int layers = p.numLayers == M::AUTO && layerDisparities(p.numDisparities, 2) >= leastTopDisparities ? 3 : 2;
-    while (layerDisparities(p.numDisparities, layers - 1) > mostTopDisparities)
-        ++layers;
-    return layers;
-}
-
 //! Of parameters alone, and of the image's size
 void checkCombinations(const MatcherParameters& p, Size size)
 {
@@ -201,7 +190,7 @@ void checkCombinations(const MatcherParameters& p, Size size)
 
     if (p.speckleWindowSize > 0 && size.area() > INT_MAX / speckleBytes)
         CV_Error(Error::StsOutOfRange,
-                 format("speckleWindowSize must be 0 for images of more than %d pixels", INT_MAX / speckleBytes));
+                 format("speckleWindowSize must be <= 0 for images of more than %d pixels", INT_MAX / speckleBytes));
 }
 
 } // namespace
@@ -231,12 +220,12 @@ MatcherParameters presetParameters(int preset)
 
     p.aggregation = M::AGGREGATION_SCANLINES;
     p.treeStrategy = createSegmentTree();
-    p.numLayers = M::AUTO;
+    p.maxTopDisparities = 64;
     if (preset == M::PRESET_ULTRAFAST)
         p.finestLayer = 1;
     if (preset == M::PRESET_QUALITY)
     {
-        p.numLayers = M::FEWEST_LAYERS;
+        p.numLayers = 2;
         p.scanlinePasses = 2;
         p.disparityMedianSize = 7;
         p.disparityMedianPasses = 2;
@@ -293,12 +282,26 @@ MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ow
     return p;
 }
 
+int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities)
+{
+    if (maxTopDisparities == 0)
+        return numLayers;
+    int layers = numLayers;
+    const auto topDisparities = [&](int count) { return layerDisparities(numDisparities, count - 1); };
+    while (layers > 2 && topDisparities(layers) < leastTopDisparities)
+        --layers;
+    while (topDisparities(layers) > maxTopDisparities && topDisparities(layers + 1) >= leastTopDisparities)
+        ++layers;
+    return layers;
+}
+
 PairSettings resolve(const MatcherParameters& p, const Mat& left)
 {
     const Size size = left.size();
     checkCombinations(p, size);
     PairSettings settings;
-    settings.layers = p.usePrediction ? countLayers(size, numLayers(p)) : 1;
+    settings.layers =
+        p.usePrediction ? countLayers(size, chooseLayers(p.numDisparities, p.numLayers, p.maxTopDisparities)) : 1;
     settings.finestLayer = std::min(p.finestLayer, settings.layers - 1);
     settings.extension = p.minDisparity < 0 ? (int)alignSize(-p.minDisparity, 1 << (settings.layers - 1)) : 0;
     const int64 width = (int64)size.width + settings.extension;

@@ -26,6 +26,7 @@ struct MatcherParameters
     bool usePrediction = true;
     bool useMedianPrefilter = false;
     int numLayers = 3;
+    int maxTopDisparities = 0; // no limit
     double delta0 = HDPTreeMatcher::AUTO;
     double beta = HDPTreeMatcher::AUTO;
     double gamma = 25.5;
@@ -39,8 +40,8 @@ struct MatcherParameters
     int intervalMargin = 0;
     bool useSubpixel = false;
     int aggregation = HDPTreeMatcher::AGGREGATION_TREES;
-    int smallPenalty = 12;
-    int largePenalty = 50;
+    int P1 = 12;
+    int P2 = 50;
     int finestLayer = 0;
     int scanlinePasses = 1;
     bool fillOcclusions = false;
@@ -64,6 +65,11 @@ void writeParameters(const MatcherParameters& parameters, FileStorage& fs);
 //! What writeParameters() has written; a parameter that is missing gets the value of PRESET_PAPER. Throws if a value is
 //! not valid. ownStrategy: the strategy of the caller, for files that name it.
 MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ownStrategy);
+
+/** Number of pyramid layers for so many disparities, in images of any size: numLayers or more, until the top layer has
+maxTopDisparities or less. A layer that would leave it less than 16 is left out, but for the first two. See
+HDPTreeMatcher::setMaxTopDisparities(). */
+CV_EXPORTS int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities);
 
 //! What the parameters amount to for a pair
 struct PairSettings

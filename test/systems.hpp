@@ -78,16 +78,15 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : isQuality ? 7 : 5);
     matcher.setDisparityMedianPasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
-    matcher.setNumLayers(!hasScanlines                              ? 3
-                         : preset == HDPTreeMatcher::PRESET_QUALITY ? (int)HDPTreeMatcher::FEWEST_LAYERS
-                                                                    : (int)HDPTreeMatcher::AUTO);
+    matcher.setNumLayers(isQuality ? 2 : 3);
+    matcher.setMaxTopDisparities(hasScanlines ? 64 : 0);
     matcher.setFinestLayer(preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 1 : 0);
     matcher.setDisparityPrior(isTree ? HDPTreeMatcher::PRIOR_UPPER_LAYER : HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
     matcher.setIntervalMargin(isTree ? 1 : 0);
     matcher.setDelta0(isTree ? 0.02 : (double)HDPTreeMatcher::AUTO);
     matcher.setBeta(isTree ? 0.9 : (double)HDPTreeMatcher::AUTO);
-    matcher.setSmallPenalty(12);
-    matcher.setLargePenalty(50);
+    matcher.setP1(12);
+    matcher.setP2(50);
     matcher.setScanlinePasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setUseNonLocalRefinement(false);
     matcher.setFillOcclusions(!isPaper);

@@ -121,10 +121,10 @@ TEST(HDPStereo_BadInput, setters)
         expectBadValue([bad](HDPTreeMatcher& m) { m.setBlockSize(bad); }, "blockSize");
     for (int bad : { -1, INT_MIN })
     {
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleWindowSize(bad); }, "speckleWindowSize");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleRange(bad); }, "speckleRange");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setMaxTopDisparities(bad); }, "maxTopDisparities");
     }
-    for (int bad : { 0, -3, 17, INT_MAX, INT_MIN })
+    for (int bad : { 0, -1, 17, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setNumLayers(bad); }, "numLayers");
     for (int bad : { 0, -1, 5, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setScanlinePasses(bad); }, "scanlinePasses");
@@ -132,10 +132,10 @@ TEST(HDPStereo_BadInput, setters)
         expectBadValue([bad](HDPTreeMatcher& m) { m.setFinestLayer(bad); }, "finestLayer");
     for (int bad : { -1, 101, INT_MAX, INT_MIN })
     {
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setSmallPenalty(bad); }, "smallPenalty");
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setLargePenalty(bad); }, "largePenalty");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setP1(bad); }, "P1");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setP2(bad); }, "P2");
     }
-    for (int bad : { 1, 2, 4, 30, 33, -2, -3, INT_MAX, INT_MIN })
+    for (int bad : { 1, 2, 4, 6, 8, 9, 31, -2, -3, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityMedianSize(bad); }, "disparityMedianSize");
     for (int bad : { 0, -1, 9, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityMedianPasses(bad); }, "disparityMedianPasses");

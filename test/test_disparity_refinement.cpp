@@ -14,12 +14,12 @@ TEST(HDPStereo_DisparityRefinement, median_by_sorting)
     RNG rng(22);
     for (const Size& size : { Size(1, 1), Size(1, 7), Size(7, 1), Size(2, 2), Size(5, 3), Size(33, 29) })
         for (int levels : { 2, 64, 256, 257, 1000, 65536 })
-            for (int window : { 3, 5, 7, 9, 15, 31 })
+            for (int window : { 3, 5, 7 })
             {
                 SCOPED_TRACE(testing::Message() << size << ", window " << window << ", levels " << levels);
                 const Mat disparity = randomImage(rng, size, CV_16UC1, levels);
-                Mat filtered, stripes;
-                hdp::medianDisparity(disparity, window, stripes, filtered);
+                Mat filtered;
+                hdp::medianDisparity(disparity, window, filtered);
                 expectIdentical(oracle::median(disparity, window), filtered);
             }
 }
@@ -27,12 +27,12 @@ TEST(HDPStereo_DisparityRefinement, median_by_sorting)
 TEST(HDPStereo_DisparityRefinement, median_of_many_rows)
 {
     RNG rng(23);
-    for (int window : { 5, 7 })
+    for (int window : { 3, 5, 7 })
         for (int levels : { 300, 65536 })
         {
             const Mat disparity = randomImage(rng, Size(20, 700), CV_16UC1, levels);
-            Mat filtered(20, 20, CV_16UC1), stripes; // a buffer of another size
-            hdp::medianDisparity(disparity, window, stripes, filtered);
+            Mat filtered(20, 20, CV_16UC1); // a buffer of another size
+            hdp::medianDisparity(disparity, window, filtered);
             expectIdentical(oracle::median(disparity, window), filtered);
         }
 }

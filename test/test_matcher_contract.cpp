@@ -6,7 +6,9 @@
 #include "oracles.hpp"
 #include "systems.hpp"
 #include "synthetic_pair.hpp"
+#include "../src/matcher_parameters.hpp"
 
+#include <functional>
 #include <thread>
 
 namespace opencv_test {
@@ -57,6 +59,7 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_TRUE(matcher->getUsePrediction());
     EXPECT_FALSE(matcher->getUseMedianPrefilter());
     EXPECT_EQ(3, matcher->getNumLayers());
+    EXPECT_EQ(0, matcher->getMaxTopDisparities());
     EXPECT_TRUE(matcher->getPredictionModel().empty());
     EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getDelta0());
     EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getBeta());
@@ -71,8 +74,8 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_EQ(0, matcher->getIntervalMargin());
     EXPECT_FALSE(matcher->getUseSubpixel());
     EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, matcher->getAggregation());
-    EXPECT_EQ(12, matcher->getSmallPenalty());
-    EXPECT_EQ(50, matcher->getLargePenalty());
+    EXPECT_EQ(12, matcher->getP1());
+    EXPECT_EQ(50, matcher->getP2());
     EXPECT_EQ(1, matcher->getScanlinePasses());
     EXPECT_EQ(0, matcher->getFinestLayer());
     EXPECT_FALSE(matcher->getUseNonLocalRefinement());
@@ -112,19 +115,20 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS(matcher, MinDisparity, 5, 0, -128);
     EXPECT_KEEPS(matcher, NumDisparities, 1, 17, 64, 300);
     EXPECT_KEEPS(matcher, BlockSize, 3, 31, 1);
-    EXPECT_KEEPS(matcher, SpeckleWindowSize, 100, INT_MAX, 0);
-    EXPECT_KEEPS(matcher, SpeckleRange, 2, 2047, 0);
+    EXPECT_KEEPS(matcher, SpeckleWindowSize, 100, INT_MAX, -1, INT_MIN, 0);
+    EXPECT_KEEPS(matcher, SpeckleRange, 2, 4000, INT_MAX, 0);
     EXPECT_KEEPS(matcher, Disp12MaxDiff, 1, 0, -1, INT_MAX);
     EXPECT_KEEPS(matcher, UsePrediction, false, true);
     EXPECT_KEEPS(matcher, UseMedianPrefilter, true, false);
-    EXPECT_KEEPS(matcher, NumLayers, 1, 2, 16, (int)HDPTreeMatcher::AUTO, (int)HDPTreeMatcher::FEWEST_LAYERS);
+    EXPECT_KEEPS(matcher, NumLayers, 1, 2, 16);
+    EXPECT_KEEPS(matcher, MaxTopDisparities, 1, 64, INT_MAX, 0);
     EXPECT_KEEPS(matcher, Delta0, 0., 0.064, 0.999, (double)HDPTreeMatcher::AUTO);
     EXPECT_KEEPS(matcher, Beta, 0., 0.6, 1., (double)HDPTreeMatcher::AUTO);
     EXPECT_KEEPS(matcher, Gamma, 1e-3, 25.5, 1e6);
     EXPECT_KEEPS(matcher, ColorTruncation, 0., 7.5, 255.);
     EXPECT_KEEPS(matcher, GradientTruncation, 0., 7.5, 255.);
     EXPECT_KEEPS(matcher, ColorWeight, 0., 0.5, 1.);
-    EXPECT_KEEPS(matcher, DisparityMedianSize, 0, 3, 31, (int)HDPTreeMatcher::AUTO);
+    EXPECT_KEEPS(matcher, DisparityMedianSize, 0, 3, 5, 7, (int)HDPTreeMatcher::AUTO);
     EXPECT_KEEPS(matcher, DisparityMedianPasses, 8, 2, 1);
     EXPECT_KEEPS(matcher, MatchingCost, (int)HDPTreeMatcher::COST_CENSUS, (int)HDPTreeMatcher::COST_COLOR_GRADIENT);
     EXPECT_KEEPS(matcher, DisparityPrior, (int)HDPTreeMatcher::PRIOR_UPPER_LAYER,
@@ -133,8 +137,8 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS(matcher, UseSubpixel, true, false);
     EXPECT_KEEPS(matcher, Aggregation, (int)HDPTreeMatcher::AGGREGATION_SCANLINES,
                  (int)HDPTreeMatcher::AGGREGATION_TREES);
-    EXPECT_KEEPS(matcher, SmallPenalty, 0, 100, 12);
-    EXPECT_KEEPS(matcher, LargePenalty, 0, 100, 50);
+    EXPECT_KEEPS(matcher, P1, 0, 100, 12);
+    EXPECT_KEEPS(matcher, P2, 0, 100, 50);
     EXPECT_KEEPS(matcher, ScanlinePasses, 4, 2, 1);
     EXPECT_KEEPS(matcher, FinestLayer, 15, 1, 0);
     EXPECT_KEEPS(matcher, UseNonLocalRefinement, true, false);
@@ -191,10 +195,14 @@ const Change commonChanges[] = {
     { "disparityMedianPasses", [](HDPTreeMatcher& m) { m.setDisparityMedianPasses(4); } },
     { "useSubpixel", [](HDPTreeMatcher& m) { m.setUseSubpixel(!m.getUseSubpixel()); } },
     { "finestLayer", [](HDPTreeMatcher& m) { m.setFinestLayer(1 - m.getFinestLayer()); } },
-    { "useNonLocalRefinement", [](HDPTreeMatcher& m) { m.setUseNonLocalRefinement(true); } },
+    { "maxTopDisparities", [](HDPTreeMatcher& m) {
+        m.setNumLayers(3); // all have 3 layers without a limit, and 2 with one
+        m.setMaxTopDisparities(64 - m.getMaxTopDisparities());
+    } },
 };
 
-const Change predictionChanges[] = {
+//! What has no effect with scanlines
+const Change treeChanges[] = {
     { "delta0", [](HDPTreeMatcher& m) { m.setDelta0(0.3); } },
     { "beta", [](HDPTreeMatcher& m) { m.setBeta(0.1); } },
     { "intervalMargin", [](HDPTreeMatcher& m) { m.setIntervalMargin(2); } },
@@ -202,6 +210,7 @@ const Change predictionChanges[] = {
     { "predictionModel", [](HDPTreeMatcher& m) {
         m.setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE));
     } },
+    { "useNonLocalRefinement", [](HDPTreeMatcher& m) { m.setUseNonLocalRefinement(true); } },
 };
 
 const Change colorAndGradientChanges[] = {
@@ -212,8 +221,8 @@ const Change colorAndGradientChanges[] = {
 };
 
 const Change scanlineChanges[] = {
-    { "smallPenalty", [](HDPTreeMatcher& m) { m.setSmallPenalty(3); } },
-    { "largePenalty", [](HDPTreeMatcher& m) { m.setLargePenalty(90); } },
+    { "P1", [](HDPTreeMatcher& m) { m.setP1(3); } },
+    { "P2", [](HDPTreeMatcher& m) { m.setP2(90); } },
     { "scanlinePasses", [](HDPTreeMatcher& m) { m.setScanlinePasses(3); } },
     { "aggregation", [](HDPTreeMatcher& m) { m.setAggregation(HDPTreeMatcher::AGGREGATION_TREES); } },
 };
@@ -240,7 +249,7 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, disparities);
         const bool hasScanlines = matcher->getAggregation() == HDPTreeMatcher::AGGREGATION_SCANLINES;
         expectEffects(preset, commonChanges, true);
-        expectEffects(preset, predictionChanges, !hasScanlines);
+        expectEffects(preset, treeChanges, !hasScanlines);
         if (matcher->getMatchingCost() == HDPTreeMatcher::COST_COLOR_GRADIENT)
             expectEffects(preset, colorAndGradientChanges, true);
         if (hasScanlines && matcher->getFinestLayer() == 0) // else only the top layer is matched, which has a tree
@@ -442,6 +451,7 @@ TEST(HDPStereo_MatcherContract, any_number_of_layers)
         SCOPED_TRACE(preset.name);
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, disparities);
         matcher->setPredictionModel(model);
+        matcher->setMaxTopDisparities(0);
         for (int layers = 1; layers <= 16; ++layers)
         {
             matcher->setNumLayers(layers);
@@ -604,6 +614,27 @@ TEST_P(HDPStereo_MatcherPreset, speckles_as_filterSpeckles_removes_them)
         }
 }
 
+//! cv::StereoSGBM takes any int as the window's size, and ranges that are larger than any disparity.
+TEST(HDPStereo_MatcherContract, speckle_parameters_of_any_size)
+{
+    const SyntheticPair& pair = testPair();
+    const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, disparities);
+    const Mat unfiltered = match(*matcher, pair.left, pair.right);
+    matcher->setSpeckleRange(1);
+    for (int off : { 0, -1, INT_MIN })
+    {
+        matcher->setSpeckleWindowSize(off);
+        expectIdentical(unfiltered, match(*matcher, pair.left, pair.right));
+    }
+    matcher->setSpeckleWindowSize(unfiltered.total() / 2);
+    EXPECT_GT(countDifferent(unfiltered, match(*matcher, pair.left, pair.right)), 0);
+    for (int range : { disparities, 2047, 2048, 4000, INT_MAX }) // all pixels are one speckle
+    {
+        matcher->setSpeckleRange(range);
+        expectIdentical(unfiltered, match(*matcher, pair.left, pair.right));
+    }
+}
+
 ////////////////////////////////////////////// reproducible //////////////////////////////////////////////
 
 class ThreadCount
@@ -716,36 +747,202 @@ TEST(HDPStereo_MatcherContract, search_ratios)
     EXPECT_EQ(std::vector<double>(1, 1.), ratios);
 }
 
-//! The fewest layers, but at least two, that leave the top one 64 disparities or less, and have a pixel; AUTO takes a
-//! third one if it leaves 16 disparities.
-TEST(HDPStereo_MatcherContract, automatic_number_of_layers)
+//! At least two, or three that leave the top one 16 disparities or more, and so many that it has 64 or less
+TEST(HDPStereo_MatcherContract, number_of_layers)
 {
-    const int fewest[][2] = { { 1, 2 },   { 5, 2 },   { 64, 2 },   { 128, 2 },  { 129, 3 },
-                              { 256, 3 }, { 257, 4 }, { 1024, 5 }, { 1025, 6 }, { 2048, 6 } };
-    const int automatic[][2] = { { 1, 2 },   { 5, 2 },   { 60, 2 },   { 61, 3 },   { 129, 3 },
-                                 { 256, 3 }, { 257, 4 }, { 1024, 5 }, { 1025, 6 }, { 2048, 6 } };
+    for (const System& preset : presets)
+        for (int numDisparities = 1; numDisparities <= 4096; ++numDisparities)
+        {
+            const Ptr<HDPTreeMatcher> matcher = createSystem(preset, numDisparities);
+            int expected = 3;
+            if (preset.preset != HDPTreeMatcher::PRESET_PAPER && preset.preset != HDPTreeMatcher::PRESET_TREE)
+            {
+                const bool mayHaveThree = preset.preset != HDPTreeMatcher::PRESET_QUALITY && numDisparities > 60;
+                expected = mayHaveThree ? 3 : 2;
+                for (int limit = 64 << (expected - 1); numDisparities > limit; limit *= 2)
+                    ++expected;
+            }
+            ASSERT_EQ(expected,
+                      hdp::chooseLayers(numDisparities, matcher->getNumLayers(), matcher->getMaxTopDisparities()))
+                << preset.name << ", " << numDisparities << " disparities";
+        }
+    for (int numLayers : { 1, 2, 16 })
+        EXPECT_EQ(numLayers, hdp::chooseLayers(1024, numLayers, 0)) << "no limit";
+    EXPECT_EQ(1, hdp::chooseLayers(64, 1, 64));
+    EXPECT_EQ(2, hdp::chooseLayers(65, 1, 64));
+    EXPECT_EQ(3, hdp::chooseLayers(64, 1, 1)) << "16 disparities";
+    EXPECT_EQ(2, hdp::chooseLayers(60, 1, 1));
+    EXPECT_EQ(1, hdp::chooseLayers(30, 1, 1)) << "15 in a second layer";
+    EXPECT_EQ(2, hdp::chooseLayers(1, 16, INT_MAX));
+}
+
+//! The image has so many layers, and no more than it has pixels for; without prediction one.
+TEST(HDPStereo_MatcherContract, layers_of_an_image)
+{
     const Mat image(33, 40, CV_8UC1, Scalar(7)), small(9, 8, CV_8UC1, Scalar(7));
     for (const System& system : { presetFast, presetUltrafast, presetQuality })
-        for (const int* e : system.preset == HDPTreeMatcher::PRESET_QUALITY ? fewest : automatic)
+        for (int numDisparities : { 1, 5, 64, 129, 257, 1024, 2048 })
         {
-            SCOPED_TRACE(testing::Message() << system.name << ", " << e[0] << " disparities");
-            const Ptr<HDPTreeMatcher> matcher = createSystem(system, e[0]);
-            std::vector<double> ratios, ofLayers(e[1], 1.);
-            for (int layer = 0; layer < e[1] - 1; ++layer) // 16 candidates
+            SCOPED_TRACE(testing::Message() << system.name << ", " << numDisparities << " disparities");
+            const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
+            const int layers =
+                hdp::chooseLayers(numDisparities, matcher->getNumLayers(), matcher->getMaxTopDisparities());
+            std::vector<double> ratios, ofLayers(layers, 1.);
+            for (int layer = 0; layer < layers - 1; ++layer) // 16 candidates
                 ofLayers[layer] =
-                    layer < matcher->getFinestLayer() ? 0 : std::min(1., 16. / (((e[0] - 1) >> layer) + 1));
+                    layer < matcher->getFinestLayer() ? 0 : std::min(1., 16. / (((numDisparities - 1) >> layer) + 1));
             match(*matcher, image, image);
             matcher->getSearchRatios(ratios);
             EXPECT_EQ(ofLayers, ratios);
 
             match(*matcher, small, small);
             matcher->getSearchRatios(ratios);
-            EXPECT_EQ((size_t)std::min(e[1], 4), ratios.size()) << "9 x 8 pixels halved 3 times are 1 x 1";
+            EXPECT_EQ((size_t)std::min(layers, 4), ratios.size()) << "9 x 8 pixels halved 3 times are 1 x 1";
             matcher->setUsePrediction(false);
             match(*matcher, image, image);
             matcher->getSearchRatios(ratios);
             EXPECT_EQ(std::vector<double>(1, 1.), ratios);
         }
+}
+
+//! The finest layer's disparities are those of the result, and each layer has half the size of the one below.
+TEST(HDPStereo_MatcherContract, disparities_of_layers)
+{
+    const SyntheticPair& pair = testPair();
+    for (const System& preset : presets)
+        for (int minDisparity : { 0, -5, 3 })
+        {
+            SCOPED_TRACE(testing::Message() << preset.name << " from " << minDisparity);
+            const Ptr<HDPTreeMatcher> matcher = createSystem(preset, disparities, minDisparity);
+            Mat ofLayer(3, 3, CV_8UC1);
+            matcher->getLayerDisparity(0, ofLayer);
+            EXPECT_TRUE(ofLayer.empty());
+            matcher->setDisparityDepth(CV_32F);
+            const Mat disparity = match(*matcher, pair.left, pair.right);
+            std::vector<double> ratios;
+            matcher->getSearchRatios(ratios);
+            Mat upper;
+            for (int layer = (int)ratios.size() - 1; layer >= matcher->getFinestLayer(); --layer)
+            {
+                matcher->getLayerDisparity(layer, ofLayer);
+                ASSERT_EQ(CV_32FC1, ofLayer.type());
+                ASSERT_EQ(Size(pair.left.cols >> layer, pair.left.rows >> layer), ofLayer.size());
+                double least, most;
+                cv::minMaxLoc(ofLayer, &least, &most);
+                EXPECT_TRUE(least >= 0 && most <= (disparities - 1) / (1 << layer)) << least << " .. " << most;
+                if (!upper.empty()) // most of the pixels have about twice the disparity of the pixel above them
+                {
+                    Mat predicted;
+                    cv::resize(upper * 2, predicted, ofLayer.size(), 0, 0, INTER_NEAREST);
+                    EXPECT_LE(cv::countNonZero(cv::abs(predicted - ofLayer) > 2), (int)ofLayer.total() / 4);
+                }
+                upper = ofLayer.clone();
+            }
+            if (matcher->getFinestLayer() == 0)
+            {
+                expectIdentical(disparity, Mat(ofLayer + minDisparity));
+            }
+            else
+            {
+                matcher->getLayerDisparity(0, ofLayer);
+                EXPECT_TRUE(ofLayer.empty()) << "of a layer that was not matched";
+            }
+            matcher->getLayerDisparity((int)ratios.size(), ofLayer);
+            EXPECT_TRUE(ofLayer.empty()) << "of more layers than there are";
+        }
+}
+
+//! What there is to ask after compute(), but for its disparities
+struct Reports
+{
+    Mat confidence, trees, intervals;
+    std::vector<Mat> layers;
+    std::vector<std::vector<double>> priors;
+    std::vector<double> ratios, times;
+    std::vector<String> stages;
+
+    explicit Reports(const HDPTreeMatcher& matcher) : layers(3), priors(3)
+    {
+        matcher.getConfidence(confidence);
+        matcher.getForest(trees, intervals);
+        matcher.getSearchRatios(ratios);
+        matcher.getStageTimes(stages, times);
+        for (int layer = 0; layer < 3; ++layer)
+        {
+            matcher.getLayerDisparity(layer, layers[layer]);
+            matcher.getLayerPrior(layer, priors[layer]);
+        }
+    }
+
+    size_t empty() const
+    {
+        size_t count =
+            confidence.empty() + trees.empty() + intervals.empty() + ratios.empty() + stages.empty() + times.empty();
+        for (int layer = 0; layer < 3; ++layer)
+            count += layers[layer].empty() + priors[layer].empty();
+        return count;
+    }
+};
+
+//! Nothing is left of the pair before, whatever compute() has thrown for.
+TEST_P(HDPStereo_MatcherPreset, no_reports_after_an_exception)
+{
+    const SyntheticPair& pair = testPair();
+    const System& system = GetParam();
+    const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
+    const size_t all = 12;
+    EXPECT_EQ(all, Reports(*matcher).empty()) << "before the first pair";
+    const Ptr<DisparityPredictionModel> noLayers = DisparityPredictionModel::create();
+    Mat disparity;
+    Mat_<double> fixedType;
+    const std::function<void()> bad[] = {
+        [&] { matcher->compute(pair.left, Mat(), disparity); },
+        [&] { matcher->compute(pair.left, pair.right.rowRange(0, 9), disparity); },
+        [&] { matcher->compute(pair.left, pair.right, fixedType); },
+        [&] {
+        matcher->setMinDisparity(INT_MAX);
+        matcher->compute(pair.left, pair.right, disparity);
+        },
+        [&] {
+        matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREES);
+        matcher->setPredictionModel(noLayers);
+        matcher->compute(pair.left, pair.right, disparity);
+    },
+                                };
+    for (const std::function<void()>& compute : bad)
+    {
+        configure(*matcher, system);
+        matcher->setMinDisparity(0);
+        matcher->setPredictionModel(Ptr<DisparityPredictionModel>());
+        match(*matcher, pair.left, pair.right);
+        EXPECT_LE(Reports(*matcher).empty(), 5u);
+        EXPECT_THROW(compute(), cv::Exception);
+        EXPECT_EQ(all, Reports(*matcher).empty());
+    }
+}
+
+TEST(HDPStereo_MatcherContract, arrays_that_are_not_needed)
+{
+    const SyntheticPair& pair = testPair();
+    const Ptr<HDPTreeMatcher> matcher = createMatcher();
+    for (int repetition = 0; repetition < 2; ++repetition) // before and after compute()
+    {
+        Mat trees, intervals, both[2];
+        EXPECT_NO_THROW(matcher->getForest(trees, noArray()));
+        EXPECT_NO_THROW(matcher->getForest(noArray(), intervals));
+        EXPECT_NO_THROW(matcher->getForest(noArray(), noArray()));
+        matcher->getForest(both[0], both[1]);
+        EXPECT_EQ(repetition == 0, trees.empty() && intervals.empty());
+        if (repetition > 0)
+        {
+            expectIdentical(both[0], trees);
+            expectIdentical(both[1], intervals);
+        }
+        match(*matcher, pair.left, pair.right);
+    }
+    std::vector<double> prior;
+    EXPECT_THROW(matcher->getLayerDisparity(-1, noArray()), cv::Exception);
+    EXPECT_THROW(matcher->getLayerPrior(-1, prior), cv::Exception);
 }
 
 TEST_P(HDPStereo_MatcherPreset, stage_times)

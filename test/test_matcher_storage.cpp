@@ -21,6 +21,7 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setUsePrediction(false);
     matcher->setUseMedianPrefilter(true);
     matcher->setNumLayers(2);
+    matcher->setMaxTopDisparities(48);
     const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
     model->addLayer(std::vector<double>(1, 0.375), std::vector<double>(1, 1.25), std::vector<double>(1, 1.));
     matcher->setPredictionModel(model);
@@ -37,8 +38,8 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setIntervalMargin(2);
     matcher->setUseSubpixel(true);
     matcher->setAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
-    matcher->setSmallPenalty(9);
-    matcher->setLargePenalty(44);
+    matcher->setP1(9);
+    matcher->setP2(44);
     matcher->setScanlinePasses(3);
     matcher->setFinestLayer(2);
     matcher->setUseNonLocalRefinement(true);
@@ -73,6 +74,7 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(usePrediction, read->getUsePrediction());
             EXPECT_TRUE(read->getUseMedianPrefilter());
             EXPECT_EQ(2, read->getNumLayers());
+            EXPECT_EQ(48, read->getMaxTopDisparities());
             ASSERT_FALSE(read->getPredictionModel().empty());
             EXPECT_EQ(1, read->getPredictionModel()->getNumLayers());
             EXPECT_EQ(0.03125, read->getDelta0());
@@ -88,8 +90,8 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(2, read->getIntervalMargin());
             EXPECT_TRUE(read->getUseSubpixel());
             EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_SCANLINES, read->getAggregation());
-            EXPECT_EQ(9, read->getSmallPenalty());
-            EXPECT_EQ(44, read->getLargePenalty());
+            EXPECT_EQ(9, read->getP1());
+            EXPECT_EQ(44, read->getP2());
             EXPECT_EQ(3, read->getScanlinePasses());
             EXPECT_EQ(2, read->getFinestLayer());
             EXPECT_TRUE(read->getUseNonLocalRefinement());
@@ -223,22 +225,23 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
     } hostile[] = {
         { "numDisparities", { "0", "-1", "-2147483648", "1.5", 0 } },
         { "blockSize", { "0", "2", "-1", "1000001", "3.5", 0 } },
-        { "speckleWindowSize", { "-1", "1.5", 0 } },
+        { "speckleWindowSize", { "1.5", 0 } },
         { "speckleRange", { "-1", "0.5", 0 } },
         { "minDisparity", { "0.5", 0 } },
         { "disp12MaxDiff", { "0.5", 0 } },
         { "usePrediction", { "0.5", 0 } },
         { "useMedianPrefilter", { "0.5", 0 } },
-        { "numLayers", { "0", "-3", "17", "2147483647", "1.5", 0 } },
-        { "disparityMedianSize", { "1", "2", "-2", "33", "2147483647", 0 } },
+        { "numLayers", { "0", "-1", "17", "2147483647", "1.5", 0 } },
+        { "maxTopDisparities", { "-1", "-2147483648", "1.5", 0 } },
+        { "disparityMedianSize", { "1", "2", "-2", "4", "9", "2147483647", 0 } },
         { "disparityMedianPasses", { "0", "-1", "9", "2147483647", "1.5", 0 } },
         { "matchingCost", { "-1", "2", "2147483647", "0.5", 0 } },
         { "disparityPrior", { "-1", "2", "2147483647", "0.5", 0 } },
         { "intervalMargin", { "-1", "65", "2147483647", "0.5", 0 } },
         { "useSubpixel", { "0.5", 0 } },
         { "aggregation", { "-1", "2", "2147483647", "0.5", 0 } },
-        { "smallPenalty", { "-1", "101", "2147483647", "0.5", 0 } },
-        { "largePenalty", { "-1", "101", "2147483647", "0.5", 0 } },
+        { "P1", { "-1", "101", "2147483647", "0.5", 0 } },
+        { "P2", { "-1", "101", "2147483647", "0.5", 0 } },
         { "scanlinePasses", { "0", "-1", "5", "2147483647", "0.5", 0 } },
         { "finestLayer", { "-1", "16", "2147483647", "0.5", 0 } },
         { "useNonLocalRefinement", { "0.5", 0 } },
@@ -289,9 +292,19 @@ TEST(HDPStereo_MatcherStorage, missing_keys)
 //! A file that knows nothing of the parameters that later versions have means the paper's system.
 TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
 {
-    const char* const added[] = { "disparityMedianPasses", "matchingCost", "disparityPrior",        "intervalMargin",
-                                  "useSubpixel",           "aggregation",  "smallPenalty",          "largePenalty",
-                                  "scanlinePasses",        "finestLayer",  "useNonLocalRefinement", "fillOcclusions" };
+    const char* const added[] = { "disparityMedianPasses",
+                                  "matchingCost",
+                                  "disparityPrior",
+                                  "intervalMargin",
+                                  "useSubpixel",
+                                  "aggregation",
+                                  "P1",
+                                  "P2",
+                                  "maxTopDisparities",
+                                  "scanlinePasses",
+                                  "finestLayer",
+                                  "useNonLocalRefinement",
+                                  "fillOcclusions" };
     const Ptr<HDPTreeMatcher> paper = HDPTreeMatcher::create(3, 19, HDPTreeMatcher::PRESET_PAPER);
     std::string text = serialized(*paper);
     for (const char* key : added)

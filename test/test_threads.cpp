@@ -67,7 +67,8 @@ Ptr<HDPTreeMatcher> createMatcher(int i)
 struct Result
 {
     Mat disparity, confidence, trees, intervals;
-    std::vector<double> prior, ratios;
+    std::vector<double> priors[3], ratios;
+    Mat layers[3];
 };
 
 Result computeAll(HDPTreeMatcher& matcher, const SyntheticPair& pair)
@@ -76,7 +77,11 @@ Result computeAll(HDPTreeMatcher& matcher, const SyntheticPair& pair)
     matcher.compute(pair.left, pair.right, result.disparity);
     matcher.getConfidence(result.confidence);
     matcher.getForest(result.trees, result.intervals);
-    matcher.getLayerPrior(result.prior);
+    for (int layer = 0; layer < 3; ++layer)
+    {
+        matcher.getLayerPrior(layer, result.priors[layer]);
+        matcher.getLayerDisparity(layer, result.layers[layer]);
+    }
     matcher.getSearchRatios(result.ratios);
     return result;
 }
@@ -87,7 +92,13 @@ void expectEqual(const Result& expected, const Result& actual)
     expectIdentical(expected.confidence, actual.confidence);
     expectIdentical(expected.trees, actual.trees);
     expectIdentical(expected.intervals, actual.intervals);
-    EXPECT_EQ(expected.prior, actual.prior);
+    for (int layer = 0; layer < 3; ++layer)
+    {
+        EXPECT_EQ(expected.priors[layer], actual.priors[layer]);
+        ASSERT_EQ(expected.layers[layer].empty(), actual.layers[layer].empty());
+        if (!expected.layers[layer].empty())
+            expectIdentical(expected.layers[layer], actual.layers[layer]);
+    }
     EXPECT_EQ(expected.ratios, actual.ratios);
 }
 

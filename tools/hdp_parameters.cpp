@@ -77,8 +77,8 @@ static std::vector<Variant> variantsOf(int preset)
         add<int>(variants, "numLayers", &M::setNumLayers, { 2, 4 });
         add<int>(variants, "finestLayer", &M::setFinestLayer, { 1, 2 });
         add<int>(variants, "scanlinePasses", &M::setScanlinePasses, { 2, 3 });
-        add<int>(variants, "smallPenalty", &M::setSmallPenalty, { 6, 24 });
-        add<int>(variants, "largePenalty", &M::setLargePenalty, { 25, 100 });
+        add<int>(variants, "P1", &M::setP1, { 6, 24 });
+        add<int>(variants, "P2", &M::setP2, { 25, 100 });
     }
     else
     {

@@ -92,7 +92,7 @@ String predictionFigures(const String& name, const HDPTreeMatcher& matcher,
     out << figure(widthPicture(intervals, matcher.getNumDisparities()),
                   cv::format("%s: candidates of each pixel, violet 1 to yellow %d (logarithmic), mean %.2f",
                              name.c_str(), matcher.getNumDisparities(), ratios[0] * matcher.getNumDisparities()));
-    matcher.getLayerPrior(prior);
+    matcher.getLayerPrior(0, prior);
     if (pair.protocol == Pair::NO_TRUTH || prior.empty())
         return out.str();
 
@@ -119,7 +119,7 @@ String predictionFigures(const String& name, const HDPTreeMatcher& matcher,
             << figure(matrixPicture(sampledMatrix(truthOfLayer(pair.truth, layer), toPixels(upper, 0), disparities)),
                       of + "sampled", ".png")
             << "</div>\n";
-        above->getLayerPrior(prior);
+        above->getLayerPrior(0, prior);
     }
     return out.str();
 }

@@ -257,7 +257,7 @@ TEST(HDPStereo_Evaluation, forest_of_the_last_pair)
     Mat trees, intervals;
     std::vector<double> prior, ratios;
     matcher->getForest(trees, intervals);
-    matcher->getLayerPrior(prior);
+    matcher->getLayerPrior(0, prior);
     EXPECT_TRUE(trees.empty() && intervals.empty() && prior.empty());
 
     matcher->setDisparityMedianSize(0);
@@ -266,7 +266,7 @@ TEST(HDPStereo_Evaluation, forest_of_the_last_pair)
         matcher->setUsePrediction(usePrediction);
         const Mat disparity = match(*matcher, pair.left, pair.right);
         matcher->getForest(trees, intervals);
-        matcher->getLayerPrior(prior);
+        matcher->getLayerPrior(0, prior);
         matcher->getSearchRatios(ratios);
         ASSERT_EQ(CV_32SC1, trees.type());
         ASSERT_EQ(CV_16UC2, intervals.type());

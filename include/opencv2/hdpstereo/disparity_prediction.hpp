@@ -27,13 +27,11 @@ cv::Exception, and leaves the model as it was, for a file that does not hold a m
 class CV_EXPORTS_W DisparityPredictionModel : public Algorithm
 {
 public:
-    //! The models that createPublished() knows: the paper's authors', and those of train() (tools/hdp_train.cpp)
+    //! The models that createPublished() knows, those of the authors' program
     enum Published
     {
-        PUBLISHED_LARGE = 0, //!< the authors', Middlebury 2006 at full size (about 1390 x 1110); 3 layers
-        PUBLISHED_SMALL = 1, //!< the authors', Middlebury 2006 at half size (about 695 x 555); 2 layers
-        TRAINED_LARGE = 2,   //!< train()'s, on six scenes of Middlebury 2006 at full size; 2 layers
-        TRAINED_SMALL = 3    //!< train()'s, on the same scenes at half size; 2 layers
+        PUBLISHED_LARGE = 0, //!< Middlebury 2006 at full size (about 1390 x 1110); 3 layers
+        PUBLISHED_SMALL = 1  //!< Middlebury 2006 at half size (about 695 x 555); 2 layers
     };
 
     /** @brief Number of layers l the model has a mixture for. A matcher of L layers needs L - 1. */
@@ -102,7 +100,8 @@ public:
 
     /** @brief Creates one of the models that come with the module.
 
-    The matcher takes the authors' by itself. testdata/cv/hdpstereo/models has all of them as files.
+    The matcher uses them by default. testdata/cv/hdpstereo/models has them as files, beside two that train() has fitted
+    to six scenes of the same data.
     @param which One of DisparityPredictionModel::Published.
     @throws cv::Exception if it is none of them.
      */

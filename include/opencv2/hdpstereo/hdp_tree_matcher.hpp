@@ -45,8 +45,8 @@ The parameters that cv::StereoMatcher declares mean what they mean there:
   the paper, is one pixel), the census cost compares its pixels.
 - disp12MaxDiff: largest allowed difference, in pixels, between the disparity of a left pixel and the largest one
   that maps to the same pixel of the right image; other pixels become invalid. <= 0 (default) turns the check off.
-- speckleWindowSize, speckleRange: see cv::filterSpeckles; the window size is a number of pixels, >= 0, and 0 (default)
-  turns the filter off; speckleRange is in pixels, 0..2047.
+- speckleWindowSize, speckleRange: see cv::filterSpeckles; the window size is a number of pixels, and <= 0 (default 0)
+  turns the filter off; speckleRange is in pixels, >= 0, and more than 2047 counts as 2047.
 
 The result does not depend on the number of threads nor on the processor's SIMD width. A matcher may be used from one
 thread at a time; two matchers never share state. Reused for pairs of the same size it keeps its buffers.
@@ -57,7 +57,8 @@ The parameters that the presets differ in:
 |---|---|---|---|---|---|
 | blockSize | 1 | 7 | 7 | 7 | 7 |
 | treeStrategy | MST | MST | ST | ST | ST |
-| numLayers | 3 | 3 | AUTO | AUTO | FEWEST_LAYERS |
+| numLayers | 3 | 3 | 3 | 3 | 2 |
+| maxTopDisparities | 0 | 0 | 64 | 64 | 64 |
 | finestLayer | 0 | 0 | 0 | 1 | 0 |
 | matchingCost | COLOR_GRADIENT | CENSUS | CENSUS | CENSUS | CENSUS |
 | aggregation | TREES | TREES | SCANLINES | SCANLINES | SCANLINES |
@@ -78,7 +79,7 @@ Setters throw cv::Exception for values out of their range and leave the matcher 
 parameters or on the images is checked by compute(), before it does any work. compute() throws if
 - an image is empty or neither CV_8UC1 nor CV_8UC3, if they differ in size or type, are wider or higher than 32767
   pixels, or have 2^31 bytes and more, with the columns that a negative minDisparity adds;
-- speckleWindowSize is not 0 and the images have more than 238609294 pixels;
+- speckleWindowSize is > 0 and the images have more than 238609294 pixels;
 - minDisparity and numDisparities give disparities that CV_16S cannot hold;
 - blockSize is not 3, 5 or 7 with COST_CENSUS;
 - the cost is not COST_CENSUS with AGGREGATION_SCANLINES or fillOcclusions;
@@ -96,7 +97,7 @@ class CV_EXPORTS_W HDPTreeMatcher : public cv::StereoMatcher
 {
 public:
     //! Sets of parameters for create(). A preset only sets values that have setters of their own.
-    enum
+    enum Preset
     {
         PRESET_PAPER = 0,     //!< the system that made the paper's tables, HDP+MST; see also setTreeStrategy()
         PRESET_FAST = 1,      //!< the default: a tree on the top layer, scanlines below; more accurate than
@@ -108,36 +109,30 @@ public:
     };
 
     //! What smooths the costs of a layer that has a prediction
-    enum
+    enum Aggregation
     {
         AGGREGATION_TREES = 0,    //!< the disparity trees of the paper
         AGGREGATION_SCANLINES = 1 //!< paths along rows and down columns, over 16 predicted candidates a pixel
     };
 
     //! Matching costs
-    enum
+    enum MatchingCost
     {
         COST_COLOR_GRADIENT = 0, //!< truncated colour and gradient difference, the paper's; see setColorTruncation()
         COST_CENSUS = 1          //!< number of pixels in the window that are darker than its centre in one image only
     };
 
     //! Where the distribution P(D_l) of a layer's disparities comes from
-    enum
+    enum DisparityPrior
     {
         PRIOR_SUPPORT_POINTS = 0, //!< sparse, left-right checked matches in the layer, the paper's
         PRIOR_UPPER_LAYER = 1     //!< the disparities of the layer above, which are there already
     };
 
-    //! Value of the number of layers, delta0, beta and the disparity median that leaves the choice to the matcher
+    //! Value of delta0, beta and the disparity median that leaves the choice to the matcher
     enum
     {
         AUTO = -1
-    };
-
-    //! Value of the number of layers, see setNumLayers()
-    enum
-    {
-        FEWEST_LAYERS = -2
     };
 
     /** @brief Rule 1 and Rule 2 of the spanning trees (section 3.2).
@@ -168,14 +163,20 @@ public:
 
     /** @brief Number of pyramid layers (section 2.1), the image itself included; the paper's L + 1. Each has half the
     width, the height and the disparities of the one below.
-    @param numLayers 1..16; layers that would have no pixel are left out. HDPTreeMatcher::FEWEST_LAYERS: as few as leave
-    the top layer, which searches all of them, 64 disparities or less, but at least 2. HDPTreeMatcher::AUTO: the same,
-    but 3 instead of 2 if these leave the top layer 16 disparities or more: takes less time on images of less than a
-    megapixel, and loses some fine structures there. 3 in PRESET_PAPER and PRESET_TREE, FEWEST_LAYERS in PRESET_QUALITY,
-    AUTO in the others. Without effect if prediction is off. */
+    @param numLayers 1..16; setMaxTopDisparities() may change it. Layers that would have no pixel are left out. 2 in
+    PRESET_QUALITY, 3 in the others: takes less time on images of less than a megapixel, and loses some fine structures
+    there. Without effect if prediction is off. */
     CV_WRAP virtual void setNumLayers(int numLayers) = 0;
     /** @copybrief setNumLayers @sa setNumLayers */
     CV_WRAP virtual int getNumLayers() const = 0;
+
+    /** @brief Fits the number of layers to the number of disparities: the top layer searches all of its own.
+    @param maxTopDisparities 0: no limit, there are numLayers layers. Else layers are added until the top one has so many
+    disparities or less, and beyond the second one a layer that would leave it less than 16 is left out. 0 in PRESET_PAPER
+    and PRESET_TREE, 64 in the others. Without effect if prediction is off. */
+    CV_WRAP virtual void setMaxTopDisparities(int maxTopDisparities) = 0;
+    /** @copybrief setMaxTopDisparities @sa setMaxTopDisparities */
+    CV_WRAP virtual int getMaxTopDisparities() const = 0;
 
     /** @brief The model behind the predicted intervals (section 2.2).
     @param model A model of at least numLayers - 1 layers, or an empty pointer (default) for the published one:
@@ -234,8 +235,8 @@ public:
     CV_WRAP virtual double getColorWeight() const = 0;
 
     /** @brief Side of the median filter over each layer's disparities.
-    @param size In pixels of the layer: 0 (none), an odd number 3..31, or HDPTreeMatcher::AUTO: 7 with prediction, 5
-    without, as in the paper's tables. AUTO in PRESET_PAPER, 5 in the others. */
+    @param size In pixels of the layer: 0 (none), 3, 5, 7, or HDPTreeMatcher::AUTO: 7 with prediction, 5 without, as in
+    the paper's tables. AUTO in PRESET_PAPER, 7 in PRESET_QUALITY, 5 in the others. */
     CV_WRAP virtual void setDisparityMedianSize(int size) = 0;
     /** @copybrief setDisparityMedianSize @sa setDisparityMedianSize */
     CV_WRAP virtual int getDisparityMedianSize() const = 0;
@@ -290,17 +291,18 @@ public:
     /** @copybrief setAggregation @sa setAggregation */
     CV_WRAP virtual int getAggregation() const = 0;
 
-    /** @brief The penalty for a step of one disparity between neighbours on a scanline, P1 of cv::StereoSGBM.
-    @param penalty In bits of the census, 0..100; 12 by default. Used by HDPTreeMatcher::AGGREGATION_SCANLINES only. */
-    CV_WRAP virtual void setSmallPenalty(int penalty) = 0;
-    /** @copybrief setSmallPenalty @sa setSmallPenalty */
-    CV_WRAP virtual int getSmallPenalty() const = 0;
+    /** @brief The penalty for a step of one disparity between neighbours on a scanline, as P1 of
+    cv::StereoSGBM.
+    @param P1 In bits of the census, 0..100; 12 by default. Used by HDPTreeMatcher::AGGREGATION_SCANLINES only. */
+    CV_WRAP virtual void setP1(int P1) = 0;
+    /** @copybrief setP1 @sa setP1 */
+    CV_WRAP virtual int getP1() const = 0;
 
-    /** @brief The penalty for a larger step between neighbours on a scanline, P2 of cv::StereoSGBM.
-    @param penalty In bits of the census, 0..100; 50 by default. Used by HDPTreeMatcher::AGGREGATION_SCANLINES only. */
-    CV_WRAP virtual void setLargePenalty(int penalty) = 0;
-    /** @copybrief setLargePenalty @sa setLargePenalty */
-    CV_WRAP virtual int getLargePenalty() const = 0;
+    /** @brief The penalty for a larger step between neighbours on a scanline, as P2 of cv::StereoSGBM.
+    @param P2 In bits of the census, 0..100; 50 by default. Used by HDPTreeMatcher::AGGREGATION_SCANLINES only. */
+    CV_WRAP virtual void setP2(int P2) = 0;
+    /** @copybrief setP2 @sa setP2 */
+    CV_WRAP virtual int getP2() const = 0;
 
     /** @brief How often a layer is aggregated along scanlines. Each pass but the first searches around the disparities
     of the one before instead of those of the layer above.
@@ -330,9 +332,8 @@ public:
     A disparity is stable if the largest one that maps to its column of the right image is larger by one pixel at most.
     Every pixel takes the disparity x with the smallest \f$\sum_q S(p, q) |x - D(q)|\f$, the sum over the stable pixels
     of its tree: a weighted median. S is as in setGamma(), but with a quarter of \f$\gamma\f$. A pixel of a tree without
-    stable ones keeps its disparity. The trees are those of the layer; a layer aggregated along scanlines gets one tree
-    over all of its pixels, which takes several times as long as the layer itself.
-    @param useNonLocalRefinement false by default. */
+    stable ones keeps its disparity.
+    @param useNonLocalRefinement false by default. Without effect with HDPTreeMatcher::AGGREGATION_SCANLINES. */
     CV_WRAP virtual void setUseNonLocalRefinement(bool useNonLocalRefinement) = 0;
     /** @copybrief setUseNonLocalRefinement @sa setUseNonLocalRefinement */
     CV_WRAP virtual bool getUseNonLocalRefinement() const = 0;
@@ -361,30 +362,38 @@ public:
 
     /** @brief Share of the disparity range that the last compute() searched, \f$R_l\f$ of the paper's Table 1.
     @param ratios Receives a number in [0, 1] per layer, that of the image first, 0 for one finer than finestLayer;
-    empty before the first compute().
+    empty before the first compute() and after one that threw an exception.
      */
     CV_WRAP virtual void getSearchRatios(CV_OUT std::vector<double>& ratios) const = 0;
 
     /** @brief The disparity prediction forest of the last compute() (section 3.2), at the finest layer that has one.
-    With scanlines that is the top layer, whose trees search the full range, unless the refinement made a tree for
-    another.
+    With scanlines that is the top layer, whose trees search the full range. cv::noArray() leaves either out.
     @param trees Receives the number of each pixel's tree, from 0: CV_32SC1 of the layer's size. Empty before the first
-    compute().
+    compute() and after one that threw an exception.
     @param intervals Receives the first and the last candidate that the pixel's tree searched, TreeIntv, in pixels of
     the layer above the smallest disparity: CV_16UC2 of the same size.
      */
     CV_WRAP virtual void getForest(OutputArray trees, OutputArray intervals) const = 0;
 
-    /** @brief \f$P(D_l)\f$ that the intervals of the last compute() were predicted with (section 3.1), at the finest
-    layer.
-    @param prior Receives a number >= 0 per candidate of that layer, the smallest disparity first, up to a factor; none
-    if nothing was predicted, as with scanlines.
+    /** @brief \f$P(D_l)\f$ that the intervals of a layer were predicted with in the last compute() (section 3.1).
+    @param layer l >= 0, 0 being the image.
+    @param prior Receives a number >= 0 per candidate of the layer, the smallest disparity first, up to a factor. Empty if
+    nothing was predicted there, as in the top layer and with scanlines.
      */
-    CV_WRAP virtual void getLayerPrior(CV_OUT std::vector<double>& prior) const = 0;
+    CV_WRAP virtual void getLayerPrior(int layer, CV_OUT std::vector<double>& prior) const = 0;
+
+    /** @brief The disparities \f$D_l\f$ of a layer in the last compute(), as the layer below sees them: after the median,
+    before what disp12MaxDiff and the speckle filter reject.
+    @param layer l >= 0, 0 being the image.
+    @param disparity Receives CV_32FC1 of the layer's size, in pixels of the layer above the smallest disparity. Empty if
+    there is no such layer, for layers finer than finestLayer, before the first compute() and after one that threw an
+    exception.
+     */
+    CV_WRAP virtual void getLayerDisparity(int layer, OutputArray disparity) const = 0;
 
     /** @brief Wall time of each stage in the last compute(), the layers together.
     @param stages Receives the names of the stages in the order in which they first ran; empty before the first
-    compute().
+    compute() and after one that threw an exception.
     @param milliseconds Receives a time per stage.
      */
     CV_WRAP virtual void getStageTimes(CV_OUT std::vector<String>& stages,

@@ -39,6 +39,7 @@ PARAMETERS = {
     'UsePrediction': (True, False),
     'UseMedianPrefilter': (False, True),
     'NumLayers': (3, 2),
+    'MaxTopDisparities': (0, 64),
     'Delta0': (-1, 0.125),
     'Beta': (-1, 0.5),
     'Gamma': (25.5, 12.75),
@@ -52,8 +53,8 @@ PARAMETERS = {
     'IntervalMargin': (0, 2),
     'UseSubpixel': (False, True),
     'Aggregation': (cv.stereo.HDPTreeMatcher_AGGREGATION_TREES, cv.stereo.HDPTreeMatcher_AGGREGATION_SCANLINES),
-    'SmallPenalty': (12, 7),
-    'LargePenalty': (50, 60),
+    'P1': (12, 7),
+    'P2': (50, 60),
     'FinestLayer': (0, 1),
     'ScanlinePasses': (1, 3),
     'FillOcclusions': (False, True),
@@ -161,7 +162,7 @@ class hdpstereo_test(TestCase):
 
     def test_enumerations(self):
         self.assertEqual(5, len(set(PRESETS.values())))
-        self.assertEqual((-1, -2), (cv.stereo.HDPTreeMatcher_AUTO, cv.stereo.HDPTreeMatcher_FEWEST_LAYERS))
+        self.assertEqual(-1, cv.stereo.HDPTreeMatcher_AUTO)
         self.assertEqual(PRESETS['FAST'], cv.stereo.HDPTREE_MATCHER_PRESET_FAST)
         default = parameters(cv.stereo.HDPTreeMatcher.create())
         seen = []
@@ -314,8 +315,9 @@ class hdpstereo_test(TestCase):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32, PRESETS['PAPER'])
         self.assertEqual(0, len(matcher.getSearchRatios()))
         self.assertEqual((None, None), matcher.getForest())
+        self.assertIsNone(matcher.getLayerDisparity(0))
         self.assertEqual(0, len(matcher.getStageTimes()[0]))
-        matcher.compute(self.left, self.right)
+        disparity = matcher.compute(self.left, self.right)
         ratios = matcher.getSearchRatios()
         self.assertEqual(3, len(ratios))
         self.assertEqual(1, ratios[2])
@@ -327,7 +329,13 @@ class hdpstereo_test(TestCase):
         self.assertEqual(set(range(trees.max() + 1)), set(trees.ravel()))
         widths = intervals[..., 1].astype(int) - intervals[..., 0] + 1
         self.assertAlmostEqual(ratios[0], widths.mean() / 32, places=6)
-        self.assertEqual(32, len(matcher.getLayerPrior()))
+        self.assertEqual([32, 16, 0, 0], [len(matcher.getLayerPrior(layer)) for layer in range(4)])
+        height, width = self.truth.shape
+        for layer in range(3):
+            found = matcher.getLayerDisparity(layer)
+            self.assertEqual((np.float32, (height >> layer, width >> layer)), (found.dtype, found.shape))
+        self.assertIsNone(matcher.getLayerDisparity(3))
+        self.assertSame((disparity / 16.0).astype(np.float32), matcher.getLayerDisparity(0))
         stages, milliseconds = matcher.getStageTimes()
         self.assertIn('cost aggregation', stages)
         self.assertEqual(len(stages), len(milliseconds))
@@ -363,7 +371,7 @@ class hdpstereo_test(TestCase):
 
     def test_published_models(self):
         Model = cv.stereo.DisparityPredictionModel
-        layers = {'PUBLISHED_LARGE': 3, 'PUBLISHED_SMALL': 2, 'TRAINED_LARGE': 2, 'TRAINED_SMALL': 2}
+        layers = {'PUBLISHED_LARGE': 3, 'PUBLISHED_SMALL': 2}
         for name, count in layers.items():
             model = Model.createPublished(getattr(cv.stereo, 'DisparityPredictionModel_' + name))
             self.assertEqual(count, model.getNumLayers(), name)
@@ -389,7 +397,7 @@ class hdpstereo_test(TestCase):
         model.addLayer([0.5], [6.0], [1.0])  # the matcher has the same model
         self.assertEqual(2, matcher.getPredictionModel().getNumLayers())
         self.assertFalse(np.array_equal(expected, matcher.compute(self.left, self.right)))
-        self.assertGreater(matcher.getLayerPrior().size, 0)
+        self.assertGreater(matcher.getLayerPrior(0).size, 0)
         matcher.setPredictionModel(None)
         self.assertIsNone(matcher.getPredictionModel())
         self.assertSame(expected, matcher.compute(self.left, self.right))
@@ -431,7 +439,7 @@ class hdpstereo_test(TestCase):
         self.assertFalse(np.array_equal(expected, matcher.compute(self.left, self.right)))
 
     def test_model_files(self):
-        model = cv.stereo.DisparityPredictionModel.createPublished(cv.stereo.DisparityPredictionModel_TRAINED_SMALL)
+        model = cv.stereo.DisparityPredictionModel.createPublished(cv.stereo.DisparityPredictionModel_PUBLISHED_SMALL)
         for extension in ('yml', 'xml', 'json'):
             filename = self.path('model.' + extension)
             model.save(filename)
@@ -448,7 +456,7 @@ class hdpstereo_test(TestCase):
             set_(matcher, name, other)
         matcher.setTreeStrategy(cv.stereo.createSegmentTree(77))
         matcher.setPredictionModel(
-            cv.stereo.DisparityPredictionModel.createPublished(cv.stereo.DisparityPredictionModel_TRAINED_LARGE))
+            cv.stereo.DisparityPredictionModel.createPublished(cv.stereo.DisparityPredictionModel_PUBLISHED_SMALL))
         expected = matcher.compute(self.left, self.right)
         for extension in ('yml', 'xml', 'json'):
             filename = self.path('matcher.' + extension)
@@ -494,9 +502,9 @@ class hdpstereo_test(TestCase):
         for setter, value, message in (
                 ('NumDisparities', 0, 'numDisparities must be > 0, not 0'),
                 ('BlockSize', 4, 'blockSize must be odd, in 1..31, not 4'),
-                ('SpeckleWindowSize', -1, 'speckleWindowSize must be >= 0, not -1'),
-                ('SpeckleRange', 2048, 'speckleRange must be in 0..2047, not 2048'),
-                ('NumLayers', 17, 'numLayers must be in 1..16, AUTO or FEWEST_LAYERS, not 17'),
+                ('SpeckleRange', -1, 'speckleRange must be >= 0, not -1'),
+                ('NumLayers', 17, 'numLayers must be in 1..16, not 17'),
+                ('MaxTopDisparities', -1, 'maxTopDisparities must be >= 0, not -1'),
                 ('Delta0', 1.0, 'delta0 must be in [0, 1) or AUTO, not 1'),
                 ('Beta', 1.5, 'beta must be in [0, 1] or AUTO, not 1.5'),
                 ('Gamma', 0, 'gamma must be finite and > 0, not 0'),
@@ -504,14 +512,14 @@ class hdpstereo_test(TestCase):
                 ('ColorTruncation', -0.5, 'colorTruncation must be finite and >= 0, not -0.5'),
                 ('GradientTruncation', float('inf'), 'gradientTruncation must be finite and >= 0, not inf'),
                 ('ColorWeight', 1.25, 'colorWeight must be in [0, 1], not 1.25'),
-                ('DisparityMedianSize', 4, 'disparityMedianSize must be 0, odd in 3..31, or AUTO, not 4'),
+                ('DisparityMedianSize', 4, 'disparityMedianSize must be 0, 3, 5, 7 or AUTO, not 4'),
                 ('DisparityMedianPasses', 9, 'disparityMedianPasses must be in 1..8, not 9'),
                 ('MatchingCost', 2, 'matchingCost must be COST_COLOR_GRADIENT or COST_CENSUS, not 2'),
                 ('DisparityPrior', -1, 'disparityPrior must be PRIOR_SUPPORT_POINTS or PRIOR_UPPER_LAYER, not -1'),
                 ('IntervalMargin', 65, 'intervalMargin must be in 0..64, not 65'),
                 ('Aggregation', 2, 'aggregation must be AGGREGATION_TREES or AGGREGATION_SCANLINES, not 2'),
-                ('SmallPenalty', 101, 'smallPenalty must be in 0..100, not 101'),
-                ('LargePenalty', -1, 'largePenalty must be in 0..100, not -1'),
+                ('P1', 101, 'P1 must be in 0..100, not 101'),
+                ('P2', -1, 'P2 must be in 0..100, not -1'),
                 ('FinestLayer', 16, 'finestLayer must be in 0..15, not 16'),
                 ('ScanlinePasses', 5, 'scanlinePasses must be in 1..4, not 5'),
                 ('DisparityDepth', cv.CV_8U, 'disparityDepth must be CV_16S or CV_32F, not 0'),
@@ -522,7 +530,7 @@ class hdpstereo_test(TestCase):
                             cv.stereo.HDPTreeMatcher.create, 0, 16, 9)
         self.assertRejected('k must be finite and >= 0', cv.stereo.createSegmentTree, -1)
         self.assertRejected('seed must be >= 0', cv.stereo.createRandomTree, -1)
-        self.assertRejected('which must be PUBLISHED_LARGE, PUBLISHED_SMALL, TRAINED_LARGE or TRAINED_SMALL',
+        self.assertRejected('which must be PUBLISHED_LARGE or PUBLISHED_SMALL',
                             cv.stereo.DisparityPredictionModel.createPublished, 9)
         model = cv.stereo.DisparityPredictionModel.create()
         self.assertRejected('sigmas must be finite and > 0', model.addLayer, [0.0], [0.0], [1.0])
