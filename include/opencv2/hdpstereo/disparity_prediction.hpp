@@ -12,17 +12,16 @@ namespace stereo {
 //! @addtogroup hdpstereo
 //! @{
 
-/** @brief How the disparities of two consecutive pyramid layers go together: the Hierarchical Disparity
-Prediction Model of @cite Luo2015HDP , section 2.2.
+/** @brief The relation of the disparities of two consecutive pyramid layers: the Hierarchical Disparity Prediction
+Model of @cite Luo2015HDP , section 2.2.
 
 For each layer l it holds a Gaussian mixture over the offset \f$o = D_{l+1} - \lfloor D_l / 2 \rfloor\f$ of
 a pixel's disparity in layer l + 1 from half its disparity in layer l, so that
 \f$P(D_{l+1} = i | D_l = j) = GMM_l(i - \lfloor j / 2 \rfloor)\f$. Layer 0 is the image itself. Offsets are
 in whole pixels of layer l + 1.
 
-A model is saved by cv::Algorithm::save() and read by load(); clear() takes its layers away. read() throws
-cv::Exception, and leaves the model as it was, for a file that does not hold a model of at most 64 layers of at most
-1024 Gaussians.
+A model is saved by cv::Algorithm::save() and read by load(); clear() removes its layers. read() throws cv::Exception
+unless the file holds a model of at most 64 layers of at most 1024 Gaussians, and leaves the model as it was.
  */
 class CV_EXPORTS_W DisparityPredictionModel : public Algorithm
 {
@@ -34,19 +33,19 @@ public:
         PUBLISHED_SMALL = 1  //!< Middlebury 2006 at half size (about 695 x 555); 2 layers
     };
 
-    /** @brief Number of layers l the model has a mixture for. A matcher of L layers needs L - 1. */
+    /** @brief Number of layers that have a mixture. A matcher of L layers needs L - 1. */
     CV_WRAP virtual int getNumLayers() const = 0;
 
     /** @brief Appends the mixture of layer getNumLayers().
     @param means Means \f$\mu_l(k)\f$ in pixels of layer l + 1: vector of K >= 1 finite numbers.
     @param sigmas Standard deviations \f$\sigma_l(k)\f$ in the same unit: K finite numbers > 0.
     @param weights Mixing coefficients \f$\pi_l(k)\f$: K numbers in [0, 1], their sum 1 within 0.001.
-    @throws cv::Exception if an argument is not so; the model is unchanged.
+    @throws cv::Exception if an argument is invalid; the model is unchanged.
      */
     CV_WRAP virtual void addLayer(const std::vector<double>& means, const std::vector<double>& sigmas,
                                   const std::vector<double>& weights) = 0;
 
-    /** @brief The mixture of a layer, see addLayer().
+    /** @brief Returns the mixture of a layer, see addLayer().
     @param layer 0 .. getNumLayers() - 1.
     @param means, sigmas, weights Receive K numbers each.
     @throws cv::Exception if there is no such layer.
@@ -54,10 +53,10 @@ public:
     CV_WRAP virtual void getLayer(int layer, CV_OUT std::vector<double>& means, CV_OUT std::vector<double>& sigmas,
                                   CV_OUT std::vector<double>& weights) const = 0;
 
-    /** @brief \f$GMM_l(o)\f$, the density of the mixture at an offset.
+    /** @brief Returns \f$GMM_l(o)\f$, the density of a mixture at an offset.
     @param layer 0 .. getNumLayers() - 1.
     @param offset o in pixels of layer + 1, of any sign.
-    @return A number >= 0 per pixel of offset.
+    @return Density per pixel of offset, >= 0.
     @throws cv::Exception if there is no such layer.
      */
     CV_WRAP virtual double density(int layer, double offset) const = 0;
@@ -68,10 +67,9 @@ public:
     \f$D_{l+1} - \lfloor D_l / 2 \rfloor\f$, where \f$D_l\f$ is rounded down, as the paper's \f$d_l\f$ is, and
     \f$D_{l+1}\f$ to the nearest whole number. The offsets of half of the maps are fitted
     with 1 .. maxComponents Gaussians; the number that makes the other half most likely is fitted to all of them.
-    The result depends on nothing but the arguments. A standard deviation is at least 0.5 pixels: below that, the
-    densities at whole offsets would not add up to about 1, and offsets that are all the same would give a singular
-    Gaussian. It is at least a quarter of the mean, too: gross errors that a single scene has many of at one offset are
-    no rule for others.
+    The result depends on the arguments alone. A standard deviation is at least 0.5 pixels: below that, the densities at
+    whole offsets do not add up to about 1, and equal offsets give a singular Gaussian. It is also at least a quarter of
+    the mean: many gross errors of a single scene at one offset are no rule for other scenes.
     @param disparities Maps of \f$D_l\f$ in pixels of layer l, usually the truth: one or more CV_32FC1 Mats. A value
     that is negative or not finite is unknown, and left out.
     @param upperDisparities As many maps of \f$D_{l+1}\f$ in pixels of layer l + 1, usually those that the matcher
@@ -79,18 +77,18 @@ public:
     @param maxComponents Largest number of Gaussians, 1..64.
     @param seed Seed of the choice of halves and of the starts of the fit, >= 0.
     @return Mean log-likelihood of an offset of the half that the number of Gaussians was chosen by.
-    @throws cv::Exception if the arguments are not so, if there are less than 100 offsets in one of the halves, if
-    \f$D_l\f$ or the offsets are all the same, or if the library was built without opencv_ml, which only this method
-    needs; the model is unchanged.
+    @throws cv::Exception if an argument is invalid, if one of the halves has fewer than 100 offsets, if all \f$D_l\f$
+    or all offsets are equal, or if the library was built without opencv_ml, which only this method needs; the model is
+    unchanged.
      */
     CV_WRAP virtual double train(InputArrayOfArrays disparities, InputArrayOfArrays upperDisparities,
                                  int maxComponents = 6, int seed = 0) = 0;
 
-    /** @brief The histogram of offsets that train() fits a mixture to.
+    /** @brief Returns the histogram of offsets that train() fits a mixture to.
     @param disparities, upperDisparities Maps as for train().
-    @param offsets Receives the offsets that there are, ascending.
+    @param offsets Receives the offsets that occur, ascending.
     @param counts Receives the number of pixels of each.
-    @throws cv::Exception if the maps are not as train() wants them.
+    @throws cv::Exception if a map is invalid, see train().
      */
     CV_WRAP static void countOffsets(InputArrayOfArrays disparities, InputArrayOfArrays upperDisparities,
                                      CV_OUT std::vector<int>& offsets, CV_OUT std::vector<double>& counts);
@@ -103,11 +101,11 @@ public:
     The matcher uses them by default. testdata/cv/hdpstereo/models has them as files, beside two that train() has fitted
     to six scenes of the same data.
     @param which One of DisparityPredictionModel::Published.
-    @throws cv::Exception if it is none of them.
+    @throws cv::Exception if there is no such model.
      */
     CV_WRAP static Ptr<DisparityPredictionModel> createPublished(int which);
 
-    /** @brief Reads a model that save() or write() made.
+    /** @brief Reads a model that was written by save() or write().
     @param filename XML, YAML or JSON file of cv::FileStorage.
     @throws cv::Exception if the file cannot be read or does not hold a model.
      */

@@ -12,20 +12,20 @@ namespace stereo {
 //! @addtogroup hdpstereo
 //! @{
 
-/** @brief What a spanning tree algorithm knows of a tree under construction. */
+/** @brief A tree under construction, as Rule 2 sees it. */
 struct TreeState
 {
     int size;        //!< number of pixels of the layer, >= 1
     uchar maxWeight; //!< the largest weight of the edges inside the tree, in intensity levels; 0 for a single pixel
 };
 
-/** @brief How the spanning trees of a layer are built: Rule 1 and Rule 2 of @cite Luo2015HDP , section 3.2.
+/** @brief Rule 1 and Rule 2 of the spanning trees of a layer (@cite Luo2015HDP , section 3.2).
 
-The edges of the layer's graph are tried one after another (Rule 1 gives the order); an edge joins the two
-trees at its ends, if they are different, when Rule 2 allows it. The rules that take disparity into account
-(DT-Rule 1 and 2) are the matcher's and apply to every strategy.
+The edges of the layer's graph are tried one after another (Rule 1 gives the order); an edge joins the two trees at its
+ends if Rule 2 allows it. DT-Rule 1 and 2, which take disparity into account, belong to the matcher and apply to every
+strategy.
 
-Derive from this class to plug in a tree of your own:
+Derive from this class for a custom strategy:
 
 @code{.cpp}
     // Horizontal edges first, then the vertical ones, each by rows.
@@ -43,13 +43,12 @@ Derive from this class to plug in a tree of your own:
     matcher->setTreeStrategy(cv::makePtr<RowTree>());
 @endcode
 
-A strategy is only read while a pair is matched. Both rules must be pure functions of their arguments, or
-the results of the matcher are not reproducible. What they throw leaves compute(), and the matcher is usable
-afterwards. A strategy cannot be derived in Python, which has the three of the module.
+Both rules must be pure functions of their arguments, or the results of the matcher are not reproducible. An exception
+thrown by a rule leaves compute(); the matcher stays usable. Custom strategies are for C++ only.
 
-cv::Algorithm::write() of a matcher stores the strategy's getDefaultName(), and what its write() adds. Only
-the strategies of this module can be created from a file: see HDPTreeMatcher. @ref tutorial_hdpstereo_own_tree
-has a complete example.
+cv::Algorithm::write() of a matcher stores the strategy's getDefaultName() and what its write() adds. Only the
+strategies of this module can be created from a file, see HDPTreeMatcher. @ref tutorial_hdpstereo_own_tree has a
+complete example.
  */
 class CV_EXPORTS_W TreeStrategy : public Algorithm
 {
@@ -61,9 +60,8 @@ public:
     @param weights The edges' weights: the largest absolute difference over the colour channels, 0..255. CV_8UC2
     of the layer's size, continuous, so that weights.ptr()[e] is the weight of edge e. Those of the last column
     to its right and of the last row below belong to no edge.
-    @param edges The edges that DT-Rule 1 left (without prediction all edges of the image), by number. To be
-    brought into the order in which they are tried; none may be added, removed or repeated, or compute() throws
-    cv::Exception.
+    @param edges The edges that DT-Rule 1 left, by number; without prediction all edges of the image. To be brought into
+    the order in which they are tried. compute() throws cv::Exception if one is added, removed or repeated.
      */
     virtual void orderEdges(const Mat& weights, std::vector<int>& edges) const = 0;
 
@@ -72,7 +70,7 @@ public:
     Called only for ends that are in different trees, from one thread.
     @param weight The edge's weight, 0..255.
     @param a, b The trees at the edge's two ends, before they are joined.
-    @return Whether Rule 2 allows it; DT-Rule 2 may still forbid it.
+    @return Whether Rule 2 allows it. DT-Rule 2 may still forbid it.
      */
     virtual bool mayJoin(int weight, const TreeState& a, const TreeState& b) const = 0;
 
@@ -93,9 +91,9 @@ of weight w only if \f$w \le \min(w_{max}(a) + k/|a|,\; w_{max}(b) + k/|b|)\f$.
 
 A joined tree keeps the disparity interval of its larger part. Without prediction the segments are linked
 into one tree afterwards.
-@param k How readily small segments grow, in intensity levels times pixels, finite, >= 0. The larger, the
-larger the segments.
-@throws cv::Exception if k is not so.
+@param k In intensity levels times pixels, finite, >= 0. The larger, the larger the segments. 1200 is the value of the
+authors' program.
+@throws cv::Exception if k is out of range.
  */
 CV_EXPORTS_W Ptr<TreeStrategy> createSegmentTree(double k = 1200);
 
