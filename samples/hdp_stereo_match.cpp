@@ -18,24 +18,20 @@ using namespace cv;
 using cv::stereo::HDPTreeMatcher;
 
 static const char* const keys =
-    "{help h ?         |      | print this and exit }"
-    "{@left            |      | left image of a rectified pair }"
-    "{@right           |      | right image }"
-    "{preset           | fast | set of parameters: ultrafast, fast, quality, tree, or paper (the paper's tables) }"
-    "{tree             |      | spanning tree: mst (minimum), st (segment) or rt (random); by default the preset's }"
-    "{no-prediction    |      | search the full range in every layer }"
-    "{median-prefilter |      | edge weights from a 3 x 3 median of the image }"
-    "{min-disparity    | 0    | smallest disparity in pixels }"
-    "{num-disparities  |      | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
-    "{threads          |      | number of threads; all processors if not given }"
-    "{output           |      | disparities: FILE.png (16 bit, times 256, 0 = none) or FILE.pfm (float, inf = none) }"
-    "{picture          |      | disparities in colors: far is blue, near is orange, none is black }"
-    "{truth            |      | true disparities: PNG, 8 bit or 16 bit (times 256), 0 = unknown }"
-    "{point-cloud      |      | colored points: FILE.ply; needs --focal and --baseline }"
-    "{focal            | 0    | focal length in pixels; the principal point is the center of the image }"
-    "{baseline         | 0    | distance of the cameras, in the unit of the points }";
+    "{help h ?        |      | print this and exit }"
+    "{@left           |      | left image of a rectified pair }"
+    "{@right          |      | right image }"
+    "{preset          | fast | set of parameters: ultrafast, fast, quality, tree or paper }"
+    "{min-disparity   | 0    | smallest disparity in pixels }"
+    "{num-disparities |      | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
+    "{output          |      | disparities: FILE.png (16 bit, times 256, 0 = none) or FILE.pfm (float, inf = none) }"
+    "{picture         |      | disparities in colors: far is blue, near is orange, none is black }"
+    "{truth           |      | true disparities: PNG, 8 bit or 16 bit (times 256), 0 = unknown }"
+    "{point-cloud     |      | colored points: FILE.ply; needs --focal and --baseline }"
+    "{focal           | 0    | focal length in pixels; the principal point is the center of the image }"
+    "{baseline        | 0    | distance of the cameras, in the unit of the points }";
 
-//! Writes a file; also notices a full disk.
+//! Unlike imwrite(), this notices a full disk.
 static void writeFile(const String& path, const std::vector<uchar>& bytes)
 {
     std::ofstream file(path.c_str(), std::ios::binary);
@@ -52,18 +48,6 @@ static void writeImage(const String& path, const Mat& image)
     writeFile(path, bytes);
 }
 
-static void writeDisparity(const String& path, const Mat& disparity)
-{
-    Mat image = disparity;
-    if (path.size() > 4 && path.substr(path.size() - 4) == ".png")
-    {
-        disparity.convertTo(image, CV_16U, 256);
-        image.setTo(1, image == 0); // 0 stands for none
-        image.setTo(0, (disparity < 0) | (disparity >= 256));
-    }
-    writeImage(path, image);
-}
-
 static Mat readImage(const String& path, int flags)
 {
     const Mat image = imread(path, flags);
@@ -72,38 +56,21 @@ static Mat readImage(const String& path, int flags)
     return image;
 }
 
-//! The value of a name that an option gives
-template <typename Value>
-static Value choose(const CommandLineParser& parser, const String& option, const std::map<String, Value>& values)
-{
-    const auto found = values.find(parser.get<String>(option));
-    if (found == values.end())
-        CV_Error(Error::StsBadArg, "--" + option + "=" + parser.get<String>(option) + " is unknown, see --help");
-    return found->second;
-}
-
 static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
 {
-    const int preset = choose<int>(parser, "preset",
-                                   { { "ultrafast", HDPTreeMatcher::PRESET_ULTRAFAST },
-                                     { "fast", HDPTreeMatcher::PRESET_FAST },
-                                     { "quality", HDPTreeMatcher::PRESET_QUALITY },
-                                     { "tree", HDPTreeMatcher::PRESET_TREE },
-                                     { "paper", HDPTreeMatcher::PRESET_PAPER } });
-    const int numDisparities =
-        parser.has("num-disparities") ? parser.get<int>("num-disparities") : std::max((width / 5 + 15) / 16 * 16, 16);
+    const std::map<String, int> presets = { { "ultrafast", HDPTreeMatcher::PRESET_ULTRAFAST },
+                                            { "fast", HDPTreeMatcher::PRESET_FAST },
+                                            { "quality", HDPTreeMatcher::PRESET_QUALITY },
+                                            { "tree", HDPTreeMatcher::PRESET_TREE },
+                                            { "paper", HDPTreeMatcher::PRESET_PAPER } };
+    const auto preset = presets.find(parser.get<String>("preset"));
+    if (preset == presets.end())
+        CV_Error(Error::StsBadArg, "--preset=" + parser.get<String>("preset") + " is unknown, see --help");
     const int minDisparity = parser.get<int>("min-disparity");
-    if (!parser.check())
-        CV_Error(Error::StsBadArg, "a number is needed: --num-disparities=128, and so on");
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, numDisparities, preset);
-    if (parser.has("tree"))
-        matcher->setTreeStrategy(choose<Ptr<stereo::TreeStrategy>>(parser, "tree",
-                                                                   { { "mst", stereo::createMinimumSpanningTree() },
-                                                                     { "st", stereo::createSegmentTree() },
-                                                                     { "rt", stereo::createRandomTree() } }));
-    matcher->setUsePrediction(!parser.has("no-prediction"));
-    matcher->setUseMedianPrefilter(parser.has("median-prefilter"));
-    return matcher;
+    int numDisparities = std::max((width / 5 + 15) / 16 * 16, 16);
+    if (parser.has("num-disparities"))
+        numDisparities = parser.get<int>("num-disparities");
+    return HDPTreeMatcher::create(minDisparity, numDisparities, preset->second);
 }
 
 static void printTimes(const HDPTreeMatcher& matcher)
@@ -164,11 +131,11 @@ static void run(const CommandLineParser& parser)
     const double f = parser.get<double>("focal"), B = parser.get<double>("baseline");
     if (parser.has("point-cloud") && !(f > 0 && B > 0))
         CV_Error(Error::StsBadArg, "--point-cloud needs --focal and --baseline, each above 0");
-    if (parser.has("threads"))
-        setNumThreads(parser.get<int>("threads"));
     const Mat left = readImage(parser.get<String>("@left"), IMREAD_COLOR),
               right = readImage(parser.get<String>("@right"), IMREAD_COLOR);
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.cols);
+    if (!parser.check())
+        CV_Error(Error::StsBadArg, "an option needs a number, see --help");
 
     Mat disparity16, disparity; // in 1/16 pixel; in pixels
     matcher->compute(left, right, disparity16);
@@ -179,8 +146,17 @@ static void run(const CommandLineParser& parser)
     printTimes(*matcher);
     if (parser.has("truth"))
         printErrors(disparity, readImage(parser.get<String>("truth"), IMREAD_GRAYSCALE | IMREAD_ANYDEPTH));
-    if (parser.has("output"))
-        writeDisparity(parser.get<String>("output"), disparity);
+    const String output = parser.get<String>("output");
+    if (output.size() > 4 && output.substr(output.size() - 4) == ".png")
+    {
+        Mat disparity256;
+        disparity.convertTo(disparity256, CV_16U, 256);
+        disparity256.setTo(1, disparity256 == 0); // 0 stands for none
+        disparity256.setTo(0, (disparity < 0) | (disparity >= 256));
+        writeImage(output, disparity256);
+    }
+    else if (!output.empty())
+        writeImage(output, disparity);
     if (parser.has("picture"))
         writeImage(parser.get<String>("picture"), colorPicture(disparity, known));
     if (parser.has("point-cloud"))
@@ -194,17 +170,14 @@ static void run(const CommandLineParser& parser)
 
 int main(int argc, char** argv)
 {
-    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT);
+    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below
     CommandLineParser parser(argc, argv, keys);
     parser.about("Disparities of a rectified stereo pair.");
     try
     {
-        for (int i = 1; i < argc; i++)
-        {
-            const String name = String(argv[i]).substr(0, String(argv[i]).find('='));
-            if (name.compare(0, 2, "--") == 0)
-                parser.has(name.substr(2)); // throws if it is unknown
-        }
+        for (const String& argument : std::vector<String>(argv + 1, argv + argc))
+            if (argument.compare(0, 2, "--") == 0)
+                parser.has(argument.substr(2, argument.find('=') - 2)); // throws if it is unknown
         if (parser.has("help"))
             parser.printMessage();
         else

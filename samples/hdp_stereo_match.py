@@ -29,12 +29,6 @@ PRESETS = {
     'paper': cv.stereo.HDPTreeMatcher_PRESET_PAPER,
 }
 
-TREES = {
-    'mst': cv.stereo.createMinimumSpanningTree,
-    'st': cv.stereo.createSegmentTree,
-    'rt': cv.stereo.createRandomTree,
-}
-
 PLY_HEADER = '''ply
 format binary_little_endian 1.0
 element vertex %d
@@ -55,13 +49,12 @@ def read_image(filename, flags=cv.IMREAD_COLOR):
     return image
 
 
-def read_disparity(filename, scale):
+def read_disparity(filename):
     '''PNG of 8 bit, or of 16 bit (disparity * 256), both with 0 for unknown, or PFM. NaN where it is unknown.'''
     image = read_image(filename, cv.IMREAD_UNCHANGED)
     if image.ndim != 2:
         sys.exit(filename + ' is a color image, not a disparity map')
-    scale = scale or (256.0 if image.dtype == np.uint16 else 1.0)
-    disparity = image.astype(np.float32) / scale
+    disparity = image.astype(np.float32) / (256 if image.dtype == np.uint16 else 1)
     disparity[~np.isfinite(disparity) if image.dtype == np.float32 else image == 0] = np.nan
     return disparity
 
@@ -135,8 +128,6 @@ def main():
     parser.add_argument('left', nargs='?', help='left image; without one, the Aloe pair of OpenCV\'s samples')
     parser.add_argument('right', nargs='?', help='right image')
     parser.add_argument('--preset', choices=PRESETS, default='fast', help='set of parameters (default: fast)')
-    parser.add_argument('--tree', choices=TREES,
-                        help='spanning tree: minimum, segment or random (default: the preset\'s)')
     parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity in pixels (default: 0)')
     parser.add_argument('--num-disparities', type=int, help='number of disparities (default: a fifth of the width)')
     parser.add_argument('--output', help='disparity: .png (16 bit, times 256, 0 = none) or .pfm (float, inf = none)')
@@ -145,7 +136,6 @@ def main():
     parser.add_argument('--focal', type=float, help='focal length in pixels')
     parser.add_argument('--baseline', type=float, help='distance of the cameras, in the unit of the points')
     parser.add_argument('--truth', help='left disparity: PNG of 8 bit or 16 bit (times 256), 0 = unknown, or PFM')
-    parser.add_argument('--truth-scale', type=float, help='what a disparity of 1 is in the truth, if not 1 or 256')
     parser.add_argument('--compare', action='store_true',
                         help='time and error beside cv.StereoSGBM; pixels without disparity count as wrong')
     parser.add_argument('--runs', type=int, default=5, help='runs that --compare takes the median of (default: 5)')
@@ -161,15 +151,17 @@ def main():
         args.left, args.right, args.truth = 'aloeL.jpg', 'aloeR.jpg', args.truth or 'aloeGT.png'
 
     left, right = read_image(args.left), read_image(args.right)
-    truth = read_disparity(args.truth, args.truth_scale) if args.truth else None
+    truth = read_disparity(args.truth) if args.truth else None
     if truth is not None and truth.shape != left.shape[:2]:
         sys.exit('the truth has another size than the images')
-    num_disparities = args.num_disparities or max((left.shape[1] // 5 + 15) // 16 * 16, 16)
+    num_disparities = args.num_disparities
+    if num_disparities is None:
+        num_disparities = max((left.shape[1] // 5 + 15) // 16 * 16, 16)
+    if args.compare and left.shape[1] <= args.min_disparity + num_disparities:
+        sys.exit('error: --compare needs images that are wider than the disparities, for cv.StereoSGBM')
 
     try:
         matcher = cv.stereo.HDPTreeMatcher.create(args.min_disparity, num_disparities, PRESETS[args.preset])
-        if args.tree:
-            matcher.setTreeStrategy(TREES[args.tree]())
         matchers = {args.preset: matcher}
         if args.compare:
             matchers['sgbm'] = cv.StereoSGBM.create(

@@ -185,9 +185,8 @@ TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
     std::memcpy(&z, points.data() + points.find(end) + end.size() + 8, sizeof(z));
     EXPECT_NEAR(100 * 2 / exact.at<float>(0, 0), z, 1e-3 * z);
 
-    for (const char* wrong :
-         { " --preset=FAST", " --tree=x", " --num-disparities=0", " --output=/no/such/folder/map.png",
-           " --output=map.unknown", " --point-cloud=x.ply", " --truth=/no/such/file.png" })
+    for (const char* wrong : { " --preset=FAST", " --num-disparities=0", " --output=/no/such/folder/map.png",
+                               " --output=map.unknown", " --point-cloud=x.ply", " --truth=/no/such/file.png" })
         EXPECT_EQ(1, run(folder, program + wrong).status) << wrong;
 }
 
