@@ -152,7 +152,7 @@ public:
         const MatchedLayer& finest = layers_[settings.finestLayer];
         Mat ofLayer, extended;
         disparityConfidence(finest.disparity, layerDisparities(result_.numDisparities, settings.finestLayer),
-                            finest.cost, ofLayer);
+                            finest.cost(), ofLayer);
         if (settings.finestLayer > 0)
             resize(ofLayer, extended, result_.size + Size(settings.extension, 0), 0, 0, INTER_LINEAR_EXACT);
         else

@@ -28,9 +28,13 @@ int disparitiesOf(const LayerInput& in) { return layerDisparities(in.parameters.
 void prepareCost(const LayerInput& in, MatchedLayer& matched)
 {
     const MatcherParameters& p = in.parameters;
-    const MatchingCostParams params = { p.matchingCost == HDPTreeMatcher::COST_CENSUS, (float)p.colorTruncation,
-                                        (float)p.gradientTruncation, (float)p.colorWeight, p.blockSize };
-    matched.cost.prepare(in.images.left, in.images.right, disparitiesOf(in), params);
+    const LayerImages& images = in.images;
+    matched.isCensus = p.matchingCost == HDPTreeMatcher::COST_CENSUS;
+    if (matched.isCensus)
+        return matched.census.prepare(images.left, images.right, disparitiesOf(in), p.blockSize);
+    const ColorGradientParams params = { (float)p.colorTruncation, (float)p.gradientTruncation, (float)p.colorWeight,
+                                         p.blockSize };
+    matched.colorGradient.prepare(images.left, images.right, disparitiesOf(in), params);
 }
 
 //! P(D_l) of section 3.1
@@ -90,12 +94,12 @@ void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clo
     clock.run("disparity forest", [&] { growForest(in, buffers, matched); });
     matched.searchRatio = searchRatio(buffers.forest, disparitiesOf(in));
     clock.run("cost aggregation", [&] {
-        aggregateForest(buffers.forest, matched.cost, p.gamma, in.settings.subpixel, buffers.aggregation,
+        aggregateForest(buffers.forest, matched.cost(), p.gamma, in.settings.subpixel, buffers.aggregation,
                         matched.winner);
     });
     if (p.fillOcclusions)
         clock.run("occlusions", [&] {
-            matched.cost.censusCosts(matched.winner, matched.residual);
+            matched.census.ofDisparities(matched.winner, matched.residual);
             fillOccluded(matched.winner, matched.residual);
         });
 }
@@ -120,7 +124,7 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
         });
         clock.run("cost aggregation", [&] {
             const ScanlinePenalties penalties = { p.P1, p.P2, pass == 0 ? 1 : 2 };
-            aggregateScanlines(matched.cost, in.images.left.size(), disparities, matched.windows, penalties,
+            aggregateScanlines(matched.census, in.images.left.size(), disparities, matched.windows, penalties,
                                buffers.scanlines, matched.winner, matched.residual);
         });
         if (p.fillOcclusions)

@@ -4,10 +4,11 @@
 #ifndef OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 #define OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 
+#include "census_cost.hpp"
+#include "color_gradient_cost.hpp"
 #include "disparity_forest.hpp"
 #include "forest_aggregation.hpp"
 #include "matcher_parameters.hpp"
-#include "matching_cost.hpp"
 #include "pair_pyramids.hpp"
 #include "scanline_aggregation.hpp"
 #include "stage_clock.hpp"
@@ -33,9 +34,13 @@ struct LayerInput
 struct MatchedLayer
 {
     Mat disparity;             // CV_16UC1, a disparity map
-    MatchingCost cost;         // M(p, x)
     double searchRatio;        // R_l of the paper's Table 1
     std::vector<double> prior; // P(D_l) up to a factor; empty if the layer was not predicted from one
+
+    bool isCensus = false; // which of the two costs is prepared
+    CensusCost census;
+    ColorGradientCost colorGradient;
+    const MatchingCost& cost() const { return isCensus ? static_cast<const MatchingCost&>(census) : colorGradient; }
 
     Mat guide, pixelIntv;
     Mat smallest, largest, windows;

@@ -45,7 +45,7 @@ void ScanlineScratch::prepare(int width)
     winnerSums.resize(blockColumns);
 }
 
-void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,
+void aggregateScanlines(const CensusCost& cost, Size size, int numDisparities, const Mat& windows,
                         const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
     const ScanlineProblem problem = { &cost, size, numDisparities, &windows, penalties };

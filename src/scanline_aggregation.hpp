@@ -5,8 +5,8 @@
 #define OPENCV_HDPSTEREO_SCANLINE_AGGREGATION_HPP
 
 #include "candidate_windows.hpp"
+#include "census_cost.hpp"
 #include "disparity_units.hpp"
-#include "matching_cost.hpp"
 
 namespace cv {
 namespace stereo {
@@ -27,7 +27,7 @@ struct ScanlinePenalties
 //! What is aggregated, see aggregateScanlines()
 struct ScanlineProblem
 {
-    const MatchingCost* cost;
+    const CensusCost* cost;
     Size size;
     int numDisparities;
     const Mat* windows;
@@ -91,7 +91,7 @@ above each of them.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
-CV_EXPORTS void aggregateScanlines(const MatchingCost& cost, Size size, int numDisparities, const Mat& windows,
+CV_EXPORTS void aggregateScanlines(const CensusCost& cost, Size size, int numDisparities, const Mat& windows,
                                    const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity,
                                    Mat& residual);
 

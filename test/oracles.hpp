@@ -8,9 +8,10 @@
 // Nothing here calls the library, except for the strategies' Rule 1 and 2 and the parameters of the prediction model.
 
 #include "test_precomp.hpp"
+#include "../src/census_cost.hpp"
+#include "../src/color_gradient_cost.hpp"
 #include "../src/disparity_forest.hpp"
 #include "../src/disparity_prediction.hpp"
-#include "../src/matching_cost.hpp"
 #include "../src/scanline_aggregation.hpp"
 
 namespace opencv_test {
@@ -75,10 +76,10 @@ inline Mat greyLevels(const Mat& image)
 }
 
 //! Section 3.3: M(p, x), averaged over a window; rows and columns clamped to the images.
-class Cost
+class ColorGradientCost
 {
 public:
-    Cost(const Mat& left, const Mat& right, const hdp::MatchingCostParams& params)
+    ColorGradientCost(const Mat& left, const Mat& right, const hdp::ColorGradientParams& params)
         : left_(left), right_(right), leftGrey_(exactGrey(left)), rightGrey_(exactGrey(right)), params_(params)
     {
     }
@@ -124,7 +125,7 @@ private:
 
     Mat left_, right_;
     Mat_<double> leftGrey_, rightGrey_;
-    hdp::MatchingCostParams params_;
+    hdp::ColorGradientParams params_;
 };
 
 //! The census cost of images of grey levels, CV_16UC1: the pixels of the window's checkerboard that are darker than its

@@ -5,6 +5,8 @@
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 #include "systems.hpp"
+#include "../src/census_cost.hpp"
+#include "../src/color_gradient_cost.hpp"
 #include "../src/disparity_confidence.hpp"
 #include "../src/disparity_units.hpp"
 #include "../src/image_pyramid.hpp"
@@ -15,19 +17,22 @@ namespace {
 
 ////////////////////////////////////////////// the stage //////////////////////////////////////////////
 
-const hdp::MatchingCostParams censusCost = { true, 10, 2, 0.11f, 7 };
-const hdp::MatchingCostParams colorCost = { false, 10, 2, 0.11f, 1 };
-
-//! The cost of a pair of grey images
-void prepareCost(const Mat& left, const Mat& right, int numDisparities, const hdp::MatchingCostParams& params,
-                 hdp::MatchingCost& cost)
+//! A cost of a pair of grey images
+Ptr<hdp::MatchingCost> makeCost(const Mat& left, const Mat& right, int numDisparities, bool isCensus)
 {
-    if (!params.census)
-        return cost.prepare(left, right, numDisparities, params);
+    if (!isCensus)
+    {
+        const hdp::ColorGradientParams params = { 10, 2, 0.11f, 1 };
+        const Ptr<hdp::ColorGradientCost> cost = makePtr<hdp::ColorGradientCost>();
+        cost->prepare(left, right, numDisparities, params);
+        return cost;
+    }
     Mat leftGrey, rightGrey;
     hdp::greyLevels(left, leftGrey);
     hdp::greyLevels(right, rightGrey);
-    cost.prepare(leftGrey, rightGrey, numDisparities, params);
+    const Ptr<hdp::CensusCost> cost = makePtr<hdp::CensusCost>();
+    cost->prepare(leftGrey, rightGrey, numDisparities, 7);
+    return cost;
 }
 
 //! The confidence of one pixel, from its definition.
@@ -79,29 +84,28 @@ double confidenceOf(int x, int y, const Mat& disparity, int numDisparities, cons
 TEST(HDPStereo_DisparityConfidence, by_its_definition)
 {
     RNG rng(41);
-    for (const hdp::MatchingCostParams& params : { censusCost, colorCost })
+    for (bool isCensus : { true, false })
         for (const Size& size : { Size(1, 1), Size(1, 9), Size(9, 1), Size(43, 31), Size(5, 300) })
             for (int numDisparities : { 1, 2, 3, 12 })
             {
                 SCOPED_TRACE(testing::Message()
-                             << "census " << params.census << ", " << size << ", " << numDisparities << " disparities");
+                             << "census " << isCensus << ", " << size << ", " << numDisparities << " disparities");
                 const Mat right = patchyImage(rng, size, CV_8UC1);
                 Mat left, disparity;
                 cv::add(right, randomImage(rng, size, CV_8UC1, 10), left);
-                hdp::MatchingCost cost;
-                prepareCost(left, right, numDisparities, params, cost);
+                const Ptr<hdp::MatchingCost> cost = makeCost(left, right, numDisparities, isCensus);
                 // Blocks of disparities that differ within themselves by less than a pixel
                 patchyImage(rng, size, CV_8UC1, 12)
                     .convertTo(disparity, CV_16U, (numDisparities - 1) * hdp::subpixelScale / 255.);
                 Mat confidence;
-                hdp::disparityConfidence(disparity, numDisparities, cost, confidence);
+                hdp::disparityConfidence(disparity, numDisparities, *cost, confidence);
                 ASSERT_EQ(CV_8UC1, confidence.type());
                 ASSERT_EQ(size, confidence.size());
                 const int step = size.area() > 1000 ? 7 : 1; // the definition is slow
                 for (int i = 0; i < size.area(); i += step)
                 {
                     const int x = i % size.width, y = i / size.width;
-                    const double expected = confidenceOf(x, y, disparity, numDisparities, cost);
+                    const double expected = confidenceOf(x, y, disparity, numDisparities, *cost);
                     ASSERT_NEAR(expected, confidence.at<uchar>(y, x), 0.51) << "at " << x << ", " << y;
                 }
             }
@@ -116,9 +120,9 @@ struct TexturedPlane
         disparity = 6
     };
     Mat left, right;
-    hdp::MatchingCostParams params;
+    bool isCensus;
 
-    explicit TexturedPlane(const hdp::MatchingCostParams& costParams) : params(costParams)
+    explicit TexturedPlane(bool census) : isCensus(census)
     {
         RNG rng(42);
         const Mat texture = randomImage(rng, Size(200, 120), CV_8UC1, 200);
@@ -132,45 +136,43 @@ struct TexturedPlane
 
     Mat confidence(const Mat& map) const
     {
-        hdp::MatchingCost cost;
-        prepareCost(left, right, numDisparities, params, cost);
         Mat result;
-        hdp::disparityConfidence(map, numDisparities, cost, result);
+        hdp::disparityConfidence(map, numDisparities, *makeCost(left, right, numDisparities, isCensus), result);
         return result;
     }
 };
 
 TEST(HDPStereo_DisparityConfidence, texture)
 {
-    for (const hdp::MatchingCostParams& params : { censusCost, colorCost })
+    for (bool isCensus : { true, false })
     {
-        TexturedPlane plane(params);
+        TexturedPlane plane(isCensus);
         RNG rng(43);
         for (Mat* image : { &plane.left, &plane.right }) // noise alone
             Mat(randomImage(rng, Size(90, 120), CV_8UC1, 8) + 100).copyTo(image->colRange(90, 180));
         const Mat confidence = plane.confidence(plane.map());
         const double textured = cv::mean(confidence.colRange(25, 65))[0],
                      plain = cv::mean(confidence.colRange(115, 155))[0];
-        EXPECT_GT(textured, 2 * plain) << "census " << params.census;
+        EXPECT_GT(textured, 2 * plain) << "census " << isCensus;
     }
 }
 
 TEST(HDPStereo_DisparityConfidence, mismatch)
 {
-    for (const hdp::MatchingCostParams& params : { censusCost, colorCost })
+    for (bool isCensus : { true, false })
     {
-        const TexturedPlane plane(params);
+        const TexturedPlane plane(isCensus);
         Mat wrong = plane.map();
         const Rect patch(60, 30, 60, 60), inside(75, 45, 30, 30);
         wrong(patch).setTo(Scalar(16 * (TexturedPlane::disparity + 4)));
         const double correct = cv::mean(plane.confidence(plane.map())(inside))[0];
-        EXPECT_GT(correct, 3 * cv::mean(plane.confidence(wrong)(inside))[0]) << "census " << params.census;
+        EXPECT_GT(correct, 3 * cv::mean(plane.confidence(wrong)(inside))[0]) << "census " << isCensus;
     }
 }
 
 TEST(HDPStereo_DisparityConfidence, steps)
 {
-    const TexturedPlane plane(censusCost);
+    const TexturedPlane plane(true);
     Mat map = plane.map();
     map.rowRange(0, 40) += 24; // 1.5 pixels are none
     expectIdentical(Mat(1, 180, CV_8U, Scalar(0)), Mat(plane.confidence(map).row(39) == 0));
@@ -189,7 +191,7 @@ TEST(HDPStereo_DisparityConfidence, steps)
 //! The pixels beside a nearer surface that it hides from the right image, and as many on its other side that it does not
 TEST(HDPStereo_DisparityConfidence, hidden_pixels)
 {
-    const TexturedPlane plane(censusCost);
+    const TexturedPlane plane(true);
     Mat map = plane.map(), mirrored = plane.map();
     const int nearer = 16 * (TexturedPlane::disparity + 8);
     map.colRange(80, 180).setTo(Scalar(nearer));    // maps to columns from 66 on, the pixels 72..79 to 66..73
@@ -213,16 +215,15 @@ TEST(HDPStereo_DisparityConfidence, any_number_of_threads)
     Mat disparity, right;
     cv::add(left, randomImage(rng, left.size(), CV_8UC1, 10), right);
     patchyImage(rng, left.size(), CV_8UC1, 40).convertTo(disparity, CV_16U, 0.5);
-    for (const hdp::MatchingCostParams& params : { censusCost, colorCost })
+    for (bool isCensus : { true, false })
     {
-        hdp::MatchingCost cost;
-        prepareCost(left, right, 9, params, cost);
+        const Ptr<hdp::MatchingCost> cost = makeCost(left, right, 9, isCensus);
         Mat expected;
         for (int n : { 1, 2, 8 })
         {
             Mat confidence;
             cv::setNumThreads(n);
-            hdp::disparityConfidence(disparity, 9, cost, confidence);
+            hdp::disparityConfidence(disparity, 9, *cost, confidence);
             cv::setNumThreads(threads);
             if (expected.empty())
                 expected = confidence;

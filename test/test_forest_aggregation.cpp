@@ -9,7 +9,7 @@
 namespace opencv_test {
 namespace {
 
-const hdp::MatchingCostParams costParams = { false, 10, 2, 0.11f, 1 };
+const hdp::ColorGradientParams costParams = { 10, 2, 0.11f, 1 };
 const int numDisparities = 24;
 
 //! A forest with what belongs to it, and the cost of each pixel and disparity by the formula. Of one channel, where the
@@ -19,7 +19,7 @@ struct Layer
     Mat left, right;
     hdp::DisparityForest forest;
     oracle::Forest expectedForest;
-    hdp::MatchingCost cost;
+    hdp::ColorGradientCost cost;
     Mat_<double> costTable;
 
     Layer(RNG& rng, Size size, const TreeStrategy& strategy, const Mat& pixelIntv, double beta, bool link,
@@ -33,7 +33,7 @@ struct Layer
         hdp::buildForest(left, pixelIntv, strategy, beta, link, buffers, forest);
         expectedForest = oracle::buildForest(left, pixelIntv, strategy, beta, link);
         cost.prepare(left, right, disparities, costParams);
-        costTable = oracle::costTable(oracle::Cost(left, right, costParams), size, disparities);
+        costTable = oracle::costTable(oracle::ColorGradientCost(left, right, costParams), size, disparities);
     }
 };
 
@@ -223,7 +223,7 @@ TEST(HDPStereo_ForestAggregation, lowest_disparity_wins_a_tie)
             hdp::DisparityForest forest;
             const Mat pixelIntv(size, CV_16UC2, Scalar(first, numDisparities - 1));
             hdp::buildForest(left, pixelIntv, *createMinimumSpanningTree(), 0.95, true, forestBuffers, forest);
-            hdp::MatchingCost cost;
+            hdp::ColorGradientCost cost;
             cost.prepare(left, right, numDisparities, costParams);
             hdp::AggregationBuffers buffers;
             Mat disparity;

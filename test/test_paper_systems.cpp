@@ -33,7 +33,7 @@ Mat winners(const oracle::Forest& forest, const Mat_<double>& costs, Size size)
 Mat matchByOracles(const Mat& left, const Mat& right, int numDisparities, const System& system)
 {
     const double delta0 = 0.004, beta = 0.95;
-    const hdp::MatchingCostParams costParams = { false, 10, 2, 0.11f, 1 };
+    const hdp::ColorGradientParams costParams = { 10, 2, 0.11f, 1 };
     const Ptr<TreeStrategy> strategy = system.createTree();
     const Ptr<DisparityPredictionModel> model =
         DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL);
@@ -69,7 +69,7 @@ Mat matchByOracles(const Mat& left, const Mat& right, int numDisparities, const 
         if (system.useMedianPrefilter)
             cv::medianBlur(lefts[l], guide, 3);
         const oracle::Forest forest = oracle::buildForest(guide, pixelIntv, *strategy, beta, !system.usePrediction);
-        const Mat_<double> costs = oracle::costTable(oracle::Cost(lefts[l], rights[l], costParams), size, largest + 1);
+        const Mat_<double> costs = oracle::costTable(oracle::ColorGradientCost(lefts[l], rights[l], costParams), size, largest + 1);
         disparity = oracle::median(winners(forest, costs, size), system.usePrediction ? 7 : 5);
     }
     return disparity;

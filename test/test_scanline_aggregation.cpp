@@ -57,11 +57,10 @@ struct Layer
 
     Size size() const { return left.size(); }
 
-    hdp::MatchingCost cost() const
+    hdp::CensusCost cost() const
     {
-        const hdp::MatchingCostParams params = { true, 0, 0, 0, blockSize };
-        hdp::MatchingCost result;
-        result.prepare(left, right, numDisparities, params);
+        hdp::CensusCost result;
+        result.prepare(left, right, numDisparities, blockSize);
         return result;
     }
 
@@ -152,7 +151,7 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
         {
             SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
             const Layer layer(rng, size, numDisparities, GetParam());
-            const hdp::MatchingCost cost = layer.cost();
+            const hdp::CensusCost cost = layer.cost();
             const hdp::ScanlineProblem problem = { &cost, size, numDisparities, &layer.windows, usualPenalties };
             Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
             scratch.prepare(size.width);

@@ -198,8 +198,8 @@ TEST(HDPStereo_UserTreeStrategy, without_any_tree_each_pixel_takes_its_own_best)
     const Mat left = oracle::grey(testPair().left), right = oracle::grey(testPair().right);
     const Mat disparity = match(*matcher, left, right);
 
-    const hdp::MatchingCostParams params = { false, 10, 2, 0.11f, 1 };
-    const Mat_<double> costs = oracle::costTable(oracle::Cost(left, right, params), left.size(), disparities);
+    const hdp::ColorGradientParams params = { 10, 2, 0.11f, 1 };
+    const Mat_<double> costs = oracle::costTable(oracle::ColorGradientCost(left, right, params), left.size(), disparities);
     for (int p = 0; p < costs.rows; ++p)
     {
         const int d = disparity.at<short>(p / disparity.cols, p % disparity.cols) / 16;

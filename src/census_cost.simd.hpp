@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "census_cost.hpp"
 #include "image_pyramid.hpp"
-#include "matching_cost.hpp"
 #include "vectorized.hpp"
 #include <cstring>
 #include <type_traits>
@@ -22,17 +22,17 @@ column cols.
 @param radius Of the window, 1 to 3.
 @param cols Columns to compute.
 @param planes Memory for a row of 3 planes, cols bytes each.
-@param pixels Receives the row, see MatchingCost::leftPixels(). */
+@param pixels Receives the row, see CensusCost::leftPixels(). */
 void leftCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels);
 
 /** A row of the right image, as leftCensusRow(). The image is mirrored, and so is its window then, so that its bits are
 the same ones.
-@param row Receives the row, see MatchingCost::rightPlane().
+@param row Receives the row, see CensusCost::rightPlane().
 @param planeSize From a plane to the next. */
 void rightCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* row, size_t planeSize);
 
-//! MatchingCost::evaluate()
-void evaluateCost(const CostPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
+//! CensusCost::evaluate()
+void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -82,7 +82,7 @@ void leftCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, ucha
         pixels[4 * x] = planes[x];
         pixels[4 * x + 1] = second[x];
         pixels[4 * x + 2] = third[x];
-        pixels[4 * x + MatchingCost::greyByte] = (uchar)(grey[x] / greyScale);
+        pixels[4 * x + CensusCost::greyByte] = (uchar)(grey[x] / greyScale);
     }
 }
 
@@ -114,11 +114,8 @@ template <int count, typename Word> inline Word countInBytes(Word a, Word b, Wor
     return (nibbles & repeated<Word>(0x0f)) + ((nibbles >> 4) & repeated<Word>(0x0f));
 }
 
-//! Exact: p + 0.5 is 0.5 / width and more away from a whole number of rows, the product's error far less.
-inline int rowOf(int p, double rowsPerPixel) { return (int)((p + 0.5) * rowsPerPixel); }
-
 template <int lanes, int count, typename Word>
-void censusCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
+void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, float* cost)
 {
     // Bits are counted in all words of a block at once, in order to fill vectors.
     const int block = lanes > 16 ? 1 : 32, words = lanes / (int)sizeof(Word);
@@ -132,7 +129,7 @@ void censusCosts(const CostPlanes& planes, const int* pixels, int size, int firs
             const int p = pixels[begin + i], y = rowOf(p, rowsPerPixel), x = p - y * planes.width;
             const uchar* left = planes.left + y * planes.leftStep + 4 * x;
             const uchar* right = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
-            for (int plane = 0; plane < count; ++plane, left += planes.leftPlane, right += planes.rightPlane)
+            for (int plane = 0; plane < count; ++plane, ++left, right += planes.rightPlane)
             {
                 const Word pixel = repeated<Word>(*left);
                 HDP_VECTORIZED for (int k = 0; k < words; ++k)
@@ -151,66 +148,20 @@ void censusCosts(const CostPlanes& planes, const int* pixels, int size, int firs
     }
 }
 
-inline short absolute(short value) { return std::max<short>(value, (short)-value); }
-
-template <int lanes, int channels>
-void colorAndGradientCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
-{
-    const double rowsPerPixel = 1. / planes.width;
-    const float colorWeight = planes.colorWeight, colorTruncation = planes.colorTruncation,
-                gradientWeight = planes.gradientWeight, gradientTruncation = planes.gradientTruncation;
-    for (int i = 0; i < size; ++i, cost += lanes)
-    {
-        const int y = rowOf(pixels[i], rowsPerPixel), x = pixels[i] - y * planes.width;
-        const int mirroredX = planes.width - 1 - x + planes.blockSize - 1 + first;
-        float sum[lanes] = { 0 };
-        for (int dy = 0; dy < planes.blockSize; ++dy)
-            for (int dx = 0; dx < planes.blockSize; ++dx)
-            {
-                const size_t left = (y + dy) * planes.leftStep + x + dx;
-                const size_t right = (y + dy) * planes.rightStep + mirroredX - dx;
-                const uchar *pixel = planes.left + left, *candidates = planes.right + right;
-                const short slope = planes.leftGradient[left], blue = pixel[0],
-                            green = channels > 1 ? pixel[planes.leftPlane] : 0,
-                            red = channels > 1 ? pixel[2 * planes.leftPlane] : 0;
-                const short* slopes = planes.rightGradient + right;
-                const size_t plane = channels > 1 ? planes.rightPlane : 0;
-                const uchar *greens = candidates + plane, *reds = greens + plane;
-                short color[lanes];
-                HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
-                {
-                    short difference = absolute((short)(blue - candidates[k]));
-                    if (channels > 1)
-                        difference = (short)(difference + absolute((short)(green - greens[k])) +
-                                             absolute((short)(red - reds[k])));
-                    color[k] = difference;
-                }
-                HDP_VECTORIZED for (int k = 0; k < lanes; ++k) sum[k] +=
-                    colorWeight * std::min((float)color[k], colorTruncation) +
-                    gradientWeight * std::min((float)std::abs(slope - slopes[k]), gradientTruncation);
-            }
-        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = sum[k];
-    }
-}
-
-template <int lanes> void evaluateCosts(const CostPlanes& planes, const int* pixels, int size, int first, float* cost)
+template <int lanes> void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, float* cost)
 {
     typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
-    if (!planes.census && planes.count == 3)
-        colorAndGradientCosts<lanes, 3>(planes, pixels, size, first, cost);
-    else if (!planes.census)
-        colorAndGradientCosts<lanes, 1>(planes, pixels, size, first, cost);
-    else if (planes.count == 3)
-        censusCosts<lanes, 3, Word>(planes, pixels, size, first, cost);
+    if (planes.count == 3)
+        evaluateCosts<lanes, 3, Word>(planes, pixels, size, first, cost);
     else if (planes.count == 2)
-        censusCosts<lanes, 2, Word>(planes, pixels, size, first, cost);
+        evaluateCosts<lanes, 2, Word>(planes, pixels, size, first, cost);
     else
-        censusCosts<lanes, 1, Word>(planes, pixels, size, first, cost);
+        evaluateCosts<lanes, 1, Word>(planes, pixels, size, first, cost);
 }
 
 } // namespace
 
-void evaluateCost(const CostPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost)
+void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost)
 {
     switch (lanes)
     {

@@ -1,0 +1,116 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "census_cost.hpp"
+#include "census_cost.simd.hpp"
+#include "census_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "disparity_units.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+// Bytes before and behind a row of the census that may be read; they mean nothing.
+const int censusMargin = 16;
+
+// Columns of a census row are computed in groups of this many.
+const int censusColumns = 32;
+
+void dispatchLeftCensus(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels)
+{
+    CV_CPU_DISPATCH(leftCensusRow, (grey, step, radius, cols, planes, pixels), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchRightCensus(const short* grey, ptrdiff_t step, int radius, int cols, uchar* row, size_t planeSize)
+{
+    CV_CPU_DISPATCH(rightCensusRow, (grey, step, radius, cols, row, planeSize), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+} // namespace
+
+void CensusCost::prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize)
+{
+    planes_.width = left.cols;
+    planes_.count = (blockSize * blockSize / 2 + 7) / 8;
+    prepareImage(left, blockSize / 2, false, 0);
+    prepareImage(right, blockSize / 2, true, numDisparities + costPadding);
+    planes_.left = left_.ptr() + 4 * censusMargin;
+    planes_.right = right_.ptr() + censusMargin;
+    planes_.leftStep = left_.step;
+    planes_.rightStep = right_.step;
+    planes_.rightPlane = right_.step * left.rows;
+}
+
+void CensusCost::prepareImage(const Mat& image, int radius, bool isRight, int after)
+{
+    const int width = image.cols, planes = planes_.count, rows = image.rows;
+    const int cols = (int)alignSize(width, censusColumns); // what is computed past the width is overwritten or not read
+    grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16S); // all levels are below 32768
+    copyBordered(image, 0, radius, radius, radius + cols - width, isRight, grey_);
+    if (isRight)
+        right_.create((planes + 1) * rows, censusMargin + std::max(width + after, cols) + censusMargin, CV_8U);
+    else
+        left_.create(rows, censusMargin + cols + censusMargin, CV_8UC4);
+    const ptrdiff_t step = (ptrdiff_t)grey_.step1();
+    parallel_for_(Range(0, rows), [&](const Range& range) {
+        std::vector<uchar> leftPlanes(isRight ? 0 : 3 * cols);
+        for (int y = range.start; y < range.end; ++y)
+        {
+            const short* grey = grey_.ptr<short>(y + radius) + radius;
+            if (!isRight)
+            {
+                dispatchLeftCensus(grey, step, radius, cols, leftPlanes.data(), left_.ptr(y) + 4 * censusMargin);
+                continue;
+            }
+            dispatchRightCensus(grey, step, radius, cols, right_.ptr(y) + censusMargin, right_.step * rows);
+            for (int plane = 0; plane <= planes; ++plane)
+            {
+                uchar* row = right_.ptr(plane * rows + y) + censusMargin;
+                std::fill(row + width, right_.ptr(plane * rows + y) + right_.cols, row[width - 1]);
+            }
+        }
+    });
+}
+
+void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
+{
+    CV_CPU_DISPATCH(evaluateCensusCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
+{
+    costs.create(disparity.size(), CV_8U);
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const ushort* candidate = disparity.ptr<ushort>(y);
+            uchar* cost = costs.ptr(y);
+            const uchar *left[3], *right[3];
+            for (int plane = 0; plane < 3; ++plane)
+            {
+                left[plane] = leftPixels(y) + plane;
+                right[plane] = rightPlane(std::min(plane, planes() - 1), y) + planes_.width - 1;
+            }
+            const unsigned mask = 0xffffff >> (8 * (3 - planes()));
+            for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int at = wholeDisparity(candidate[x]) - x;
+                unsigned bits = (unsigned)(left[0][4 * x] ^ right[0][at]) |
+                                (unsigned)(left[1][4 * x] ^ right[1][at]) << 8 |
+                                (unsigned)(left[2][4 * x] ^ right[2][at]) << 16;
+                bits &= mask;
+                bits -= (bits >> 1) & 0x555555;
+                bits = (bits & 0x333333) + ((bits >> 2) & 0x333333);
+                bits = (bits + (bits >> 4)) & 0x0f0f0f;
+                cost[x] = (uchar)(bits + (bits >> 8) + (bits >> 16));
+            }
+        }
+    });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
