@@ -23,42 +23,31 @@ void dispatchMedian(const ushort* const* rows, int size, int width, short* const
     CV_CPU_DISPATCH(medianRow, (rows, size, width, sorted, filtered), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-//! What the right image has at a pixel's match
-enum Match
+template <typename T>
+void dispatchVisibility(const T* disparity, int width, int invalid, int largest, int* columns, int* nearest,
+                        uchar* visibility)
 {
-    VISIBLE,
-    OCCLUDED, // a nearer pixel
-    OUTSIDE   // nothing, it ends before
-};
+    CV_CPU_DISPATCH(visibilityRow, (disparity, width, invalid, largest, columns, nearest, visibility),
+                    CV_CPU_DISPATCH_MODES_ALL);
+}
 
 /** Compares each disparity with the largest one that maps to the same column of the right image.
 @param disparity CV_16SC1 or CV_16UC1 (T), in 1 / subpixelScale pixel.
 @param maxDiff Largest difference, in pixels, of a visible pixel.
 @param invalid Disparity of pixels that map to no column, or a value that none has.
-@param visit Called with row, column and Match of each pixel, from left to right, rows side by side. */
+@param visit Called with each row and the Visibility of its pixels, rows side by side. */
 template <typename T, typename Visit>
 void checkLeftRight(const Mat& disparity, int maxDiff, int invalid, const Visit& visit)
 {
-    const int64 largestDifference = (int64)maxDiff * subpixelScale;
+    const int largest = (int)std::min<int64>((int64)maxDiff * subpixelScale, INT_MAX);
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        std::vector<int> nearest(disparity.cols);
+        std::vector<int> columns(disparity.cols), nearest(disparity.cols + 1);
+        std::vector<uchar> visibility(disparity.cols);
         for (int y = rows.start; y < rows.end; ++y)
         {
-            const T* row = disparity.ptr<T>(y);
-            const auto column = [&](int x) { return x - cvRound(row[x] / (double)subpixelScale); };
-            std::fill(nearest.begin(), nearest.end(), SHRT_MIN);
-            for (int x = 0; x < disparity.cols; ++x)
-            {
-                const int right = column(x);
-                if (row[x] != invalid && right >= 0 && right < disparity.cols)
-                    nearest[right] = std::max<int>(nearest[right], row[x]);
-            }
-            for (int x = 0; x < disparity.cols; ++x)
-            {
-                const int right = column(x);
-                const bool isInside = right >= 0 && right < disparity.cols;
-                visit(y, x, !isInside ? OUTSIDE : nearest[right] - row[x] > largestDifference ? OCCLUDED : VISIBLE);
-            }
+            dispatchVisibility(disparity.ptr<T>(y), disparity.cols, invalid, largest, columns.data(), nearest.data(),
+                               visibility.data());
+            visit(y, visibility.data());
         }
     });
 }
@@ -127,9 +116,11 @@ void upsampleDisparity(const Mat& upper, Size size, Mat& disparity)
 
 void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
 {
-    const auto reject = [&](int y, int x, Match match) {
-        if (match == OCCLUDED)
-            disparity.at<short>(y, x) = invalid;
+    const auto reject = [&](int y, const uchar* visibility) {
+        short* row = disparity.ptr<short>(y);
+        for (int x = 0; x < disparity.cols; ++x)
+            if (visibility[x] == OCCLUDED)
+                row[x] = invalid;
     };
     checkLeftRight<short>(disparity, maxDiff, invalid, reject);
 }
@@ -137,7 +128,11 @@ void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
 void findStable(const Mat& disparity, int maxDiff, Mat& stable)
 {
     stable.create(disparity.size(), CV_8U);
-    const auto mark = [&](int y, int x, Match match) { stable.at<uchar>(y, x) = match == VISIBLE ? 255 : 0; };
+    const auto mark = [&](int y, const uchar* visibility) {
+        uchar* row = stable.ptr(y);
+        const int width = stable.cols; // for vectors: bytes that are written could otherwise be those of the number
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) row[x] = visibility[x] == VISIBLE ? 255 : 0;
+    };
     const int none = -1; // all are valid
     checkLeftRight<ushort>(disparity, maxDiff, none, mark);
 }

@@ -42,6 +42,14 @@ CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual);
 @param disparity Receives CV_16UC1, a disparity map. */
 CV_EXPORTS void upsampleDisparity(const Mat& upper, Size size, Mat& disparity);
 
+//! What the right image has at a pixel's match
+enum Visibility
+{
+    VISIBLE,
+    OCCLUDED, // a nearer pixel
+    OUTSIDE   // nothing, it ends before
+};
+
 //! Marks the pixels as invalid whose disparity differs by more than maxDiff pixels from the largest one that maps to
 //! the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
 CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);

@@ -16,6 +16,19 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 //! fillOccluded() for one row. scratch: of this width.
 void fillOccludedRow(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch);
 
+/** Compares a row's disparities with the largest ones that map to the same columns of the right image.
+@param disparity In 1 / subpixelScale pixel.
+@param width Of the row.
+@param invalid Disparity of pixels that map to no column, or a value that none has.
+@param largest Difference of a visible pixel, in the same units.
+@param columns Memory for a row.
+@param nearest Memory for a row and one element.
+@param visibility Receives a Visibility per pixel. */
+void visibilityRow(const ushort* disparity, int width, int invalid, int largest, int* columns, int* nearest,
+                   uchar* visibility);
+void visibilityRow(const short* disparity, int width, int invalid, int largest, int* columns, int* nearest,
+                   uchar* visibility);
+
 /** A row of the median of size x size pixels.
 @param rows The `size` rows around it.
 @param size 3, 5 or 7.
@@ -95,6 +108,50 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, Occlus
         }
         begin = findByte(shown, end, width, 0);
     }
+}
+
+namespace {
+
+//! As cvRound(disparity / 16.), for vectors: of two that are equally near the even one
+inline int roundedDisparity(int disparity)
+{
+    static_assert(subpixelScale == 1 << 4, "divided by a shift, so that negative ones are rounded as others");
+    return (disparity + subpixelScale / 2 - 1 + ((disparity >> 4) & 1)) >> 4;
+}
+
+template <typename T>
+void visibilityOf(const T* disparity, int width, int invalid, int largest, int* columns, int* nearest,
+                  uchar* visibility)
+{
+    const int none = width; // column of the pixels that map to none
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        const int column = x - roundedDisparity(disparity[x]);
+        columns[x] = column >= 0 && column < width ? column : none;
+    }
+    HDP_VECTORIZED for (int x = 0; x <= width; ++x) nearest[x] = SHRT_MIN;
+    for (int x = 0; x < width; ++x)
+        if (disparity[x] != invalid)
+            nearest[columns[x]] = std::max(nearest[columns[x]], (int)disparity[x]);
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        const int column = columns[x], inside = nearest[column] - disparity[x] > largest ? OCCLUDED : VISIBLE;
+        visibility[x] = (uchar)(column == none ? OUTSIDE : inside);
+    }
+}
+
+} // namespace
+
+void visibilityRow(const ushort* disparity, int width, int invalid, int largest, int* columns, int* nearest,
+                   uchar* visibility)
+{
+    visibilityOf(disparity, width, invalid, largest, columns, nearest, visibility);
+}
+
+void visibilityRow(const short* disparity, int width, int invalid, int largest, int* columns, int* nearest,
+                   uchar* visibility)
+{
+    visibilityOf(disparity, width, invalid, largest, columns, nearest, visibility);
 }
 
 namespace {
