@@ -109,7 +109,7 @@ endif()
 # Once more with the slower instruction sets: all that has an oracle, and the reference outputs
 foreach(without AVX512-ICL "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2")
   add_unit_tests(unit_without_${without} instruction-sets opencv_test_hdpstereo
-    "HDPStereo_*Cost*:HDPStereo_*Aggregation*:*HDPStereo_ReferenceOutput*")
+    "HDPStereo_*Cost*:HDPStereo_*Aggregation*:HDPStereo_*Refinement*:*_DisparityConfidence*:*HDPStereo_ReferenceOutput*")
   set_property(TEST unit_without_${without} APPEND PROPERTY ENVIRONMENT "OPENCV_CPU_DISABLE=${without}")
 endforeach()
 add_check(maps_of_instruction_sets instruction-sets "${PROJECT_SOURCE_DIR}/scripts/check_instruction_sets.sh"

@@ -3,9 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
 #include "disparity_confidence.hpp"
-
+#include "disparity_confidence.simd.hpp"
+#include "disparity_confidence.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "disparity_refinement.hpp"
-#include "disparity_units.hpp"
 
 namespace cv {
 namespace stereo {
@@ -13,125 +13,191 @@ namespace hdp {
 
 namespace {
 
-// Rows of the confidence that are computed at a time; half a window more on both sides goes into them.
-const int stripeRows = 128;
+typedef DisparityConfidence Constants;
 
-//! Distances to the nearest pixel at a step, CV_32FC1.
-void distanceToSteps(const Mat& disparity, Mat& distance)
+// Computed at a time: columns of the distances in columns; rows of the rest, plus half a window on both sides
+const int stripeColumns = 64, stripeRows = 128;
+
+int countStripes(int size, int stripe) { return (size + stripe - 1) / stripe; }
+
+void dispatchDistance(const ushort* above, const ushort* row, const ushort* below, int width, const Range& columns,
+                      const uchar* distanceAbove, uchar* distance)
 {
-    Mat smooth(disparity.size(), CV_8U, Scalar(255));
-    const auto isStep = [&](int a, int b) { return 2 * std::abs(a - b) > 3 * subpixelScale; };
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
+    CV_CPU_DISPATCH(distanceFromAbove, (above, row, below, width, columns, distanceAbove, distance),
+                    CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchDistance(const uchar* distanceBelow, const Range& columns, uchar* distance)
+{
+    CV_CPU_DISPATCH(distanceFromBelow, (distanceBelow, columns, distance), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchSquares(const uchar* distance, int width, short* padded, short* squares)
+{
+    CV_CPU_DISPATCH(squaredDistanceRow, (distance, width, padded, squares), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchCensus(const uchar* left, const uchar* const* right, int planes, const ushort* disparity,
+                    int numDisparities, int width, CensusScratch& scratch, short* own, short* others)
+{
+    CV_CPU_DISPATCH(censusCostRow, (left, right, planes, disparity, numDisparities, width, scratch, own, others),
+                    CV_CPU_DISPATCH_MODES_ALL);
+}
+
+template <typename T> void dispatchSlide(const T* entering, int width, T* kept, T* sums)
+{
+    CV_CPU_DISPATCH(slideWindow, (entering, width, kept, sums), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+template <typename T>
+void dispatchConfidence(const T* own, const T* others, const short* squares, const uchar* visible, int width, T* groups,
+                        float* factors, uchar* confidence)
+{
+    CV_CPU_DISPATCH(confidenceRow, (own, others, squares, visible, width, groups, factors, confidence),
+                    CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! Distances to the nearest pixel at a step in the same column, at most farFromSteps, CV_8UC1.
+void distancesInColumns(const Mat& disparity, Mat& distance)
+{
+    const int last = disparity.rows - 1;
+    const Mat none(1, disparity.cols, CV_8U, Scalar(Constants::farFromSteps));
+    distance.create(disparity.size(), CV_8U);
+    parallel_for_(Range(0, countStripes(disparity.cols, stripeColumns)), [&](const Range& stripes) {
+        const Range columns(stripes.start * stripeColumns, std::min(stripes.end * stripeColumns, disparity.cols));
+        for (int y = 0; y <= last; ++y)
+            dispatchDistance(disparity.ptr<ushort>(std::max(y - 1, 0)), disparity.ptr<ushort>(y),
+                             disparity.ptr<ushort>(std::min(y + 1, last)), disparity.cols, columns,
+                             y > 0 ? distance.ptr(y - 1) : none.ptr(), distance.ptr(y));
+        for (int y = last - 1; y >= 0; --y)
+            dispatchDistance(distance.ptr(y + 1), columns, distance.ptr(y));
+    });
+}
+
+//! Twice the census costs of a row's disparities, and twice the means of those of their alternatives
+class CensusAlternatives
+{
+public:
+    typedef short Cost; // sums over a window are below 32768
+
+    CensusAlternatives(const CensusCost& cost, const Mat& disparity, int numDisparities)
+        : cost_(cost), disparity_(disparity), numDisparities_(numDisparities), scratch_(disparity.cols)
+    {
+    }
+
+    void evaluate(int y, Cost* own, Cost* others)
+    {
+        const int planes = cost_.planes();
+        const uchar* right[3];
+        for (int plane = 0; plane < 3; ++plane)
+            right[plane] = cost_.rightPlane(std::min(plane, planes - 1), y);
+        dispatchCensus(cost_.leftPixels(y), right, planes, disparity_.ptr<ushort>(y), numDisparities_, disparity_.cols,
+                       scratch_, own, others);
+    }
+
+private:
+    const CensusCost& cost_;
+    const Mat& disparity_;
+    int numDisparities_;
+    CensusScratch scratch_;
+};
+
+//! The same of any cost, in 1 / costUnits
+class CostAlternatives
+{
+public:
+    typedef int Cost;
+
+    CostAlternatives(const MatchingCost& cost, const Mat& disparity, int numDisparities)
+        : cost_(cost), disparity_(disparity), numDisparities_(numDisparities), pixels_(disparity.cols),
+          costs_((size_t)disparity.cols * lanes)
+    {
+    }
+
+    void evaluate(int y, Cost* own, Cost* others)
+    {
+        const int width = disparity_.cols;
+        const ushort* disparity = disparity_.ptr<ushort>(y);
+        for (int x = 0; x < width; ++x)
+            pixels_[x] = y * width + x;
+        for (int start = 0, end; start < width; start = end) // pixels of one winner
         {
-            const ushort* row = disparity.ptr<ushort>(y);
-            const ushort* above = disparity.ptr<ushort>(std::max(y - 1, 0));
-            const ushort* below = disparity.ptr<ushort>(std::min(y + 1, disparity.rows - 1));
-            uchar* to = smooth.ptr(y);
-            for (int x = 0; x < disparity.cols; ++x)
-                if (isStep(row[x], above[x]) || isStep(row[x], below[x]))
-                    to[x] = 0;
-            for (int x = 1; x < disparity.cols; ++x)
-                if (isStep(row[x], row[x - 1]))
-                    to[x - 1] = to[x] = 0;
+            const int winner = wholeDisparity(disparity[start]), first = std::max(winner - Constants::alternative, 0);
+            for (end = start + 1; end < width && wholeDisparity(disparity[end]) == winner;)
+                ++end;
+            cost_.evaluate(&pixels_[start], end - start, first, lanes, costs_.data());
+            const Alternatives<int> alternatives(winner, numDisparities_ - 1);
+            for (int x = start; x < end; ++x)
+            {
+                const float* costs = &costs_[(size_t)(x - start) * lanes];
+                own[x] = 2 * units(costs[winner - first]);
+                others[x] = units(costs[alternatives.before - first]) + units(costs[alternatives.after - first]);
+            }
+        }
+    }
+
+private:
+    enum
+    {
+        lanes = 8
+    };
+
+    static int units(float cost) { return cvRound(cost * Constants::costUnits); }
+
+    const MatchingCost& cost_;
+    const Mat& disparity_;
+    int numDisparities_;
+    std::vector<int> pixels_;
+    std::vector<float> costs_;
+};
+
+template <typename Costs, typename CostOfLayer>
+void computeConfidence(const Mat& disparity, int numDisparities, const CostOfLayer& cost, Mat& confidence)
+{
+    typedef typename Costs::Cost Cost;
+    const int width = disparity.cols, window = Constants::window, radius = window / 2, far = Constants::farFromSteps;
+    Mat distance, visible;
+    distancesInColumns(disparity, distance);
+    findStable(disparity, Constants::visibleMaxDiff, visible);
+    confidence.create(disparity.size(), CV_8U);
+    parallel_for_(Range(0, countStripes(disparity.rows, stripeRows)), [&](const Range& stripes) {
+        Costs costs(cost, disparity, numDisparities);
+        // Rows of the costs of disparities and of their alternatives: what enters a window, what is in it, and its sums
+        Mat_<Cost> entering(2, width), kept(2 * window, width, Cost(0)), sums(2, width + 2 * radius, Cost(0));
+        std::vector<Cost> groups(2 * (width + window));
+        std::vector<short> padded(width + 2 * far + vectorMargin), squares(width);
+        std::vector<float> factors(width + vectorMargin);
+        const Range rows(stripes.start * stripeRows, std::min(stripes.end * stripeRows, disparity.rows));
+        for (int y = rows.start - radius, slot = 0; y < rows.end + radius; ++y, slot = (slot + 1) % window)
+        {
+            costs.evaluate(std::min(std::max(y, 0), disparity.rows - 1), entering[0], entering[1]);
+            for (int i = 0; i < 2; ++i)
+            {
+                Cost* row = sums[i] + radius;
+                dispatchSlide(entering[i], width, kept[2 * slot + i], row);
+                std::fill(row - radius, row, row[0]);
+                std::fill(row + width, row + width + radius, row[width - 1]);
+            }
+            const int centre = y - radius;
+            if (centre < rows.start)
+                continue; // the first window is not complete
+            dispatchSquares(distance.ptr(centre), width, &padded[far], squares.data());
+            dispatchConfidence(sums[0], sums[1], squares.data(), visible.ptr(centre), width, groups.data(),
+                               factors.data(), confidence.ptr(centre));
         }
     });
-    distanceTransform(smooth, distance, DIST_L2, DIST_MASK_PRECISE);
 }
-
-//! The costs of a row's disparities and the means of those of their alternatives.
-void evaluateRow(const MatchingCost& cost, const ushort* disparity, int numDisparities, int firstPixel, int width,
-                 std::vector<int>& pixels, std::vector<float>& costs, float* own, float* others)
-{
-    const int lanes = 8, alternative = DisparityConfidence::alternative;
-    for (int x = 0; x < width; ++x)
-        pixels[x] = firstPixel + x;
-    const auto candidate = [&](int x) { return wholeDisparity(disparity[x]); };
-    for (int start = 0, end; start < width; start = end) // pixels of one disparity
-    {
-        const int winner = candidate(start);
-        for (end = start + 1; end < width && candidate(end) == winner;)
-            ++end;
-        const int first = std::max(winner - alternative, 0), lane = winner - first;
-        cost.evaluate(&pixels[start], end - start, first, lanes, costs.data());
-        const bool hasBefore = lane == alternative, hasAfter = winner + alternative < numDisparities;
-        for (int x = start; x < end; ++x)
-        {
-            const float* at = &costs[(x - start) * lanes + lane];
-            own[x] = at[0];
-            others[x] = !hasBefore && !hasAfter ? at[0]
-                        : !hasBefore            ? at[alternative]
-                        : !hasAfter             ? at[-alternative]
-                                                : (at[-alternative] + at[alternative]) / 2;
-        }
-    }
-}
-
-//! U of some rows, CV_32FC1. The memory is kept from stripe to stripe.
-struct StripeUniqueness
-{
-    std::vector<int> pixels;
-    std::vector<float> costs;
-    Mat own, others;
-
-    void compute(const MatchingCost& cost, const Mat& disparity, int numDisparities, const Range& rows, Mat& uniqueness)
-    {
-        const int width = disparity.cols, window = DisparityConfidence::window, radius = window / 2;
-        pixels.resize(width);
-        costs.resize((size_t)width * 8);
-        own.create(rows.size() + 2 * radius, width, CV_32F);
-        others.create(own.size(), CV_32F);
-        for (int i = 0; i < own.rows; ++i)
-        {
-            const int y = std::min(std::max(rows.start - radius + i, 0), disparity.rows - 1);
-            evaluateRow(cost, disparity.ptr<ushort>(y), numDisparities, y * width, width, pixels, costs,
-                        own.ptr<float>(i), others.ptr<float>(i));
-        }
-        boxFilter(own, own, CV_32F, Size(window, window), Point(-1, -1), true, BORDER_REPLICATE);
-        boxFilter(others, others, CV_32F, Size(window, window), Point(-1, -1), true, BORDER_REPLICATE);
-        uniqueness.create(rows.size(), width, CV_32F);
-        for (int i = 0; i < rows.size(); ++i)
-        {
-            const float* c = own.ptr<float>(i + radius);
-            const float* a = others.ptr<float>(i + radius);
-            float* u = uniqueness.ptr<float>(i);
-            for (int x = 0; x < width; ++x)
-                u[x] = a[x] > c[x] ? (a[x] - c[x]) / (a[x] + c[x]) : 0.f;
-        }
-    }
-};
 
 } // namespace
 
+void disparityConfidence(const Mat& disparity, int numDisparities, const CensusCost& cost, Mat& confidence)
+{
+    computeConfidence<CensusAlternatives>(disparity, numDisparities, cost, confidence);
+}
+
 void disparityConfidence(const Mat& disparity, int numDisparities, const MatchingCost& cost, Mat& confidence)
 {
-    Mat distance, stable;
-    distanceToSteps(disparity, distance);
-    findStable(disparity, DisparityConfidence::visibleMaxDiff, stable);
-    confidence.create(disparity.size(), CV_8U);
-    const int stripes = (disparity.rows + stripeRows - 1) / stripeRows;
-    parallel_for_(Range(0, stripes), [&](const Range& range) {
-        StripeUniqueness stripe;
-        Mat uniqueness;
-        for (int i = range.start; i < range.end; ++i)
-        {
-            const Range rows(i * stripeRows, std::min((i + 1) * stripeRows, disparity.rows));
-            stripe.compute(cost, disparity, numDisparities, rows, uniqueness);
-            for (int y = rows.start; y < rows.end; ++y)
-            {
-                const float* u = uniqueness.ptr<float>(y - rows.start);
-                const float* far = distance.ptr<float>(y);
-                const uchar* visible = stable.ptr(y);
-                uchar* to = confidence.ptr(y);
-                for (int x = 0; x < disparity.cols; ++x)
-                {
-                    const float limit = DisparityConfidence::farFromSteps, s = std::min(far[x], limit) / limit;
-                    const int divisor = visible[x] ? 1 : (int)DisparityConfidence::hiddenDivisor;
-                    to[x] = saturate_cast<uchar>(255 * std::sqrt(s * u[x]) / (float)divisor);
-                }
-            }
-        }
-    });
+    computeConfidence<CostAlternatives>(disparity, numDisparities, cost, confidence);
 }
 
 } // namespace hdp

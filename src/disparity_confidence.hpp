@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_DISPARITY_CONFIDENCE_HPP
 #define OPENCV_HDPSTEREO_DISPARITY_CONFIDENCE_HPP
 
-#include "matching_cost.hpp"
+#include "census_cost.hpp"
 
 namespace cv {
 namespace stereo {
@@ -19,8 +19,40 @@ struct DisparityConfidence
         window = 21,        // side of the square that costs are averaged over, in pixels
         alternative = 2,    // distance, in pixels, of the candidates that the winner is compared with
         visibleMaxDiff = 1, // of the left-right check, in pixels
-        hiddenDivisor = 2   // what the confidence of a pixel that fails it is divided by
+        hiddenDivisor = 2,  // what the confidence of a pixel that fails it is divided by
+        costUnits = 512     // costs are rounded to one of these, if they are no census costs
     };
+};
+
+// Elements behind a row that its vectors may reach
+const int vectorMargin = 32;
+
+//! Memory for a row of census costs
+struct CensusScratch
+{
+    explicit CensusScratch(int width)
+        : words(width), winner(width), before(width), after(width), ofWinner(width), ofBefore(width), ofAfter(width)
+    {
+    }
+
+    std::vector<unsigned> words;                    // the census of the right image
+    std::vector<unsigned> winner, before, after;    // where each pixel's differs from its candidates'
+    std::vector<short> ofWinner, ofBefore, ofAfter; // where these are in words
+};
+
+//! The two candidates that a winner is compared with: the only one that exists twice, or the winner if none does.
+template <typename T> struct Alternatives
+{
+    T before, after;
+
+    CV_ALWAYS_INLINE Alternatives(T winner, T last)
+    {
+        const T distance = DisparityConfidence::alternative;
+        const T below = (T)(winner - distance), above = (T)(winner + distance);
+        const T only = above <= last ? above : winner;
+        before = below >= 0 ? below : only;
+        after = above <= last ? above : before;
+    }
 };
 
 /** How far the disparities of a layer are to be trusted: 255 v sqrt(S U), rounded. Wrong disparities come in patches
@@ -31,13 +63,17 @@ neighbours in a row or column whose disparities differ by more than 1.5 pixels.
 
 U is how much the cost of the disparity, as the nearest candidate has it, stands out from those of the candidates 2
 pixels before and after it (or of the only one of them that there is): max(0, A - C) / (A + C), where C and A are the
-means of both over a window of 21 x 21 pixels, borders replicated; 0 without alternatives or if A + C = 0.
+means of both over a window of 21 x 21 pixels, borders replicated; 0 without alternatives or if A + C = 0. Sums are
+of whole numbers: other costs than that of the census are rounded to 1/512.
 
 v is 1 for a pixel that passes the left-right check, see findStable(), or else 1/2.
 @param disparity CV_16UC1, a disparity map.
 @param numDisparities Of the layer.
 @param cost Of the layer.
 @param confidence Receives CV_8UC1. */
+CV_EXPORTS void disparityConfidence(const Mat& disparity, int numDisparities, const CensusCost& cost, Mat& confidence);
+
+//! For any cost
 CV_EXPORTS void disparityConfidence(const Mat& disparity, int numDisparities, const MatchingCost& cost,
                                     Mat& confidence);
 

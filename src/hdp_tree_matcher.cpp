@@ -151,8 +151,11 @@ public:
         const PairSettings& settings = result_.settings;
         const MatchedLayer& finest = layers_[settings.finestLayer];
         Mat ofLayer, extended;
-        disparityConfidence(finest.disparity, layerDisparities(result_.numDisparities, settings.finestLayer),
-                            finest.cost(), ofLayer);
+        const int disparities = layerDisparities(result_.numDisparities, settings.finestLayer);
+        if (finest.isCensus)
+            disparityConfidence(finest.disparity, disparities, finest.census, ofLayer);
+        else
+            disparityConfidence(finest.disparity, disparities, finest.colorGradient, ofLayer);
         if (settings.finestLayer > 0)
             resize(ofLayer, extended, result_.size + Size(settings.extension, 0), 0, 0, INTER_LINEAR_EXACT);
         else

@@ -720,6 +720,50 @@ inline Mat upsampled(const Mat& upper, Size size)
     return result;
 }
 
+//! How far the disparity of a pixel is to be trusted: 255 v sqrt(S U), not rounded, see disparityConfidence().
+template <typename Formula>
+double confidence(const Mat& disparity, int numDisparities, const Formula& cost, int y, int x)
+{
+    const auto at = [&](int row, int column) {
+        return disparity.at<ushort>(clamped(row, disparity.rows), clamped(column, disparity.cols)) / 16.;
+    };
+    const auto isStep = [&](int row, int column) {
+        for (const Point& to : { Point(1, 0), Point(-1, 0), Point(0, 1), Point(0, -1) })
+            if (std::abs(at(row + to.y, column + to.x) - at(row, column)) > 1.5)
+                return true;
+        return false;
+    };
+    const int farFromSteps = 64, radius = 10;
+    double distance = farFromSteps;
+    for (int row = std::max(y - farFromSteps, 0); row < std::min(y + farFromSteps, disparity.rows); ++row)
+        for (int column = std::max(x - farFromSteps, 0); column < std::min(x + farFromSteps, disparity.cols); ++column)
+            if (std::hypot(row - y, column - x) < distance && isStep(row, column))
+                distance = std::hypot(row - y, column - x);
+
+    double own = 0, others = 0; // C and A, times the area of the window
+    for (int v = y - radius; v <= y + radius; ++v)
+        for (int u = x - radius; u <= x + radius; ++u)
+        {
+            const int row = clamped(v, disparity.rows), column = clamped(u, disparity.cols);
+            const int winner = (int)std::floor(at(row, column) + 0.5);
+            std::vector<double> alternatives;
+            for (int other : { winner - 2, winner + 2 })
+                if (other >= 0 && other < numDisparities)
+                    alternatives.push_back(cost(row, column, other));
+            const double c = cost(row, column, winner);
+            own += c;
+            others += alternatives.empty() ? c : cv::mean(alternatives)[0];
+        }
+    const double unique = others > own ? (others - own) / (others + own) : 0;
+
+    const auto columnInRight = [&](int column) { return column - cvRound(at(y, column)); };
+    bool isVisible = columnInRight(x) >= 0;
+    for (int column = 0; column < disparity.cols; ++column)
+        if (columnInRight(column) == columnInRight(x) && at(y, column) - at(y, x) > 1)
+            isVisible = false;
+    return 255 * (isVisible ? 1 : 0.5) * std::sqrt(distance / farFromSteps * unique);
+}
+
 } // namespace oracle
 } // namespace opencv_test
 

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 #include "helpers.hpp"
+#include "oracles.hpp"
 #include "synthetic_pair.hpp"
 #include "systems.hpp"
 #include "../src/census_cost.hpp"
@@ -17,98 +18,97 @@ namespace {
 
 ////////////////////////////////////////////// the stage //////////////////////////////////////////////
 
-//! A cost of a pair of grey images
-Ptr<hdp::MatchingCost> makeCost(const Mat& left, const Mat& right, int numDisparities, bool isCensus)
+const hdp::ColorGradientParams colorGradient = { 10, 2, 0.11f, 1 };
+
+//! The confidence of a map of a pair of grey images
+Mat confidenceOf(const Mat& left, const Mat& right, const Mat& disparity, int numDisparities, bool isCensus,
+                 int blockSize = 7)
 {
-    if (!isCensus)
+    Mat confidence;
+    if (isCensus)
     {
-        const hdp::ColorGradientParams params = { 10, 2, 0.11f, 1 };
-        const Ptr<hdp::ColorGradientCost> cost = makePtr<hdp::ColorGradientCost>();
-        cost->prepare(left, right, numDisparities, params);
-        return cost;
+        Mat leftGrey, rightGrey;
+        hdp::greyLevels(left, leftGrey);
+        hdp::greyLevels(right, rightGrey);
+        hdp::CensusCost cost;
+        cost.prepare(leftGrey, rightGrey, numDisparities, blockSize);
+        hdp::disparityConfidence(disparity, numDisparities, cost, confidence);
+        Mat asForAnyCost;
+        hdp::disparityConfidence(disparity, numDisparities, static_cast<const hdp::MatchingCost&>(cost), asForAnyCost);
+        expectIdentical(asForAnyCost, confidence);
     }
-    Mat leftGrey, rightGrey;
-    hdp::greyLevels(left, leftGrey);
-    hdp::greyLevels(right, rightGrey);
-    const Ptr<hdp::CensusCost> cost = makePtr<hdp::CensusCost>();
-    cost->prepare(leftGrey, rightGrey, numDisparities, 7);
-    return cost;
+    else
+    {
+        hdp::ColorGradientCost cost;
+        cost.prepare(left, right, numDisparities, colorGradient);
+        hdp::disparityConfidence(disparity, numDisparities, cost, confidence);
+    }
+    return confidence;
 }
 
-//! The confidence of one pixel, from its definition.
-double confidenceOf(int x, int y, const Mat& disparity, int numDisparities, const hdp::MatchingCost& cost)
+//! The confidence of every n-th pixel is that of its definition.
+template <typename Formula>
+void expectDefinition(const Mat& disparity, int numDisparities, const Formula& cost, const Mat& confidence, int n)
 {
-    const auto d = [&](int column, int row) { return (int)disparity.at<ushort>(row, column); };
-    const Rect image(0, 0, disparity.cols, disparity.rows);
-    double distance = 64;
-    for (int v = 0; v < disparity.rows; ++v)
-        for (int u = 0; u < disparity.cols; ++u)
-            for (const Point& step : { Point(1, 0), Point(-1, 0), Point(0, 1), Point(0, -1) })
-                if (image.contains(Point(u, v) + step) &&
-                    std::abs(d(u, v) - d(u + step.x, v + step.y)) > 1.5 * hdp::subpixelScale)
-                    distance = std::min(distance, std::sqrt((double)(x - u) * (x - u) + (double)(y - v) * (y - v)));
+    ASSERT_EQ(CV_8UC1, confidence.type());
+    ASSERT_EQ(disparity.size(), confidence.size());
+    for (int i = 0; i < disparity.size().area(); i += n)
+    {
+        const int x = i % disparity.cols, y = i / disparity.cols;
+        const double expected = oracle::confidence(disparity, numDisparities, cost, y, x);
+        ASSERT_NEAR(expected, confidence.at<uchar>(y, x), 0.501) << "at " << x << ", " << y;
+    }
+}
 
-    double own = 0, others = 0;
-    for (int v = y - 10; v <= y + 10; ++v)
-        for (int u = x - 10; u <= x + 10; ++u)
-        {
-            const int column = std::min(std::max(u, 0), disparity.cols - 1);
-            const int row = std::min(std::max(v, 0), disparity.rows - 1), pixel = row * disparity.cols + column;
-            const int winner = hdp::wholeDisparity(d(column, row));
-            const auto costOf = [&](int candidate) {
-                float costs[4];
-                cost.evaluate(&pixel, 1, candidate, 4, costs);
-                return (double)costs[0];
-            };
-            double sum = 0;
-            int count = 0;
-            for (int other : { winner - 2, winner + 2 })
-                if (other >= 0 && other < numDisparities)
-                {
-                    sum += costOf(other);
-                    ++count;
-                }
-            own += costOf(winner);
-            others += count ? sum / count : costOf(winner);
-        }
-    const double unique = others > own ? (others - own) / (others + own) : 0;
-
-    const auto right = [&](int column) { return column - cvRound(d(column, y) / (double)hdp::subpixelScale); };
-    bool isVisible = right(x) >= 0;
-    for (int u = 0; u < disparity.cols; ++u)
-        if (right(u) == right(x) && d(u, y) - d(x, y) > hdp::subpixelScale)
-            isVisible = false;
-    return 255 * std::sqrt(distance / 64 * unique) / (isVisible ? 1 : 2);
+void expectDefinitionForPatches(RNG& rng, const Size& size, int numDisparities, bool isCensus, int blockSize = 7)
+{
+    SCOPED_TRACE(testing::Message() << "census " << isCensus << ", " << blockSize << ", " << size << ", "
+                                    << numDisparities << " disparities");
+    const Mat right = patchyImage(rng, size, CV_8UC1);
+    Mat left, disparity;
+    cv::add(right, randomImage(rng, size, CV_8UC1, 10), left);
+    // Blocks of disparities that differ within themselves by less than a pixel
+    patchyImage(rng, size, CV_8UC1, 12).convertTo(disparity, CV_16U, (numDisparities - 1) * hdp::subpixelScale / 255.);
+    const Mat confidence = confidenceOf(left, right, disparity, numDisparities, isCensus, blockSize);
+    const int n = size.area() > 1000 ? 29 : 1; // the definition is slow
+    if (isCensus)
+    {
+        const oracle::CensusCost cost(oracle::greyLevels(left), oracle::greyLevels(right), blockSize);
+        return expectDefinition(disparity, numDisparities, cost, confidence, n);
+    }
+    const oracle::ColorGradientCost cost(left, right, colorGradient);
+    const auto rounded = [&](int y, int x, int candidate) { return cvRound(512 * cost(y, x, candidate)) / 512.; };
+    expectDefinition(disparity, numDisparities, rounded, confidence, n);
 }
 
 TEST(HDPStereo_DisparityConfidence, by_its_definition)
 {
     RNG rng(41);
     for (bool isCensus : { true, false })
-        for (const Size& size : { Size(1, 1), Size(1, 9), Size(9, 1), Size(43, 31), Size(5, 300) })
+        for (const Size& size : { Size(1, 1), Size(1, 9), Size(9, 1), Size(43, 31), Size(5, 300), Size(150, 20) })
             for (int numDisparities : { 1, 2, 3, 12 })
-            {
-                SCOPED_TRACE(testing::Message()
-                             << "census " << isCensus << ", " << size << ", " << numDisparities << " disparities");
-                const Mat right = patchyImage(rng, size, CV_8UC1);
-                Mat left, disparity;
-                cv::add(right, randomImage(rng, size, CV_8UC1, 10), left);
-                const Ptr<hdp::MatchingCost> cost = makeCost(left, right, numDisparities, isCensus);
-                // Blocks of disparities that differ within themselves by less than a pixel
-                patchyImage(rng, size, CV_8UC1, 12)
-                    .convertTo(disparity, CV_16U, (numDisparities - 1) * hdp::subpixelScale / 255.);
-                Mat confidence;
-                hdp::disparityConfidence(disparity, numDisparities, *cost, confidence);
-                ASSERT_EQ(CV_8UC1, confidence.type());
-                ASSERT_EQ(size, confidence.size());
-                const int step = size.area() > 1000 ? 7 : 1; // the definition is slow
-                for (int i = 0; i < size.area(); i += step)
-                {
-                    const int x = i % size.width, y = i / size.width;
-                    const double expected = confidenceOf(x, y, disparity, numDisparities, *cost);
-                    ASSERT_NEAR(expected, confidence.at<uchar>(y, x), 0.51) << "at " << x << ", " << y;
-                }
-            }
+                expectDefinitionForPatches(rng, size, numDisparities, isCensus);
+    for (int blockSize : { 3, 5 })
+        expectDefinitionForPatches(rng, Size(43, 31), 12, true, blockSize);
+}
+
+//! Few steps: the distances to them go as far as they count, and farther.
+TEST(HDPStereo_DisparityConfidence, far_from_steps)
+{
+    RNG rng(46);
+    const Size size(201, 163);
+    const int numDisparities = 8;
+    const Mat image = randomImage(rng, size, CV_8UC1);
+    const oracle::CensusCost cost(oracle::greyLevels(image), oracle::greyLevels(image), 7);
+    for (const std::vector<Point>& spots :
+         { std::vector<Point>(), { Point(100, 80) }, { Point(0, 0) }, { Point(30, 150), Point(200, 90) } })
+    {
+        Mat disparity(size, CV_16U, Scalar(0));
+        for (const Point& spot : spots)
+            disparity.at<ushort>(spot) = (numDisparities - 1) * hdp::subpixelScale;
+        const Mat confidence = confidenceOf(image, image, disparity, numDisparities, true);
+        expectDefinition(disparity, numDisparities, cost, confidence, 211);
+    }
 }
 
 //! A pair of a textured plane in front of nothing, with some noise, and its confidence for a map
@@ -134,12 +134,7 @@ struct TexturedPlane
 
     Mat map() const { return Mat(left.size(), CV_16U, Scalar(16 * disparity)); }
 
-    Mat confidence(const Mat& map) const
-    {
-        Mat result;
-        hdp::disparityConfidence(map, numDisparities, *makeCost(left, right, numDisparities, isCensus), result);
-        return result;
-    }
+    Mat confidence(const Mat& map) const { return confidenceOf(left, right, map, numDisparities, isCensus); }
 };
 
 TEST(HDPStereo_DisparityConfidence, texture)
@@ -217,13 +212,11 @@ TEST(HDPStereo_DisparityConfidence, any_number_of_threads)
     patchyImage(rng, left.size(), CV_8UC1, 40).convertTo(disparity, CV_16U, 0.5);
     for (bool isCensus : { true, false })
     {
-        const Ptr<hdp::MatchingCost> cost = makeCost(left, right, 9, isCensus);
         Mat expected;
         for (int n : { 1, 2, 8 })
         {
-            Mat confidence;
             cv::setNumThreads(n);
-            hdp::disparityConfidence(disparity, 9, *cost, confidence);
+            const Mat confidence = confidenceOf(left, right, disparity, 9, isCensus);
             cv::setNumThreads(threads);
             if (expected.empty())
                 expected = confidence;
