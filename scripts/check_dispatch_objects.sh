@@ -9,7 +9,13 @@
 set -euo pipefail
 
 [ $# -eq 1 ] || { echo "Usage: $0 BUILD_DIR" >&2; exit 2; }
-mapfile -t objects < <(find "$1" -name '*.cpp.o' -ipath '*hdpstereo*' -iregex '.*\.\(avx\|sse\|fp16\)[^/]*\.cpp\.o' | sort)
+nm --version >/dev/null # what it finds is nothing if it is missing
+stages=$(dirname "${BASH_SOURCE[0]}")/../src
+objects=()
+while read -r object; do
+    stage=$(basename "$object")
+    [ ! -e "$stages/${stage%%.*}.simd.hpp" ] || objects+=("$object") # else it is left from an older build
+done < <(find "$1" -ipath '*hdpstereo*' -iregex '.*[.]\(avx\|sse\)[^/.]*[.]cpp[.]o' | sort)
 [ ${#objects[@]} -gt 0 ] || { echo "$1 has no objects of dispatched stages" >&2; exit 2; }
 
 found=0
