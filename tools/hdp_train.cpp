@@ -139,36 +139,50 @@ static String listNames(const std::vector<TrainingScene>& scenes, bool heldOut)
     return list.empty() ? "none" : list;
 }
 
-//! Finds D_{l+1} by the matcher with the mixtures above this layer, and D_l by the truth.
-static void matchAbove(TrainingScene& scene, int layer, int layers, const Ptr<DisparityPredictionModel>& above)
+//! The paper's system HDP+MST
+static Ptr<stereo::HDPTreeMatcher> createMatcher(const Pair& pair, int layers,
+                                                 const Ptr<DisparityPredictionModel>& model)
 {
-    const Pair& pair = scene.pair;
-    Mat left = pair.left, right = pair.right, disparity16;
-    for (int l = 0; l <= layer; l++)
-    {
-        left = nextLayer(left);
-        right = nextLayer(right);
-    }
-    matcherOfLayer(layer + 1, layers, pair.disparities.size(), pair.left.cols, above)
-        ->compute(left, right, disparity16);
-    scene.upper = toPixels(disparity16, 0);
-    scene.truth = truthOfLayer(pair.truth, layer);
-    // The pyramid leaves out the last column and row of an odd number.
-    scene.truth = scene.truth(Rect(0, 0, scene.upper.cols * 2, scene.upper.rows * 2));
+    const Ptr<stereo::HDPTreeMatcher> matcher =
+        stereo::HDPTreeMatcher::create(0, pair.disparities.size(), stereo::HDPTreeMatcher::PRESET_PAPER);
+    matcher->setNumLayers(layers);
+    matcher->setPredictionModel(model);
+    return matcher;
 }
 
-//! The mixture of the only layer of a model, put below those of another one
-static Ptr<DisparityPredictionModel> putBelow(const DisparityPredictionModel& layer,
+//! A mixture, the only one of a model or any, put below those of another model
+static Ptr<DisparityPredictionModel> putBelow(const DisparityPredictionModel& mixture,
                                               const DisparityPredictionModel& above)
 {
-    const Ptr<DisparityPredictionModel> model = upperPart(layer, 0);
-    for (int l = 0; l < above.getNumLayers(); l++)
+    const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
+    std::vector<double> means, sigmas, weights;
+    mixture.getLayer(0, means, sigmas, weights);
+    model->addLayer(means, sigmas, weights);
+    for (int layer = 0; layer < above.getNumLayers(); layer++)
     {
-        std::vector<double> means, sigmas, weights;
-        above.getLayer(l, means, sigmas, weights);
+        above.getLayer(layer, means, sigmas, weights);
         model->addLayer(means, sigmas, weights);
     }
     return model;
+}
+
+//! Finds D_{l+1} by the matcher with the mixtures above this layer, and D_l by the truth.
+static void matchAbove(TrainingScene& scene, int layer, int layers, const Ptr<DisparityPredictionModel>& above)
+{
+    Ptr<DisparityPredictionModel> model = above;
+    for (int l = 0; l <= layer; l++) // mixtures of layers that are not matched
+        model = putBelow(*publishedModel(0), *model);
+    const Pair& pair = scene.pair;
+    const Ptr<stereo::HDPTreeMatcher> matcher = createMatcher(pair, layers, model);
+    matcher->setFinestLayer(layer + 1);
+    Mat disparity;
+    matcher->compute(pair.left, pair.right, disparity);
+    matcher->getLayerDisparity(layer + 1, scene.upper);
+    if (scene.upper.empty())
+        fail(format("an image of %d x %d pixels has no %d layers", pair.left.cols, pair.left.rows, layers));
+    scene.truth = truthOfLayer(pair.truth, layer);
+    // The pyramid leaves out the last column and row of an odd number.
+    scene.truth = scene.truth(Rect(0, 0, scene.upper.cols * 2, scene.upper.rows * 2));
 }
 
 static Table modelTable(const DisparityPredictionModel& model)
@@ -248,8 +262,7 @@ static Table errorTable(const std::vector<TrainingScene>& scenes,
         {
             const Pair& pair = scene.pair;
             Mat disparity16;
-            matcherOfLayer(0, layers, pair.disparities.size(), pair.left.cols, models[m])
-                ->compute(pair.left, pair.right, disparity16);
+            createMatcher(pair, layers, models[m])->compute(pair.left, pair.right, disparity16);
             errors.push_back(mainScore(scoreMap(toPixels(disparity16, 0), pair), pair.protocol));
             all[m].push_back(errors.back());
         }

@@ -56,8 +56,7 @@ static void evaluateMethod(const Method& method, const Pair& pair, const Evaluat
             figure(resultPicture(disparity, pair), method.name + ": " + printScore(result.score, pair.protocol) +
                                                        cv::format(", %.3f s", result.seconds));
         if (hdp && hdp->getUsePrediction() && hdp->getAggregation() == HDPTreeMatcher::AGGREGATION_TREES)
-            scene.predictions +=
-                "<div class=\"figures\">\n" + predictionFigures(method.name, *hdp, method.create, pair) + "</div>\n";
+            scene.predictions += "<div class=\"figures\">\n" + predictionFigures(method.name, *hdp, pair) + "</div>\n";
     }
     result.done = true;
 }

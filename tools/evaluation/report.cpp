@@ -77,8 +77,7 @@ cv::Mat_<double> sampledMatrix(const Mat& truth, const Mat& upper, int numDispar
     return matrix;
 }
 
-String predictionFigures(const String& name, const HDPTreeMatcher& matcher,
-                         const std::function<Ptr<cv::StereoMatcher>(cv::Range)>& create, const Pair& pair)
+String predictionFigures(const String& name, const HDPTreeMatcher& matcher, const Pair& pair)
 {
     std::ostringstream out;
     Mat trees, intervals;
@@ -92,34 +91,22 @@ String predictionFigures(const String& name, const HDPTreeMatcher& matcher,
     out << figure(widthPicture(intervals, matcher.getNumDisparities()),
                   cv::format("%s: candidates of each pixel, violet 1 to yellow %d (logarithmic), mean %.2f",
                              name.c_str(), matcher.getNumDisparities(), ratios[0] * matcher.getNumDisparities()));
-    matcher.getLayerPrior(0, prior);
-    if (pair.protocol == Pair::NO_TRUTH || prior.empty())
-        return out.str();
-
-    // Layer by layer downwards; the priors of the layers above, and the maps there, are those of smaller matchers.
-    const int width = pair.left.cols, layers = int(ratios.size());
     Ptr<DisparityPredictionModel> model = matcher.getPredictionModel();
     if (!model)
-        model = publishedModel(width);
-    Mat left = pair.left, right = pair.right;
-    for (int layer = 0; layer + 1 < layers; layer++)
+        model = publishedModel(pair.left.cols);
+    for (int layer = 0; pair.protocol != Pair::NO_TRUTH && layer + 1 < int(ratios.size()); layer++)
     {
-        left = nextLayer(left);
-        right = nextLayer(right);
-        const Ptr<HDPTreeMatcher> above =
-            create(cv::Range(0, disparitiesOfLayer(matcher.getNumDisparities(), layer + 1)))
-                .dynamicCast<HDPTreeMatcher>();
-        adaptToLayer(*above, layer + 1, layers, width, upperPart(*model, layer + 1));
+        matcher.getLayerPrior(layer, prior);
+        if (prior.empty()) // nothing was predicted
+            continue;
         Mat upper;
-        above->compute(left, right, upper);
-        const int disparities = disparitiesOfLayer(matcher.getNumDisparities(), layer);
+        matcher.getLayerDisparity(layer + 1, upper);
         const String of = cv::format("P(D%d | D%d), %s: ", layer, layer + 1, name.c_str());
         out << "<div class=\"pair\">\n"
             << figure(matrixPicture(predictedMatrix(*model, layer, prior)), of + "predicted", ".png")
-            << figure(matrixPicture(sampledMatrix(truthOfLayer(pair.truth, layer), toPixels(upper, 0), disparities)),
+            << figure(matrixPicture(sampledMatrix(truthOfLayer(pair.truth, layer), upper, int(prior.size()))),
                       of + "sampled", ".png")
             << "</div>\n";
-        above->getLayerPrior(0, prior);
     }
     return out.str();
 }

@@ -8,7 +8,6 @@
 #ifndef OPENCV_HDPSTEREO_TOOLS_REPORT_HPP
 #define OPENCV_HDPSTEREO_TOOLS_REPORT_HPP
 
-#include <functional>
 #include <vector>
 
 #include "opencv2/imgproc.hpp"
@@ -17,6 +16,8 @@
 #include "pair.hpp"
 
 namespace hdp_tools {
+
+using cv::stereo::HDPTreeMatcher;
 
 String base64(const std::vector<uchar>& bytes);
 
@@ -32,10 +33,8 @@ cv::Mat_<double> sampledMatrix(const Mat& truth, const Mat& upper, int numDispar
 
 /** Figures of the forest, of the intervals, and of P(D_l | D_{l+1}) by the model and by the truth.
 @param matcher One with predicted intervals that has just matched the pair.
-@param create Makes another one like it, of other disparities.
 */
-String predictionFigures(const String& name, const HDPTreeMatcher& matcher,
-                         const std::function<Ptr<cv::StereoMatcher>(cv::Range)>& create, const Pair& pair);
+String predictionFigures(const String& name, const HDPTreeMatcher& matcher, const Pair& pair);
 
 //! A bar of the paper's runtime figure
 struct RuntimePair

@@ -222,33 +222,6 @@ TEST(HDPStereo_Evaluation, predicted_matrix_by_hand)
     EXPECT_NEAR(0.091325 * 0.5, matrix(0, 4), 1e-5); // offset -2
 }
 
-//! The matcher of a layer finds what the whole matcher has found there on its way: the search of the layer below is the
-//! same by either.
-TEST(HDPStereo_Evaluation, matcher_of_a_layer)
-{
-    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 11);
-    const Ptr<DisparityPredictionModel> model = publishedModel(160);
-    for (int preset : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE })
-    {
-        SCOPED_TRACE(preset);
-        const Ptr<HDPTreeMatcher> whole = HDPTreeMatcher::create(0, 32, preset),
-                                  adapted = HDPTreeMatcher::create(0, 32, preset),
-                                  upper = HDPTreeMatcher::create(0, disparitiesOfLayer(32, 1), preset);
-        adaptToLayer(*adapted, 0, 3, 160, model);
-        expectIdentical(match(*whole, pair.left, pair.right), match(*adapted, pair.left, pair.right));
-        std::vector<double> wholeRatios, ratios;
-        whole->getSearchRatios(wholeRatios);
-
-        EXPECT_EQ(16, upper->getNumDisparities());
-        adaptToLayer(*upper, 1, 3, 160, upperPart(*model, 1));
-        match(*upper, nextLayer(pair.left), nextLayer(pair.right));
-        upper->getSearchRatios(ratios);
-        ASSERT_EQ(2u, ratios.size());
-        EXPECT_NEAR(wholeRatios[1], ratios[0], 0.02); // the means of 2 x 2 pixels are rounded in another way
-        EXPECT_EQ(1, ratios[1]);
-    }
-}
-
 //! What getForest() gives agrees with the other results of the same compute().
 TEST(HDPStereo_Evaluation, forest_of_the_last_pair)
 {
