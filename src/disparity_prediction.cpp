@@ -12,7 +12,8 @@ namespace hdp {
 
 namespace {
 
-//! PixelIntv of a row of P(D_l | D_{l+1}), up to a factor.
+//! PixelIntv of a row of P(D_l | D_{l+1}), up to a factor: an interval, grown to both sides in turns as in the authors'
+//! program. In the paper it is a set.
 DisparityInterval growInterval(const std::vector<double>& row, double delta, int margin)
 {
     const int mode = (int)(std::max_element(row.begin(), row.end()) - row.begin());

@@ -10,8 +10,8 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
-//! Median of size x size pixels, 3, 5 or 7, borders replicated: several times faster than cv::medianBlur, which does not
-//! share the work on a column of the window. disparity: CV_16UC1; filtered: another Mat.
+//! Median of size x size pixels, 3, 5 or 7, borders replicated: several times faster than cv::medianBlur, which does
+//! not share the work on a column of the window. disparity: CV_16UC1; filtered: another Mat.
 CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& filtered);
 
 //! Memory for a row of fillOccluded()
@@ -28,10 +28,11 @@ struct OcclusionScratch
     std::vector<uchar> visible, atBorder; // which pixels the right image shows, and in its first columns
 };
 
-/** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the pixels
-that map to one column of the right image the one with the lowest residual is there; those whose disparity is another
-one, and those that map to no column, are not. Nor are single pixels between two that are not, nor what is left of a surface that begins at the border of the right
-image: the last run of four pixels it shows, without steps, of which the first one is in column 0, 1 or 2.
+/** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the
+pixels that map to one column of the right image the one with the lowest residual is there; those whose disparity is
+another one, and those that map to no column, are not. Nor are single pixels between two that are not, nor what is left
+of a surface that begins at the border of the right image: the last run of four pixels it shows, without steps, of which
+the first one is in column 0, 1 or 2.
 @param disparity CV_16UC1, a disparity map; changed.
 @param residual Matching costs, CV_8UC1. */
 CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual);

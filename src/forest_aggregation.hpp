@@ -31,8 +31,8 @@ struct CV_EXPORTS EdgeSimilarity
 CV_EXPORTS int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity,
                              int first, int count, std::vector<float>& aggregated);
 
-//! The winner of some successive candidates, and the costs that its fraction needs, or may need when it is compared with
-//! that of the candidates after
+//! The winner of some successive candidates, and the costs that its fraction needs, or may need when it is compared
+//! with that of the candidates after
 struct RunWinner
 {
     float lowest;        // its cost
@@ -83,8 +83,8 @@ void takeWinners(const DisparityForest& forest, const AggregationProblem& proble
 @param forest The forest.
 @param cost The layer's matching cost.
 @param gamma Of the similarity.
-@param subpixel Whether to add the minimum of the parabola through the winner's cost and its neighbours' in TreeIntv; else
-all disparities are whole.
+@param subpixel Whether to add the minimum of the parabola through the winner's cost and its neighbours' in TreeIntv;
+otherwise all disparities are whole.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1 of the layer's size, a disparity map; 0 where TreeIntv is empty. */
 CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,

@@ -19,14 +19,14 @@ CV_EXPORTS int countLayers(Size size, int numLayers);
 inline int layerDisparities(int numDisparities, int layer) { return ((numDisparities - 1) >> layer) + 1; }
 
 //! G_{l+1} of G_l: means of 2 x 2 pixels, truncated to 8 bit (CV_8U) or rounded (CV_16U); an odd last row or column is
-//! left out.
+//! left out. The authors' program truncates and leaves out, too; the paper rounds sizes up.
 CV_EXPORTS void halveImage(const Mat& image, Mat& half);
 
 //! Units of greyLevels() in one level
 const int greyScale = 4;
 
-/** Grey levels 0.299 R + 0.587 G + 0.114 B in 1 / greyScale of a level. Means of many pixels tell faint texture apart that 8
-bits lose: the census cost of the coarse layers lives on it.
+/** Grey levels 0.299 R + 0.587 G + 0.114 B in 1 / greyScale of a level. Means of many pixels tell faint texture apart
+that 8 bits lose: the census cost of the coarse layers lives on it.
 @param image CV_8UC1 or CV_8UC3.
 @param grey CV_16UC1. */
 CV_EXPORTS void greyLevels(const Mat& image, Mat& grey);

@@ -50,6 +50,7 @@ void estimatePrior(const LayerInput& in, LayerBuffers& buffers, StageClock& cloc
             left.convertTo(left, CV_8U, 1. / greyScale);
             right.convertTo(right, CV_8U, 1. / greyScale);
         }
+        // Those of the left image; the authors' program counts those of the right one, too.
         findSupportPoints(left, right, disparities, buffers.supportPoints, buffers.points);
         disparityHistogram(buffers.points, disparities, matched.prior);
     });

@@ -22,12 +22,12 @@ namespace {
 typedef MatcherParameters P;
 typedef HDPTreeMatcher M;
 
+// Between Middlebury's full and half size, for which the authors' program has values of its own.
 const int largeImageWidth = 1000;
+
 const int leastTopDisparities = CandidateWindow::candidates; // of more than two layers
 const int maxPenalty = ScanlinePenalties::largest;
 
-bool isAny(int) { return true; }
-bool isFlag(bool) { return true; }
 bool isPositive(double value) { return std::isfinite(value) && value > 0; }
 bool isNotNegative(double value) { return std::isfinite(value) && value >= 0; }
 bool isIn(int value, int first, int last) { return first <= value && value <= last; }
@@ -40,17 +40,18 @@ template <typename T> struct Condition
 };
 
 // clang-format off
-//! The list of the parameters, in the order of a file: name, member, valid values in words and as a condition
+//! The list of the parameters, in the order of a file: name, member, valid values in words and as a condition if not
+//! all of them are
 template <typename Visitor> void visitParameters(Visitor&& visit)
 {
-    visit("minDisparity", &P::minDisparity, "any", isAny);
+    visit("minDisparity", &P::minDisparity);
     visit("numDisparities", &P::numDisparities, "> 0", [](int v) { return v > 0; });
     visit("blockSize", &P::blockSize, "odd, in 1..31", [](int v) { return isOddIn(v, 1, 31); });
-    visit("speckleWindowSize", &P::speckleWindowSize, "any", isAny);
+    visit("speckleWindowSize", &P::speckleWindowSize);
     visit("speckleRange", &P::speckleRange, ">= 0", [](int v) { return v >= 0; });
-    visit("disp12MaxDiff", &P::disp12MaxDiff, "any", isAny);
-    visit("usePrediction", &P::usePrediction, "any", isFlag);
-    visit("useMedianPrefilter", &P::useMedianPrefilter, "any", isFlag);
+    visit("disp12MaxDiff", &P::disp12MaxDiff);
+    visit("usePrediction", &P::usePrediction);
+    visit("useMedianPrefilter", &P::useMedianPrefilter);
     visit("numLayers", &P::numLayers, "in 1..16", [](int v) { return isIn(v, 1, 16); });
     visit("maxTopDisparities", &P::maxTopDisparities, ">= 0", [](int v) { return v >= 0; });
     visit("delta0", &P::delta0, "in [0, 1) or AUTO", [](double v) { return v == M::AUTO || (v >= 0 && v < 1); });
@@ -67,16 +68,16 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
     visit("disparityPrior", &P::disparityPrior, "PRIOR_SUPPORT_POINTS or PRIOR_UPPER_LAYER",
           [](int v) { return v == M::PRIOR_SUPPORT_POINTS || v == M::PRIOR_UPPER_LAYER; });
     visit("intervalMargin", &P::intervalMargin, "in 0..64", [](int v) { return isIn(v, 0, 64); });
-    visit("useSubpixel", &P::useSubpixel, "any", isFlag);
+    visit("useSubpixel", &P::useSubpixel);
     visit("aggregation", &P::aggregation, "AGGREGATION_TREES or AGGREGATION_SCANLINES",
           [](int v) { return v == M::AGGREGATION_TREES || v == M::AGGREGATION_SCANLINES; });
     visit("P1", &P::P1, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
     visit("P2", &P::P2, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
     visit("finestLayer", &P::finestLayer, "in 0..15", [](int v) { return isIn(v, 0, 15); });
     visit("scanlinePasses", &P::scanlinePasses, "in 1..4", [](int v) { return isIn(v, 1, 4); });
-    visit("fillOcclusions", &P::fillOcclusions, "any", isFlag);
+    visit("fillOcclusions", &P::fillOcclusions);
     visit("disparityDepth", &P::disparityDepth, "CV_16S or CV_32F", [](int v) { return v == CV_16S || v == CV_32F; });
-    visit("useNonLocalRefinement", &P::useNonLocalRefinement, "any", isFlag);
+    visit("useNonLocalRefinement", &P::useNonLocalRefinement);
 }
 // clang-format on
 
@@ -86,11 +87,12 @@ template <typename T> struct ParameterSetter
     T P::*const parameter;
     const T value;
 
-    void operator()(const char* name, T P::*member, const char* valid, typename Condition<T>::Type isValid) const
+    void operator()(const char* name, T P::*member, const char* valid = "",
+                    typename Condition<T>::Type isValid = nullptr) const
     {
         if (member != parameter)
             return;
-        if (!isValid(value))
+        if (isValid && !isValid(value))
         {
             std::ostringstream message;
             message << name << " must be " << valid << ", not " << value;
@@ -99,7 +101,7 @@ template <typename T> struct ParameterSetter
         parameters.*member = value;
     }
     template <typename Other>
-    void operator()(const char*, Other P::*, const char*, typename Condition<Other>::Type) const
+    void operator()(const char*, Other P::*, const char* = "", typename Condition<Other>::Type = nullptr) const
     {
     }
 };
@@ -110,11 +112,11 @@ struct ParameterWriter
     FileStorage& fs;
 
     template <typename T>
-    void operator()(const char* name, T P::*member, const char*, typename Condition<T>::Type) const
+    void operator()(const char* name, T P::*member, const char* = "", typename Condition<T>::Type = nullptr) const
     {
         fs << name << parameters.*member;
     }
-    void operator()(const char* name, bool P::*member, const char*, bool (*)(bool)) const
+    void operator()(const char* name, bool P::*member, const char* = "", bool (*)(bool) = nullptr) const
     {
         fs << name << (int)(parameters.*member);
     }
@@ -125,19 +127,19 @@ struct ParameterReader
     const FileNode& fn;
     MatcherParameters& parameters;
 
-    void operator()(const char* name, int P::*member, const char*, bool (*)(int)) const
+    void operator()(const char* name, int P::*member, const char* = "", bool (*)(int) = nullptr) const
     {
         const FileNode node = fn[name];
         if (!node.empty())
             setParameter(parameters, member, number<int>(node, name, node.isInt()));
     }
-    void operator()(const char* name, double P::*member, const char*, bool (*)(double)) const
+    void operator()(const char* name, double P::*member, const char* = "", bool (*)(double) = nullptr) const
     {
         const FileNode node = fn[name];
         if (!node.empty())
             setParameter(parameters, member, number<double>(node, name, node.isInt() || node.isReal()));
     }
-    void operator()(const char* name, bool P::*member, const char*, bool (*)(bool)) const
+    void operator()(const char* name, bool P::*member, const char* = "", bool (*)(bool) = nullptr) const
     {
         const FileNode node = fn[name];
         if (!node.empty())
@@ -319,8 +321,10 @@ PairSettings resolve(const MatcherParameters& p, const Mat& left)
     if (p.aggregation == M::AGGREGATION_TREES && settings.model->getNumLayers() < settings.layers - 1)
         CV_Error(Error::StsOutOfRange, format("predictionModel must have numLayers - 1 = %d layers, not %d",
                                               settings.layers - 1, settings.model->getNumLayers()));
+    // The values of the authors' program; the paper's text has those of large and of small images the other way round.
     settings.delta0 = p.delta0 != M::AUTO ? p.delta0 : isLarge ? 0.064 : 0.004;
     settings.beta = p.beta != M::AUTO ? p.beta : isLarge ? 0.6 : 0.95;
+    // As in the authors' program; the paper says that nothing is refined.
     settings.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
     return settings;
 }

@@ -25,11 +25,11 @@ struct MatcherParameters
     Ptr<DisparityPredictionModel> predictionModel; // empty: the published one
     bool usePrediction = true;
     bool useMedianPrefilter = false;
-    int numLayers = 3;
+    int numLayers = 3;         // as in the authors' program; "L = 3" in the paper would be four layers
     int maxTopDisparities = 0; // no limit
     double delta0 = HDPTreeMatcher::AUTO;
     double beta = HDPTreeMatcher::AUTO;
-    double gamma = 25.5;
+    double gamma = 25.5; // this and the next three are from the authors' program, the paper has no values
     double colorTruncation = 10;
     double gradientTruncation = 2;
     double colorWeight = 0.11;
