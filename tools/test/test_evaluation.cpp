@@ -222,49 +222,5 @@ TEST(HDPStereo_Evaluation, predicted_matrix_by_hand)
     EXPECT_NEAR(0.091325 * 0.5, matrix(0, 4), 1e-5); // offset -2
 }
 
-//! What getForest() gives agrees with the other results of the same compute().
-TEST(HDPStereo_Evaluation, forest_of_the_last_pair)
-{
-    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 12);
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-2, 32, HDPTreeMatcher::PRESET_PAPER);
-    Mat trees, intervals;
-    std::vector<double> prior, ratios;
-    matcher->getForest(trees, intervals);
-    matcher->getLayerPrior(0, prior);
-    EXPECT_TRUE(trees.empty() && intervals.empty() && prior.empty());
-
-    matcher->setDisparityMedianSize(0);
-    for (bool usePrediction : { true, false })
-    {
-        matcher->setUsePrediction(usePrediction);
-        const Mat disparity = match(*matcher, pair.left, pair.right);
-        matcher->getForest(trees, intervals);
-        matcher->getLayerPrior(0, prior);
-        matcher->getSearchRatios(ratios);
-        ASSERT_EQ(CV_32SC1, trees.type());
-        ASSERT_EQ(CV_16UC2, intervals.type());
-        ASSERT_EQ(pair.left.size(), trees.size());
-        ASSERT_EQ(pair.left.size(), intervals.size());
-        EXPECT_EQ(usePrediction ? 32u : 0u, prior.size());
-
-        std::map<int, Vec2w> ofTree;
-        double searched = 0;
-        for (int y = 0; y < trees.rows; ++y)
-            for (int x = 0; x < trees.cols; ++x)
-            {
-                const Vec2w interval = intervals.at<Vec2w>(y, x);
-                const int candidate = disparity.at<short>(y, x) / 16 + 2;
-                ASSERT_TRUE(candidate >= interval[0] && candidate <= interval[1]) << x << ", " << y;
-                searched += interval[1] - interval[0] + 1;
-                const auto known = ofTree.insert(std::make_pair(trees.at<int>(y, x), interval));
-                ASSERT_EQ(known.first->second, interval); // one for the whole tree
-            }
-        EXPECT_NEAR(ratios[0], searched / (32. * trees.total()), 0.005); // columns beside the image count, too
-        EXPECT_EQ(0, ofTree.begin()->first);
-        EXPECT_EQ((int)ofTree.size() - 1, ofTree.rbegin()->first);
-        EXPECT_EQ(!usePrediction, ofTree.size() == 1);
-    }
-}
-
 } // namespace
 } // namespace opencv_test
