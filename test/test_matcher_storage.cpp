@@ -317,6 +317,19 @@ TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
     }
 }
 
+//! A key that is no parameter's name is no one's value.
+TEST(HDPStereo_MatcherStorage, unknown_keys)
+{
+    std::string text = serialized(*createUnusualMatcher());
+    const size_t key = text.find("\nP1:");
+    ASSERT_NE(std::string::npos, key);
+    text.replace(key, 4, "\nsmallPenalty:");
+    const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
+    deserialize(text, *matcher);
+    EXPECT_EQ(12, matcher->getP1());
+    EXPECT_EQ(44, matcher->getP2());
+}
+
 TEST(HDPStereo_MatcherStorage, unknown_strategy)
 {
     const std::string text = serialized(*createUnusualMatcher());
