@@ -48,14 +48,21 @@ int countLanes(int candidates, int treeSize)
     return lanes;
 }
 
-//! Evaluates and aggregates the costs of a run of candidates; see aggregateRun().
-void takeRun(const TreeWalk& walk, int size, const AggregationProblem& problem, const EdgeSimilarity& similarity,
-             const Range& run, int lanes, bool joins, std::vector<float>& costs, RunWinner* winners)
+//! Memory for the costs of a run
+float* provideCosts(int size, int lanes, std::vector<float>& costs)
 {
     if (costs.size() < (size_t)size * lanes)
         costs.resize((size_t)size * lanes);
-    problem.evaluate(walk.pixels.data(), size, run.start, lanes, costs.data());
-    CV_CPU_DISPATCH(aggregateRun, (walk, size, similarity.table, run, lanes, joins, costs.data(), winners),
+    return costs.data();
+}
+
+//! Evaluates and aggregates the costs of a run of candidates; see aggregateRun().
+void takeRun(const TreeWalk& walk, int size, const AggregationProblem& problem, const EdgeSimilarity& similarity,
+             const Range& run, int lanes, bool joins, std::vector<float>& memory, RunWinner* winners)
+{
+    float* const costs = provideCosts(size, lanes, memory);
+    problem.evaluate(walk.pixels.data(), size, run.start, lanes, costs);
+    CV_CPU_DISPATCH(aggregateRun, (walk, size, similarity.table, run, lanes, joins, costs, winners),
                     CV_CPU_DISPATCH_MODES_ALL);
 }
 
@@ -188,6 +195,111 @@ void processLarge(const Aggregation& aggregation, const DisparityTree& tree, Agg
     });
 }
 
+//! Calls processLarge(tree) for each large tree with many candidates, one by one, and processSmall(tree, scratch) for
+//! the others, in parallel.
+template <typename Large, typename Small>
+void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, const Large& processLarge,
+                 const Small& processSmall)
+{
+    // Tasks of about the same work, in the order of the trees
+    std::vector<Range> tasks;
+    int64 work = taskWork;
+    for (int t = 0; t < (int)forest.trees.size(); ++t)
+    {
+        const DisparityTree& tree = forest.trees[t];
+        if (tree.size >= largeTree && tree.interval.size() > smallRun)
+        {
+            processLarge(tree);
+            work = taskWork;
+            continue;
+        }
+        if (work >= taskWork)
+        {
+            tasks.push_back(Range(t, t));
+            work = 0;
+        }
+        tasks.back().end = t + 1;
+        work += (int64)tree.size * tree.interval.size();
+    }
+
+    std::mutex mutex;
+    parallel_for_(Range(0, (int)tasks.size()), [&](const Range& range) {
+        ScratchLoan scratch(buffers, mutex);
+        for (int i = range.start; i < range.end; ++i)
+            for (int t = tasks[i].start; t < tasks[i].end; ++t)
+                processSmall(forest.trees[t], *scratch);
+    });
+}
+
+//! Means over the trees, to a volume
+struct MeanAggregation
+{
+    const DisparityForest& forest;
+    const MatchingCost& cost;
+    const EdgeSimilarity similarity;
+    CostVolume& volume;
+
+    //! CostVolume::scale / sum of S(p, q) over the tree, by the same two passes as C
+    void findFactors(const TreeWalk& walk, int size, std::vector<float>& memory) const
+    {
+        memory.assign(size, 1.f);
+        float* const sums = memory.data();
+        const int* const parents = walk.parents.data();
+        const uchar* const weights = walk.weights.data();
+        for (int i = size - 1; i > 0; --i)
+            sums[parents[i]] += similarity.table[weights[i]] * sums[i];
+        for (int i = 1; i < size; ++i)
+        {
+            const float s = similarity.table[weights[i]];
+            sums[i] = s * sums[parents[i]] + (1 - s * s) * sums[i];
+        }
+        for (int i = 0; i < size; ++i)
+            sums[i] = CostVolume::scale / sums[i];
+    }
+
+    void takeMeans(const TreeWalk& walk, int size, const std::vector<float>& factors, const Range& run, int lanes,
+                   std::vector<float>& memory) const
+    {
+        float* const costs = provideCosts(size, lanes, memory);
+        cost.evaluate(walk.pixels.data(), size, run.start, lanes, costs);
+        CV_CPU_DISPATCH(averageRun, (walk, size, similarity.table, run, lanes, factors.data(), costs, volume),
+                        CV_CPU_DISPATCH_MODES_ALL);
+    }
+
+    void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
+    {
+        walkTree(forest, tree, scratch.walk);
+        findFactors(scratch.walk, tree.size, scratch.factors);
+        for (int first = 0; first < volume.numDisparities;)
+        {
+            const int lanes = countLanes(volume.numDisparities - first, tree.size);
+            const Range run(first, std::min(first + lanes, volume.numDisparities));
+            takeMeans(scratch.walk, tree.size, scratch.factors, run, lanes, scratch.costs);
+            first = run.end;
+        }
+    }
+
+    void processLarge(const DisparityTree& tree, AggregationBuffers& buffers) const
+    {
+        std::mutex mutex;
+        ScratchLoan whole(buffers, mutex);
+        const TreeWalk& walk = (*whole).walk;
+        walkTree(forest, tree, (*whole).walk);
+        findFactors(walk, tree.size, (*whole).factors);
+        const int lanes = countLanes(volume.numDisparities, tree.size);
+        const int runs = (volume.numDisparities + lanes - 1) / lanes, groups = std::min(runs, maxGroups);
+        const auto takeGroups = [&](const Range& range) {
+            ScratchLoan scratch(buffers, mutex);
+            for (int i = runs * range.start / groups; i < runs * range.end / groups; ++i)
+            {
+                const Range run(i * lanes, std::min((i + 1) * lanes, volume.numDisparities));
+                takeMeans(walk, tree.size, (*whole).factors, run, lanes, (*scratch).costs);
+            }
+        };
+        parallel_for_(Range(0, groups), takeGroups, groups);
+    }
+};
+
 } // namespace
 
 EdgeSimilarity::EdgeSimilarity(double gamma)
@@ -210,34 +322,9 @@ void takeWinners(const DisparityForest& forest, const AggregationProblem& proble
 {
     const Aggregation aggregation = { forest, problem, EdgeSimilarity(gamma), disparity.ptr<ushort>() };
 
-    // Tasks of about the same work, in the order of the trees; large trees with many candidates are done one by one.
-    std::vector<Range> tasks;
-    int64 work = taskWork;
-    for (int t = 0; t < (int)forest.trees.size(); ++t)
-    {
-        const DisparityTree& tree = forest.trees[t];
-        if (tree.size >= largeTree && tree.interval.size() > smallRun)
-        {
-            processLarge(aggregation, tree, buffers);
-            work = taskWork;
-            continue;
-        }
-        if (work >= taskWork)
-        {
-            tasks.push_back(Range(t, t));
-            work = 0;
-        }
-        tasks.back().end = t + 1;
-        work += (int64)tree.size * tree.interval.size();
-    }
-
-    std::mutex mutex;
-    parallel_for_(Range(0, (int)tasks.size()), [&](const Range& range) {
-        ScratchLoan scratch(buffers, mutex);
-        for (int i = range.start; i < range.end; ++i)
-            for (int t = tasks[i].start; t < tasks[i].end; ++t)
-                aggregation.processSmall(forest.trees[t], *scratch);
-    });
+    forEachTree(
+        forest, buffers, [&](const DisparityTree& tree) { processLarge(aggregation, tree, buffers); },
+        [&](const DisparityTree& tree, AggregationScratch& scratch) { aggregation.processSmall(tree, scratch); });
 }
 
 void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
@@ -246,6 +333,16 @@ void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, do
     disparity.create(forest.links.size(), CV_16U);
     disparity.setTo(Scalar::all(0)); // where there is no candidate
     takeWinners(forest, Matching(cost, subpixel), gamma, buffers, disparity);
+}
+
+void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, int numDisparities, double gamma,
+                    AggregationBuffers& buffers, CostVolume& volume)
+{
+    volume.create(forest.links.size(), numDisparities);
+    const MeanAggregation aggregation = { forest, cost, EdgeSimilarity(gamma), volume };
+    forEachTree(
+        forest, buffers, [&](const DisparityTree& tree) { aggregation.processLarge(tree, buffers); },
+        [&](const DisparityTree& tree, AggregationScratch& scratch) { aggregation.processSmall(tree, scratch); });
 }
 
 } // namespace hdp

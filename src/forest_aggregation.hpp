@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
 
 #include <memory>
+#include "cost_volume.hpp"
 #include "matching_cost.hpp"
 #include "tree_walk.hpp"
 
@@ -47,6 +48,7 @@ struct AggregationScratch
     TreeWalk walk;
     std::vector<float> costs;
     std::vector<RunWinner> winners; // by position in the walk
+    std::vector<float> factors;     // from sums to means, as well
 };
 
 struct AggregationBuffers
@@ -89,6 +91,17 @@ otherwise all disparities are whole.
 @param disparity Receives CV_16UC1 of the layer's size, a disparity map; 0 where TreeIntv is empty. */
 CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
                                 AggregationBuffers& buffers, Mat& disparity);
+
+/** The weighted means of M over each tree, C(p, x) / sum over q in the tree of S(p, q). Unlike C they can be compared
+between pixels, of other trees as well.
+@param forest The forest.
+@param cost The layer's matching cost.
+@param numDisparities Of the layer; all are candidates, whatever TreeIntv is.
+@param gamma Of the similarity.
+@param buffers Memory to work in.
+@param volume Receives the means, times CostVolume::scale, rounded and at most 255. */
+CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, int numDisparities,
+                               double gamma, AggregationBuffers& buffers, CostVolume& volume);
 
 } // namespace hdp
 } // namespace stereo

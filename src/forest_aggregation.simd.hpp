@@ -24,6 +24,18 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes, bool joins,
                   float* costs, RunWinner* winners);
 
+/** Aggregates the costs of a run of candidates over a tree, and stores the means.
+@param walk The tree's walk.
+@param size Number of pixels of the tree.
+@param similarity As in aggregateRun().
+@param run The candidates.
+@param lanes As in aggregateRun().
+@param factors From C to the stored mean, by position in the walk.
+@param costs As in aggregateRun().
+@param volume Receives the means. */
+void averageRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes,
+                const float* factors, float* costs, CostVolume& volume);
+
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
@@ -123,17 +135,55 @@ template <int lanes> void takeWinners(const float* costs, int size, const Range&
 }
 
 template <int lanes>
-void aggregate(const TreeWalk& walk, int size, const float* similarity, const Range& run, bool joins, float* costs,
-               RunWinner* winners)
+void storeMeans(const float* costs, const int* pixels, int size, const float* factors, const Range& run,
+                CostVolume& volume)
+{
+    uchar* const first = volume.costs.ptr() + run.start;
+    const size_t count = run.end - run.start;
+    for (int i = 0; i < size; ++i, costs += lanes)
+    {
+        const float factor = factors[i];
+        uchar means[lanes];
+        HDP_FOR_LANES(k, lanes) means[k] = (uchar)std::min((int)(costs[k] * factor + 0.5f), 255);
+        uchar* const stored = first + (size_t)pixels[i] * volume.pitch;
+        if (count == lanes) // the usual one, of a size that the compiler knows
+            std::memcpy(stored, means, lanes);
+        else
+            std::memcpy(stored, means, count);
+    }
+}
+
+//! Both passes; calls take(begin, end) for blocks of nodes whose C is complete.
+template <int lanes, typename Take>
+void aggregate(const TreeWalk& walk, int size, const float* similarity, float* costs, const Take& take)
 {
     passUp<lanes>(walk, size, similarity, costs);
     for (int begin = 0; begin < size; begin += block)
     {
         const int end = std::min(begin + block, size);
         passDown<lanes>(walk, begin, end, similarity, costs);
+        take(begin, end);
+    }
+}
+
+template <int lanes>
+void aggregate(const TreeWalk& walk, int size, const float* similarity, const Range& run, bool joins, float* costs,
+               RunWinner* winners)
+{
+    aggregate<lanes>(walk, size, similarity, costs, [&](int begin, int end) {
         if (winners)
             takeWinners<lanes>(costs + (size_t)begin * lanes, end - begin, run, joins, winners + begin);
-    }
+    });
+}
+
+template <int lanes>
+void average(const TreeWalk& walk, int size, const float* similarity, const Range& run, const float* factors,
+             float* costs, CostVolume& volume)
+{
+    aggregate<lanes>(walk, size, similarity, costs, [&](int begin, int end) {
+        storeMeans<lanes>(costs + (size_t)begin * lanes, walk.pixels.data() + begin, end - begin, factors + begin, run,
+                          volume);
+    });
 }
 
 } // namespace
@@ -151,6 +201,22 @@ void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const
         return aggregate<16>(walk, size, similarity, run, joins, costs, winners);
     default:
         return aggregate<32>(walk, size, similarity, run, joins, costs, winners);
+    }
+}
+
+void averageRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes,
+                const float* factors, float* costs, CostVolume& volume)
+{
+    switch (lanes)
+    {
+    case 4:
+        return average<4>(walk, size, similarity, run, factors, costs, volume);
+    case 8:
+        return average<8>(walk, size, similarity, run, factors, costs, volume);
+    case 16:
+        return average<16>(walk, size, similarity, run, factors, costs, volume);
+    default:
+        return average<32>(walk, size, similarity, run, factors, costs, volume);
     }
 }
 

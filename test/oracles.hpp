@@ -13,6 +13,7 @@
 #include "../src/disparity_forest.hpp"
 #include "../src/disparity_prediction.hpp"
 #include "../src/scanline_aggregation.hpp"
+#include "../src/volume_scanlines.hpp"
 
 namespace opencv_test {
 namespace oracle {
@@ -693,6 +694,64 @@ private:
     Mat windows_;
     int small_, large_, prior_;
 };
+
+//! L(p, d) of a direction in a volume of costs, see aggregateVolume(): from the pixel that is step away. costs: C, rows
+//! pixels, columns disparities; weights: of the edges.
+inline Mat_<int> scanlineCosts(const Mat_<uchar>& costs, const Mat& weights, const hdp::VolumePenalties& penalties,
+                               Point step)
+{
+    const Size size = weights.size();
+    const int n = costs.cols;
+    Mat_<int> all(costs.size());
+    for (int i = 0; i < size.area(); ++i)
+    {
+        const int p = step.x + step.y < 0 ? i : size.area() - 1 - i; // after the pixel before
+        const Point here(p % size.width, p / size.width), before = here + step;
+        for (int d = 0; d < n; ++d)
+            all(p, d) = costs(p, d);
+        if (!Rect(Point(), size).contains(before))
+            continue;
+        const Point edge(std::min(here.x, before.x), std::min(here.y, before.y));
+        const int w = weights.at<Vec2b>(edge)[step.x == 0];
+        const int large = std::max(penalties.small, cvRound(penalties.large * std::exp(-w / penalties.gamma)));
+        const int* of = all[before.y * size.width + before.x];
+        const int least = *std::min_element(of, of + n);
+        for (int d = 0; d < n; ++d)
+        {
+            int best = std::min(of[d], least + large);
+            if (d > 0)
+                best = std::min(best, of[d - 1] + penalties.small);
+            if (d + 1 < n)
+                best = std::min(best, of[d + 1] + penalties.small);
+            all(p, d) += best - least;
+        }
+    }
+    return all;
+}
+
+//! aggregateVolume(), CV_16UC1
+inline Mat volumeDisparity(const Mat_<uchar>& costs, const Mat& weights, const hdp::VolumePenalties& penalties)
+{
+    Mat_<int> sums(costs.size(), 0);
+    for (const Point& step : { Point(-1, 0), Point(1, 0), Point(0, -1), Point(0, 1) })
+        sums += scanlineCosts(costs, weights, penalties, step);
+    Mat disparity(weights.size(), CV_16UC1);
+    for (int p = 0; p < sums.rows; ++p)
+    {
+        const int* sum = sums[p];
+        const int d = (int)(std::min_element(sum, sum + sums.cols) - sum); // the first one
+        double offset = 0;
+        if (d > 0 && d + 1 < sums.cols)
+        {
+            // The steeper side of the V has its slope, the other one the opposite.
+            const int slope = std::max(sum[d - 1], sum[d + 1]) - sum[d];
+            if (slope > 0)
+                offset = (sum[d - 1] - sum[d + 1]) / (2. * slope);
+        }
+        disparity.at<ushort>(p / disparity.cols, p % disparity.cols) = (ushort)(16 * d + cvRound(16 * offset));
+    }
+    return disparity;
+}
 
 //! The disparities of a layer from those above: bilinear over the four pixels above that are nearest, those outside of
 //! the image being the nearest inside. Where one of them is off by more than a pixel, the nearest one stands for it.

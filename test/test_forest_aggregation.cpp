@@ -160,6 +160,62 @@ void expectWinners(const Layer& layer, double gamma, bool subpixel, hdp::Aggrega
     EXPECT_LE(rounded, compared / 5) << "too many winners depend on rounding to say anything";
 }
 
+//! Each mean of the volume is that of the explicit sums, rounded, and behind the candidates there is the padding.
+void expectMeans(const Layer& layer, int disparities, double gamma, hdp::AggregationBuffers& buffers, int step = 1)
+{
+    hdp::CostVolume volume;
+    hdp::aggregateMeans(layer.forest, layer.cost, disparities, gamma, buffers, volume);
+    ASSERT_EQ(disparities, volume.numDisparities);
+    ASSERT_EQ(layer.left.size(), volume.size);
+    for (int p = 0; p < layer.left.size().area(); p += step)
+    {
+        const uchar* means = volume.costs.ptr() + (size_t)p * volume.pitch;
+        const std::vector<double> sums =
+            oracle::aggregated(layer.expectedForest.neighbours, p, gamma, layer.costTable, 0, disparities - 1);
+        double similarity = 0;
+        for (const std::pair<int, double>& other : oracle::similarities(layer.expectedForest.neighbours, p, gamma))
+            similarity += other.second;
+        for (int d = 0; d < disparities; ++d)
+            ASSERT_NEAR(std::min(hdp::CostVolume::scale * sums[d] / similarity, 255.), means[d], 0.501)
+                << "pixel " << p << ", disparity " << d;
+        for (int d = disparities; d < volume.pitch; ++d)
+            ASSERT_EQ(255, means[d]);
+    }
+}
+
+TEST(HDPStereo_ForestAggregation, means_over_trees)
+{
+    RNG rng(27);
+    hdp::AggregationBuffers buffers;
+    for (const Size& size : { Size(1, 1), Size(1, 40), Size(40, 1), Size(30, 24) })
+        for (double gamma : { 1e-300, 4., 25.5 })
+        {
+            SCOPED_TRACE(testing::Message() << size << ", gamma " << gamma);
+            const Mat fullRange(size, CV_16UC2, Scalar(0, numDisparities - 1));
+            expectMeans(Layer(rng, size, *createSegmentTree(20), fullRange, 0.95, false), numDisparities, gamma,
+                        buffers);
+            expectMeans(Layer(rng, size, *createMinimumSpanningTree(), stripedIntervals(size), 0.6, false),
+                        numDisparities, gamma, buffers); // whatever the intervals are
+        }
+}
+
+TEST(HDPStereo_ForestAggregation, means_of_any_number_of_disparities)
+{
+    RNG rng(28);
+    hdp::AggregationBuffers buffers;
+    const Size size(14, 11);
+    for (int disparities : { 1, 2, 4, 5, 15, 16, 17, 32, 33, 41, 70 })
+    {
+        const Mat fullRange(size, CV_16UC2, Scalar(0, disparities - 1));
+        const Layer layer(rng, size, *createMinimumSpanningTree(), fullRange, 0.95, true, disparities);
+        expectMeans(layer, disparities, 5, buffers);
+    }
+    const Size large(210, 160); // a tree whose candidates are in groups side by side
+    const Mat fullRange(large, CV_16UC2, Scalar(0, 149));
+    expectMeans(Layer(rng, large, *createMinimumSpanningTree(), fullRange, 0.95, true, 150), 150, 4, buffers,
+                large.area() / 12 | 1);
+}
+
 TEST(HDPStereo_ForestAggregation, winner_of_explicit_sums)
 {
     RNG rng(20);

@@ -1,0 +1,74 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "volume_scanlines.hpp"
+
+#include "forest_aggregation.hpp"
+#include "volume_scanlines.simd.hpp"
+#include "volume_scanlines.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+// Scanlines that are followed side by side; more columns than rows, as those are side by side in memory, too
+const int blockRows = 8;
+const int blockColumns = VolumeProblem::maxScanlines;
+
+void dispatchRows(const VolumeProblem& problem, const Range& rows, short* lines)
+{
+    CV_CPU_DISPATCH(aggregateRows, (problem, rows, lines), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchColumns(const VolumeProblem& problem, const Range& columns, short* lines)
+{
+    CV_CPU_DISPATCH(aggregateColumns, (problem, columns, lines), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! Calls aggregate(scanlines, memory) for each block of scanlines.
+template <typename Aggregate>
+void runBlocks(const VolumeProblem& problem, int scanlines, int block, Mat& lines, const Aggregate& aggregate)
+{
+    const int blocks = (scanlines + block - 1) / block;
+    lines.create(blocks, problem.lineMemory(block), CV_16S);
+    parallel_for_(Range(0, blocks), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+            aggregate(Range(i * block, std::min((i + 1) * block, scanlines)), lines.ptr<short>(i));
+    });
+}
+
+} // namespace
+
+void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumePenalties& penalties,
+                     VolumeScanlineBuffers& buffers, Mat& disparity)
+{
+    CV_DbgAssert(std::max(penalties.small, penalties.large) <= VolumePenalties::largest);
+    const Size size = volume.size;
+    buffers.sums.create(volume.costs.size(), CV_16S);
+    disparity.create(size, CV_16U);
+
+    VolumeProblem problem;
+    problem.costs = volume.costs.ptr();
+    problem.weights = weights.ptr();
+    problem.size = size;
+    problem.numDisparities = volume.numDisparities;
+    problem.pitch = volume.pitch;
+    problem.small = (short)penalties.small;
+    const EdgeSimilarity similarity(penalties.gamma);
+    for (int w = 0; w < 256; ++w)
+        problem.large[w] = (short)std::max(penalties.small, cvRound(penalties.large * similarity.table[w]));
+    problem.sums = buffers.sums.ptr<short>();
+    problem.disparity = disparity.ptr<ushort>();
+
+    runBlocks(problem, size.height, blockRows, buffers.lines,
+              [&](const Range& rows, short* lines) { dispatchRows(problem, rows, lines); });
+    runBlocks(problem, size.width, blockColumns, buffers.lines,
+              [&](const Range& columns, short* lines) { dispatchColumns(problem, columns, lines); });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
