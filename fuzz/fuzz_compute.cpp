@@ -390,7 +390,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         return input.ConsumeBool() && input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-1, last + 1);
     };
     change(m, [&] {
-        switch (input.ConsumeIntegralInRange(0, 35))
+        switch (input.ConsumeIntegralInRange(0, 36))
         {
         case 0:
             return m.setMinDisparity(input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-200, 200));
@@ -460,6 +460,8 @@ void setParameter(Input& input, HDPTreeMatcher& m)
             return m.setP2(upTo(100));
         case 34:
             return m.setMaxTopDisparities(upTo(100));
+        case 35:
+            return m.setTopAggregation(upTo(1));
         default:
             return m.setUseNonLocalRefinement(input.ConsumeBool());
         }

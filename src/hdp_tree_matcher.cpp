@@ -94,6 +94,7 @@ public:
     HDP_PARAMETER(int, IntervalMargin, intervalMargin)
     HDP_PARAMETER(bool, UseSubpixel, useSubpixel)
     HDP_PARAMETER(int, Aggregation, aggregation)
+    HDP_PARAMETER(int, TopAggregation, topAggregation)
     HDP_PARAMETER(int, P1, P1)
     HDP_PARAMETER(int, P2, P2)
     HDP_PARAMETER(int, FinestLayer, finestLayer)

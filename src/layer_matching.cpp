@@ -18,6 +18,9 @@ namespace {
 
 const int secondPassMedian = 5;
 
+// Of the means that scanlines get, gamma relative to that of the trees alone: scanlines reach farther
+const double meanGamma = 0.2;
+
 // Of the non-local refinement: a stable disparity's largest difference in the left-right check, and gamma, relative to
 // that of the cost; with the same gamma the refinement blurs slanted surfaces.
 const int stableMaxDiff = 1;
@@ -85,6 +88,23 @@ void growForest(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& match
                 buffers.forest);
 }
 
+bool hasTopScanlines(const MatcherParameters& p)
+{
+    return p.usePrediction && p.aggregation == HDPTreeMatcher::AGGREGATION_SCANLINES &&
+           p.topAggregation == HDPTreeMatcher::AGGREGATION_SCANLINES;
+}
+
+//! Over the full range, from the means of the costs over the layer's forest
+void aggregateVolume(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
+{
+    const MatcherParameters& p = in.parameters;
+    const int scale = CostVolume::scale;
+    const VolumePenalties penalties = { scale * p.P1, scale * p.P2, p.gamma };
+    aggregateMeans(buffers.forest, matched.cost(), disparitiesOf(in), p.gamma * meanGamma, buffers.aggregation,
+                   buffers.volume);
+    aggregateVolume(buffers.volume, buffers.forest.weights, penalties, buffers.volumeScanlines, matched.winner);
+}
+
 //! Sections 3.1 to 3.3
 void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
 {
@@ -95,6 +115,8 @@ void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clo
     clock.run("disparity forest", [&] { growForest(in, buffers, matched); });
     matched.searchRatio = searchRatio(buffers.forest, disparitiesOf(in));
     clock.run("cost aggregation", [&] {
+        if (hasTopScanlines(p))
+            return aggregateVolume(in, buffers, matched);
         aggregateForest(buffers.forest, matched.cost(), p.gamma, in.settings.subpixel, buffers.aggregation,
                         matched.winner);
     });

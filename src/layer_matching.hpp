@@ -13,6 +13,7 @@
 #include "scanline_aggregation.hpp"
 #include "stage_clock.hpp"
 #include "support_points.hpp"
+#include "volume_scanlines.hpp"
 
 namespace cv {
 namespace stereo {
@@ -59,6 +60,8 @@ struct LayerBuffers
     ForestBuffers forestBuffers;
     AggregationBuffers aggregation;
     ScanlineBuffers scanlines;
+    CostVolume volume;
+    VolumeScanlineBuffers volumeScanlines;
 };
 
 //! Section 3: from the disparities of the layer above to those of this layer

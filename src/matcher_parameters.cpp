@@ -71,6 +71,8 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
     visit("useSubpixel", &P::useSubpixel);
     visit("aggregation", &P::aggregation, "AGGREGATION_TREES or AGGREGATION_SCANLINES",
           [](int v) { return v == M::AGGREGATION_TREES || v == M::AGGREGATION_SCANLINES; });
+    visit("topAggregation", &P::topAggregation, "AGGREGATION_TREES or AGGREGATION_SCANLINES",
+          [](int v) { return v == M::AGGREGATION_TREES || v == M::AGGREGATION_SCANLINES; });
     visit("P1", &P::P1, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
     visit("P2", &P::P2, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
     visit("finestLayer", &P::finestLayer, "in 0..15", [](int v) { return isIn(v, 0, 15); });
@@ -228,6 +230,7 @@ MatcherParameters presetParameters(int preset)
     if (preset == M::PRESET_QUALITY)
     {
         p.numLayers = 2;
+        p.topAggregation = M::AGGREGATION_SCANLINES;
         p.scanlinePasses = 2;
         p.disparityMedianSize = 7;
         p.disparityMedianPasses = 2;

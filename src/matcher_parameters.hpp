@@ -40,6 +40,7 @@ struct MatcherParameters
     int intervalMargin = 0;
     bool useSubpixel = false;
     int aggregation = HDPTreeMatcher::AGGREGATION_TREES;
+    int topAggregation = HDPTreeMatcher::AGGREGATION_TREES;
     int P1 = 12;
     int P2 = 50;
     int finestLayer = 0;

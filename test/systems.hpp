@@ -78,6 +78,7 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : isQuality ? 7 : 5);
     matcher.setDisparityMedianPasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
+    matcher.setTopAggregation(isQuality ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
     matcher.setNumLayers(isQuality ? 2 : 3);
     matcher.setMaxTopDisparities(hasScanlines ? 64 : 0);
     matcher.setFinestLayer(preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 1 : 0);

@@ -144,6 +144,7 @@ TEST(HDPStereo_BadInput, setters)
         expectBadValue([bad](HDPTreeMatcher& m) { m.setMatchingCost(bad); }, "matchingCost");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityPrior(bad); }, "disparityPrior");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setAggregation(bad); }, "aggregation");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setTopAggregation(bad); }, "topAggregation");
     }
     for (int bad : { -1, 65, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setIntervalMargin(bad); }, "intervalMargin");
@@ -216,6 +217,7 @@ TEST(HDPStereo_BadInput, scanlines_without_census)
 {
     const Mat image(12, 16, CV_8UC1, Scalar(7));
     const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, 8);
+    matcher->setTopAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
     matcher->setMatchingCost(HDPTreeMatcher::COST_COLOR_GRADIENT);
     expectRejected([&] { match(*matcher, image, image); }, "matchingCost");
     matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREES);

@@ -74,6 +74,7 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_EQ(0, matcher->getIntervalMargin());
     EXPECT_FALSE(matcher->getUseSubpixel());
     EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, matcher->getAggregation());
+    EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, matcher->getTopAggregation());
     EXPECT_EQ(12, matcher->getP1());
     EXPECT_EQ(50, matcher->getP2());
     EXPECT_EQ(1, matcher->getScanlinePasses());
@@ -136,6 +137,8 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS(matcher, IntervalMargin, 64, 1, 0);
     EXPECT_KEEPS(matcher, UseSubpixel, true, false);
     EXPECT_KEEPS(matcher, Aggregation, (int)HDPTreeMatcher::AGGREGATION_SCANLINES,
+                 (int)HDPTreeMatcher::AGGREGATION_TREES);
+    EXPECT_KEEPS(matcher, TopAggregation, (int)HDPTreeMatcher::AGGREGATION_SCANLINES,
                  (int)HDPTreeMatcher::AGGREGATION_TREES);
     EXPECT_KEEPS(matcher, P1, 0, 100, 12);
     EXPECT_KEEPS(matcher, P2, 0, 100, 50);
@@ -213,6 +216,10 @@ const Change treeChanges[] = {
     { "useNonLocalRefinement", [](HDPTreeMatcher& m) { m.setUseNonLocalRefinement(true); } },
 };
 
+const Change topChanges[] = {
+    { "topAggregation", [](HDPTreeMatcher& m) { m.setTopAggregation(1 - m.getTopAggregation()); } },
+};
+
 const Change colorAndGradientChanges[] = {
     { "colorTruncation", [](HDPTreeMatcher& m) { m.setColorTruncation(3); } },
     { "gradientTruncation", [](HDPTreeMatcher& m) { m.setGradientTruncation(8); } },
@@ -250,6 +257,7 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
         const bool hasScanlines = matcher->getAggregation() == HDPTreeMatcher::AGGREGATION_SCANLINES;
         expectEffects(preset, commonChanges, true);
         expectEffects(preset, treeChanges, !hasScanlines);
+        expectEffects(preset, topChanges, hasScanlines);
         if (matcher->getMatchingCost() == HDPTreeMatcher::COST_COLOR_GRADIENT)
             expectEffects(preset, colorAndGradientChanges, true);
         if (hasScanlines && matcher->getFinestLayer() == 0) // else only the top layer is matched, which has a tree

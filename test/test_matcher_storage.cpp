@@ -38,6 +38,7 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setIntervalMargin(2);
     matcher->setUseSubpixel(true);
     matcher->setAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
+    matcher->setTopAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
     matcher->setP1(9);
     matcher->setP2(44);
     matcher->setScanlinePasses(3);
@@ -90,6 +91,7 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(2, read->getIntervalMargin());
             EXPECT_TRUE(read->getUseSubpixel());
             EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_SCANLINES, read->getAggregation());
+            EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_SCANLINES, read->getTopAggregation());
             EXPECT_EQ(9, read->getP1());
             EXPECT_EQ(44, read->getP2());
             EXPECT_EQ(3, read->getScanlinePasses());
@@ -240,6 +242,7 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "intervalMargin", { "-1", "65", "2147483647", "0.5", 0 } },
         { "useSubpixel", { "0.5", 0 } },
         { "aggregation", { "-1", "2", "2147483647", "0.5", 0 } },
+        { "topAggregation", { "-1", "2", "2147483647", "0.5", 0 } },
         { "P1", { "-1", "101", "2147483647", "0.5", 0 } },
         { "P2", { "-1", "101", "2147483647", "0.5", 0 } },
         { "scanlinePasses", { "0", "-1", "5", "2147483647", "0.5", 0 } },
@@ -298,6 +301,7 @@ TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
                                   "intervalMargin",
                                   "useSubpixel",
                                   "aggregation",
+                                  "topAggregation",
                                   "P1",
                                   "P2",
                                   "maxTopDisparities",

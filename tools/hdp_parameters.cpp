@@ -77,6 +77,7 @@ static std::vector<Variant> variantsOf(int preset)
         add<int>(variants, "numLayers", &M::setNumLayers, { 2, 4 });
         add<int>(variants, "finestLayer", &M::setFinestLayer, { 1, 2 });
         add<int>(variants, "scanlinePasses", &M::setScanlinePasses, { 2, 3 });
+        add<int>(variants, "topAggregation", &M::setTopAggregation, { M::AGGREGATION_SCANLINES });
         add<int>(variants, "P1", &M::setP1, { 6, 24 });
         add<int>(variants, "P2", &M::setP2, { 25, 100 });
     }

@@ -60,6 +60,7 @@ Where the presets differ:
 | finestLayer | 0 | 0 | 0 | 1 | 0 |
 | matchingCost | COLOR_GRADIENT | CENSUS | CENSUS | CENSUS | CENSUS |
 | aggregation | TREES | TREES | SCANLINES | SCANLINES | SCANLINES |
+| topAggregation | without effect | without effect | TREES | TREES | SCANLINES |
 | gamma | 25.5 | 20 | 20 | 20 | 20 |
 | disparityPrior | SUPPORT_POINTS | UPPER_LAYER | without effect | without effect | without effect |
 | delta0, beta | AUTO | 0.02, 0.9 | without effect | without effect | without effect |
@@ -104,11 +105,11 @@ public:
         PRESET_TREE = 4       //!< trees on every layer, as in the paper; census cost, sub-pixel disparities
     };
 
-    //! Cost aggregation below the top layer, see setAggregation()
+    //! Cost aggregation, see setAggregation() and setTopAggregation()
     enum Aggregation
     {
         AGGREGATION_TREES = 0,    //!< the paper's disparity trees
-        AGGREGATION_SCANLINES = 1 //!< semi-global matching over 16 predicted candidates per pixel
+        AGGREGATION_SCANLINES = 1 //!< semi-global matching; below the top layer over 16 predicted candidates per pixel
     };
 
     //! Matching cost, see setMatchingCost()
@@ -286,7 +287,7 @@ public:
     /** @copybrief setUseSubpixel @sa setUseSubpixel */
     CV_WRAP virtual bool getUseSubpixel() const = 0;
 
-    /** @brief Cost aggregation of the layers below the top one, which always has trees.
+    /** @brief Cost aggregation of the layers below the top one; for that one see setTopAggregation().
     @param aggregation HDPTreeMatcher::AGGREGATION_TREES (PRESET_PAPER, PRESET_TREE): section 3.
     HDPTreeMatcher::AGGREGATION_SCANLINES (the others): semi-global matching @cite Hirschmuller2008SGM from the left,
     from the right and from above, over 16 candidates per pixel around the disparity of the layer above. It needs
@@ -294,6 +295,18 @@ public:
     CV_WRAP virtual void setAggregation(int aggregation) = 0;
     /** @copybrief setAggregation @sa setAggregation */
     CV_WRAP virtual int getAggregation() const = 0;
+
+    /** @brief Cost aggregation of the top layer, with HDPTreeMatcher::AGGREGATION_SCANLINES below it.
+    @param aggregation HDPTreeMatcher::AGGREGATION_TREES (default): sums over its trees, as in section 3.3.
+    HDPTreeMatcher::AGGREGATION_SCANLINES (PRESET_QUALITY): the costs become weighted means over each pixel's tree, with
+    a fifth of \f$\gamma\f$; then semi-global matching @cite Hirschmuller2008SGM from the left, from the right, from
+    above and from below searches the full range. P2 is multiplied by the similarity of the two neighbours, see
+    setGamma(), but never becomes less than P1. Surfaces without texture get better disparities. It takes time, and 3
+    bytes per pixel and disparity of the top layer. Without effect with AGGREGATION_TREES below or without
+    prediction. */
+    CV_WRAP virtual void setTopAggregation(int aggregation) = 0;
+    /** @copybrief setTopAggregation @sa setTopAggregation */
+    CV_WRAP virtual int getTopAggregation() const = 0;
 
     /** @brief Penalty for a step of one disparity between neighbours on a scanline.
     @param P1 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 12 by default. Used by

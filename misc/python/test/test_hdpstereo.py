@@ -56,6 +56,7 @@ PARAMETERS = {
     'P1': (12, 7),
     'P2': (50, 60),
     'FinestLayer': (0, 1),
+    'TopAggregation': (cv.stereo.HDPTreeMatcher_AGGREGATION_TREES, cv.stereo.HDPTreeMatcher_AGGREGATION_SCANLINES),
     'ScanlinePasses': (1, 3),
     'FillOcclusions': (False, True),
     'UseNonLocalRefinement': (False, True),
