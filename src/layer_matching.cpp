@@ -34,9 +34,9 @@ void prepareCost(const LayerInput& in, MatchedLayer& matched)
     const LayerImages& images = in.images;
     matched.isCensus = p.matchingCost == HDPTreeMatcher::COST_CENSUS;
     if (matched.isCensus)
-        return matched.census.prepare(images.left, images.right, disparitiesOf(in), p.blockSize);
+        return matched.census.prepare(images.left, images.right, disparitiesOf(in), in.settings.windowSide);
     const ColorGradientParams params = { (float)p.colorTruncation, (float)p.gradientTruncation, (float)p.colorWeight,
-                                         p.blockSize };
+                                         in.settings.windowSide };
     matched.colorGradient.prepare(images.left, images.right, disparitiesOf(in), params);
 }
 

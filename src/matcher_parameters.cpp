@@ -26,6 +26,7 @@ typedef HDPTreeMatcher M;
 const int largeImageWidth = 1000;
 
 const int leastTopDisparities = CandidateWindow::candidates; // of more than two layers
+const int largestWindow = 31;                                // that a cost is averaged over
 const int maxPenalty = ScanlinePenalties::largest;
 
 bool isPositive(double value) { return std::isfinite(value) && value > 0; }
@@ -46,7 +47,7 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
 {
     visit("minDisparity", &P::minDisparity);
     visit("numDisparities", &P::numDisparities, "> 0", [](int v) { return v > 0; });
-    visit("blockSize", &P::blockSize, "odd, in 1..31", [](int v) { return isOddIn(v, 1, 31); });
+    visit("blockSize", &P::blockSize);
     visit("speckleWindowSize", &P::speckleWindowSize);
     visit("speckleRange", &P::speckleRange, ">= 0", [](int v) { return v >= 0; });
     visit("disp12MaxDiff", &P::disp12MaxDiff);
@@ -173,6 +174,13 @@ Ptr<TreeStrategy> readStrategy(const FileNode& fn, const Ptr<TreeStrategy>& own)
     return own;
 }
 
+//! The side of the matching cost's window. Values that are not odd and positive count as with cv::StereoSGBM.
+int windowSide(const MatcherParameters& p)
+{
+    const int side = p.blockSize > 0 ? p.blockSize / 2 * 2 + 1 : 5;
+    return p.matchingCost == M::COST_CENSUS ? std::min(std::max(side, 3), 7) : std::min(side, largestWindow);
+}
+
 //! Of parameters alone, and of the image's size
 void checkCombinations(const MatcherParameters& p, Size size)
 {
@@ -182,9 +190,6 @@ void checkCombinations(const MatcherParameters& p, Size size)
         CV_Error(Error::StsOutOfRange, format("minDisparity and numDisparities must keep (minDisparity - 1) * %d and "
                                               "(minDisparity + numDisparities - 1) * %d in CV_16S",
                                               (int)M::DISP_SCALE, (int)M::DISP_SCALE));
-
-    if (p.matchingCost == M::COST_CENSUS && p.blockSize != 3 && p.blockSize != 5 && p.blockSize != 7)
-        CV_Error(Error::StsOutOfRange, format("blockSize must be 3, 5 or 7 for COST_CENSUS, not %d", p.blockSize));
 
     if (p.aggregation == M::AGGREGATION_SCANLINES && p.matchingCost != M::COST_CENSUS)
         CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for AGGREGATION_SCANLINES");
@@ -308,6 +313,7 @@ PairSettings resolve(const MatcherParameters& p, const Mat& left)
     settings.layers =
         p.usePrediction ? countLayers(size, chooseLayers(p.numDisparities, p.numLayers, p.maxTopDisparities)) : 1;
     settings.finestLayer = std::min(p.finestLayer, settings.layers - 1);
+    settings.windowSide = windowSide(p);
     settings.extension = p.minDisparity < 0 ? (int)alignSize(-p.minDisparity, 1 << (settings.layers - 1)) : 0;
     const int64 width = (int64)size.width + settings.extension;
     if (width > maxSide || width * size.height * (int64)left.elemSize() > INT_MAX)

@@ -76,6 +76,7 @@ CV_EXPORTS int chooseLayers(int numDisparities, int numLayers, int maxTopDispari
 struct PairSettings
 {
     int layers = 0, finestLayer = 0;
+    int windowSide = 0; // of the matching cost
     int extension = 0; // columns added on the left, for pixels there to have their matches, if disparities are negative
     Ptr<DisparityPredictionModel> model;
     double delta0 = 0, beta = 0;

@@ -117,8 +117,6 @@ TEST(HDPStereo_BadInput, setters)
 {
     for (int bad : { 0, -1, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setNumDisparities(bad); }, "numDisparities");
-    for (int bad : { 0, 2, 4, 30, -1, -3, 33, 101, INT_MAX, INT_MIN })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setBlockSize(bad); }, "blockSize");
     for (int bad : { -1, INT_MIN })
     {
         expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleRange(bad); }, "speckleRange");
@@ -191,26 +189,6 @@ TEST(HDPStereo_BadInput, disparities_that_do_not_fit_into_16_bit)
         for (const System& preset : presets)
             expectRejected([&] { match(*createSystem(preset, range[1], range[0]), image, image); }, "isparit");
     }
-}
-
-TEST(HDPStereo_BadInput, census_of_other_windows)
-{
-    const Mat image(12, 16, CV_8UC1, Scalar(7));
-    const Ptr<HDPTreeMatcher> matcher = createSystem(presetPaper, 8);
-    matcher->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
-    for (int bad : { 1, 9, 31 })
-    {
-        matcher->setBlockSize(bad);
-        expectRejected([&] { match(*matcher, image, image); }, "blockSize");
-    }
-    for (int good : { 3, 5, 7 })
-    {
-        matcher->setBlockSize(good);
-        EXPECT_NO_THROW(match(*matcher, image, image));
-    }
-    matcher->setBlockSize(9);
-    matcher->setMatchingCost(HDPTreeMatcher::COST_COLOR_GRADIENT);
-    EXPECT_NO_THROW(match(*matcher, image, image));
 }
 
 TEST(HDPStereo_BadInput, scanlines_without_census)

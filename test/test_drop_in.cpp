@@ -8,6 +8,9 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
+#include "systems.hpp"
+
+#include <map>
 
 #ifdef HDPSTEREO_TEST_XIMGPROC
 #include "opencv2/ximgproc/disparity_filter.hpp"
@@ -49,6 +52,40 @@ Matx44d rectify(Size size)
                       Q);
     EXPECT_NEAR(focal, P1.at<double>(0, 0), 1e-3 * focal);
     return Matx44d(Q.ptr<double>());
+}
+
+//! Each block size that cv::StereoSGBM takes, which counts 0 as 5 and an even one as the next larger one, in every preset
+TEST(HDPStereo_DropIn, block_sizes)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(73, 41), 12, 8);
+    for (const System& system : presets)
+    {
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16, system.preset);
+        const auto mapOf = [&](int blockSize) {
+            matcher->setBlockSize(blockSize);
+            return match(*matcher, pair.left, pair.right).clone();
+        };
+        const bool isCensus = matcher->getMatchingCost() == HDPTreeMatcher::COST_CENSUS;
+        std::map<int, Mat> maps;
+        for (int side : { 1, 3, 5, 7, 9, 31 })
+            maps[side] = mapOf(side);
+        for (int blockSize :
+             { INT_MIN, -1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 15, 21, 30, 31, 33, 51, 255, INT_MAX })
+        {
+            SCOPED_TRACE(testing::Message() << system.name << ", blockSize " << blockSize);
+            cv::StereoSGBM::create(0, 16)->setBlockSize(blockSize); // takes all
+            const Mat map = mapOf(blockSize);
+            EXPECT_EQ(blockSize, matcher->getBlockSize());
+            const int odd = blockSize <= 0 ? 5 : blockSize % 2 == 0 ? blockSize + 1 : blockSize;
+            const int side = isCensus ? std::min(std::max(odd, 3), 7) : std::min(odd, 31);
+            if (maps.count(side))
+                expectIdentical(maps[side], map);
+            else
+                EXPECT_GT(cv::countNonZero(map), map.size().area() / 2);
+        }
+        EXPECT_GT(cv::norm(maps[3], maps[5], NORM_L1), 0) << system.name;
+        EXPECT_GT(cv::norm(maps[5], maps[7], NORM_L1), 0) << system.name;
+    }
 }
 
 TEST(HDPStereo_DropIn, from_a_rectified_pair_to_points)
@@ -120,6 +157,8 @@ TEST(HDPStereo_DropIn, valid_range)
     const int different = countDifferent(checked == (minDisparity - 1) * 16, validated == (minDisparity - 1) * 16);
     EXPECT_LT(different, 0.12 * disparity.total()); // 0.101
 }
+
+#include <map>
 
 #ifdef HDPSTEREO_TEST_XIMGPROC
 //! The filter's result for the disparities of both images, and the confidence that it has in them

@@ -115,7 +115,7 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     const Ptr<HDPTreeMatcher> matcher = createMatcher();
     EXPECT_KEEPS(matcher, MinDisparity, 5, 0, -128);
     EXPECT_KEEPS(matcher, NumDisparities, 1, 17, 64, 300);
-    EXPECT_KEEPS(matcher, BlockSize, 3, 31, 1);
+    EXPECT_KEEPS(matcher, BlockSize, 3, 31, 1, 4, 0, -1, INT_MAX, INT_MIN);
     EXPECT_KEEPS(matcher, SpeckleWindowSize, 100, INT_MAX, -1, INT_MIN, 0);
     EXPECT_KEEPS(matcher, SpeckleRange, 2, 4000, INT_MAX, 0);
     EXPECT_KEEPS(matcher, Disp12MaxDiff, 1, 0, -1, INT_MAX);

@@ -39,8 +39,10 @@ The parameters of cv::StereoMatcher mean what they mean there:
   images, where the first columns have their matches.
 - numDisparities: the number of candidates, > 0, not necessarily a multiple of 16. The largest disparity is
   minDisparity + numDisparities - 1; 16 times this one and 16 times (minDisparity - 1) must fit into CV_16S.
-- blockSize: the side of the matching cost's square window, odd, 1..31: the paper's cost is averaged over it (1, as in
-  the paper, is one pixel), the census cost compares its pixels.
+- blockSize: the side of the matching cost's square window. All values are accepted, and as with cv::StereoSGBM an even
+  one counts as the next larger one, and <= 0 as 5. COST_CENSUS takes the nearest of 3, 5 and 7: 3 is a tenth faster
+  than 7 with PRESET_FAST, and less accurate. COST_COLOR_GRADIENT is averaged over the window, 1 (a pixel, as in the
+  paper) to 31; larger values count as 31. Its time grows with the area of the window.
 - disp12MaxDiff: the largest valid difference, in pixels, between the disparity of a pixel and the largest disparity of
   those that match the same pixel of the right image. <= 0 (default) turns the check off.
 - speckleWindowSize, speckleRange: see cv::filterSpeckles. The window size is a number of pixels; <= 0 (default 0) turns
@@ -80,7 +82,6 @@ parameters or on the images is checked by compute(), before any work. compute() 
   pixels, or have 2^31 bytes and more, with the columns that a negative minDisparity adds;
 - speckleWindowSize is > 0 and the images have more than 238609294 pixels;
 - minDisparity and numDisparities give disparities that CV_16S cannot hold;
-- blockSize is not 3, 5 or 7 with COST_CENSUS;
 - the cost is not COST_CENSUS with AGGREGATION_SCANLINES or fillOcclusions;
 - the prediction model has too few layers, see setPredictionModel();
 - the output array has a fixed type other than CV_16SC1 and CV_32FC1;
@@ -255,8 +256,8 @@ public:
 
     /** @brief Matching cost M(p, x) (section 3.3).
 
-    The census cost compares every second pixel of the window, as on a checkerboard, with its centre, in grey; blockSize
-    must be 3, 5 or 7 then. It does not depend on the exposure of the images, but AGGREGATION_SCANLINES adds a small,
+    The census cost compares every second pixel of a window of 3, 5 or 7 pixels (see blockSize), as on a checkerboard,
+    with its centre, in grey. It does not depend on the exposure of the images, but AGGREGATION_SCANLINES adds a small,
     truncated difference of the grey levels to it, which does.
     @param matchingCost HDPTreeMatcher::COST_COLOR_GRADIENT, in PRESET_PAPER, or HDPTreeMatcher::COST_CENSUS, in the
     others. */
