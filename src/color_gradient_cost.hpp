@@ -39,7 +39,8 @@ colorWeight * min(mean_c |I_c(p) - I'_c(p - x)|, colorTruncation)
 + (1 - colorWeight) * min(|grad(p) - grad'(p - x)|, gradientTruncation),
 
 its mean over a window, columns clamped to the image. grad is half the difference of the grey levels left and right of a
-pixel; in the first and last column it is 4 times the difference to the only neighbour. */
+pixel; in the first and last column it is 4 times the difference to the only neighbour. Constants, and what the
+paper leaves open, are as in the authors' program, but for the 4. */
 class CV_EXPORTS ColorGradientCost CV_FINAL : public MatchingCost
 {
 public:

@@ -20,7 +20,7 @@ namespace hdp {
 @param margin Candidates added on both sides of each interval that is not empty.
 @param intervals intervals[i] receives PixelIntv given D_{l+1} = i: the mode of row i of P(D_l | D_{l+1}) and its
 neighbours, in turns to the left and to the right while their share of the probability exceeds delta; empty if the
-whole row is 0. */
+whole row is 0, as in the authors' program. */
 CV_EXPORTS void predictIntervals(const DisparityPredictionModel& model, int layer, const std::vector<double>& prior,
                                  int upperDisparities, double delta, int margin,
                                  std::vector<DisparityInterval>& intervals);
@@ -29,8 +29,8 @@ CV_EXPORTS void predictIntervals(const DisparityPredictionModel& model, int laye
 //! mean of these numbers besides, as no disparity is impossible. upper: CV_16UC1, a disparity map.
 CV_EXPORTS void upperHistogram(const Mat& upper, int numDisparities, std::vector<double>& histogram);
 
-//! PixelIntv of every pixel of a layer: intervals[D_{l+1}] of the pixel above it. upper: CV_16UC1, a disparity
-//! map; pixelIntv: CV_16UC2.
+//! PixelIntv of every pixel of a layer: intervals[D_{l+1}] of the pixel above it, or the nearest one of an odd last row
+//! or column, which is wrong in the authors' program. upper: CV_16UC1, a disparity map; pixelIntv: CV_16UC2.
 CV_EXPORTS void assignIntervals(const Mat& upper, Size size, const std::vector<DisparityInterval>& intervals,
                                 Mat& pixelIntv);
 

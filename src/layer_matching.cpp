@@ -76,7 +76,7 @@ void predict(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
     assignIntervals(in.upper, size, buffers.intervals, matched.pixelIntv);
 }
 
-//! Section 3.2
+//! Section 3.2. The median is that of the M+ systems; as in the authors' program, the cost does not see it.
 void growForest(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 {
     const MatcherParameters& p = in.parameters;
@@ -164,7 +164,7 @@ void refine(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
                    in.settings.subpixel, buffers.aggregation, matched.winner);
 }
 
-//! From the winners to the layer's disparities
+//! From the winners to the layer's disparities. The authors' program has this median; the paper has no such filter.
 void filter(const LayerInput& in, MatchedLayer& matched)
 {
     swap(matched.winner, matched.disparity);

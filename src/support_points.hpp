@@ -15,7 +15,9 @@ namespace hdp {
 A pixel's descriptor is 16 gradients around it; the dissimilarity of two pixels is the L1 distance of the descriptors
 at (+-2, +-2) around them. A point is kept if it has texture, its best dissimilarity is below 0.95 times the second
 one, the match of its match is at most 2 pixels away, and at least 4 of the points within +-4 grid places (itself
-among them) differ from it by at most 4. */
+among them) differ from it by at most 4.
+
+The authors' program has them instead of the paper's grid of 5 x 5 pixels; it counts those of the right image, too. */
 struct SupportPointBuffers
 {
     Mat grey[2];
