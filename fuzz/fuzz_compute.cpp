@@ -16,6 +16,7 @@
 
 #include <fuzzer/FuzzedDataProvider.h>
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -224,6 +225,8 @@ public:
         }
     }
 
+    bool ordersByWeight() const CV_OVERRIDE { return order_ == 6; }
+
     bool mayJoin(int weight, const TreeState& a, const TreeState& b) const CV_OVERRIDE
     {
         count();
@@ -272,7 +275,7 @@ private:
     const bool unites_, links_;
     const int order_, rule_, throwAt_;
     const bool throwsException_;
-    mutable int calls_ = 0;
+    mutable std::atomic<int> calls_{ 0 };
 };
 
 //////////////////////////////////////////////// files /////////////////////////////////////////////////

@@ -30,6 +30,9 @@ public:
         std::stable_sort(edges.begin(), edges.end(), [weight](int a, int b) { return weight[a] < weight[b]; });
     }
     //! [rule1]
+    //! [order]
+    bool ordersByWeight() const CV_OVERRIDE { return true; }
+    //! [order]
 
     //! [rule2]
     bool mayJoin(int weight, const stereo::TreeState&, const stereo::TreeState&) const CV_OVERRIDE

@@ -8,15 +8,6 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
-namespace {
-
-bool ordersByWeight(const TreeStrategy& strategy)
-{
-    return dynamic_cast<const MinimumSpanningTree*>(&strategy) || dynamic_cast<const SegmentTree*>(&strategy);
-}
-
-} // namespace
-
 void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link,
                  ForestBuffers& buffers, DisparityForest& forest)
 {
@@ -26,7 +17,7 @@ void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& str
     forest.links.setTo(Scalar::all(0));
     buffers.trees.nodes.resize(image.total());
     const bool links = link && strategy.linksTrees();
-    if (ordersByWeight(strategy))
+    if (strategy.ordersByWeight())
         joinByWeight(strategy, forest.weights, pixelIntv, beta, links, buffers.trees, buffers.stripes, forest.links);
     else
         joinInOrder(strategy, forest.weights, pixelIntv, beta, links, buffers.trees, buffers.edges, forest.links);

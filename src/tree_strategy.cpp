@@ -4,39 +4,13 @@
 #include "precomp.hpp"
 #include "tree_strategy.hpp"
 
+#include "forest_edges.hpp"
+
 #include <cmath>
 
 namespace cv {
 namespace stereo {
 namespace hdp {
-
-void sortByWeight(const Mat& weights, std::vector<int>& edges)
-{
-    const uchar* weight = weights.ptr();
-    const int stripes = 8;
-    const size_t stripe = (edges.size() + stripes - 1) / stripes;
-    size_t places[stripes][256] = { { 0 } }; // first numbers of edges, then where the next one goes
-    parallel_for_(Range(0, stripes), [&](const Range& range) {
-        for (int s = range.start; s < range.end; ++s)
-            for (size_t i = stripe * s; i < std::min(stripe * (s + 1), edges.size()); ++i)
-                ++places[s][weight[edges[i]]];
-    });
-    size_t place = 0;
-    for (int w = 0; w < 256; ++w)
-        for (int s = 0; s < stripes; ++s)
-        {
-            const size_t count = places[s][w];
-            places[s][w] = place;
-            place += count;
-        }
-    std::vector<int> sorted(edges.size());
-    parallel_for_(Range(0, stripes), [&](const Range& range) {
-        for (int s = range.start; s < range.end; ++s)
-            for (size_t i = stripe * s; i < std::min(stripe * (s + 1), edges.size()); ++i)
-                sorted[places[s][weight[edges[i]]]++] = edges[i];
-    });
-    edges.swap(sorted);
-}
 
 namespace {
 
@@ -94,6 +68,13 @@ Ptr<TreeStrategy> createTreeStrategy(const String& name)
 }
 
 } // namespace hdp
+
+void TreeStrategy::orderEdges(const Mat& weights, std::vector<int>& edges) const
+{
+    hdp::SortedEdges sorted;
+    hdp::sortByWeight(weights, edges, sorted);
+    edges.swap(sorted.edges);
+}
 
 Ptr<TreeStrategy> createMinimumSpanningTree() { return makePtr<hdp::MinimumSpanningTree>(); }
 

@@ -12,23 +12,22 @@ namespace hdp {
 
 // The strategies of the library, final, so that the forest calls their Rule 2 without dispatch.
 
-//! Rule 1 of trees that prefer light edges: a stable counting sort by weight.
-CV_EXPORTS void sortByWeight(const Mat& weights, std::vector<int>& edges);
-
 class MinimumSpanningTree CV_FINAL : public TreeStrategy
 {
 public:
-    void orderEdges(const Mat& weights, std::vector<int>& edges) const CV_OVERRIDE { sortByWeight(weights, edges); }
+    bool ordersByWeight() const CV_OVERRIDE { return true; }
     bool mayJoin(int, const TreeState&, const TreeState&) const CV_OVERRIDE { return true; }
     String getDefaultName() const CV_OVERRIDE { return "hdpstereo_MinimumSpanningTree"; }
 };
 
+//! As in the authors' program, which has the first pass of the segment tree alone, with k = 1200 and without uniting
+//! intervals, and a second pass, see linksTrees(), only without prediction. The paper just cites the segment tree.
 class SegmentTree CV_FINAL : public TreeStrategy
 {
 public:
     explicit SegmentTree(double k = 1200);
 
-    void orderEdges(const Mat& weights, std::vector<int>& edges) const CV_OVERRIDE { sortByWeight(weights, edges); }
+    bool ordersByWeight() const CV_OVERRIDE { return true; }
     bool mayJoin(int weight, const TreeState& a, const TreeState& b) const CV_OVERRIDE
     {
         return weight <= a.maxWeight + k_ / a.size && weight <= b.maxWeight + k_ / b.size;
@@ -42,6 +41,7 @@ private:
     double k_;
 };
 
+//! The authors' program shuffles by std::random_shuffle, whose order depends on the machine.
 class RandomTree CV_FINAL : public TreeStrategy
 {
 public:

@@ -86,6 +86,17 @@ inline Mat readSample(const std::string& name, int flags)
     return image;
 }
 
+//! Sets the number of threads for a while.
+class ScopedThreads
+{
+public:
+    explicit ScopedThreads(int threads) : before_(cv::getNumThreads()) { cv::setNumThreads(threads); }
+    ~ScopedThreads() { cv::setNumThreads(before_); }
+
+private:
+    int before_;
+};
+
 //! A name for a file that is removed in the end
 class TemporaryFile
 {

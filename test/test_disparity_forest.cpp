@@ -99,11 +99,23 @@ public:
     }
 };
 
+//! The same Rule 2, light edges first
+class OrderedSegments : public UnorderedSegments
+{
+public:
+    void orderEdges(const Mat& weights, std::vector<int>& edges) const CV_OVERRIDE
+    {
+        TreeStrategy::orderEdges(weights, edges);
+    }
+    bool ordersByWeight() const CV_OVERRIDE { return true; }
+};
+
 std::vector<Ptr<TreeStrategy>> allStrategies()
 {
-    return std::vector<Ptr<TreeStrategy>>{ createMinimumSpanningTree(), createSegmentTree(), createSegmentTree(40),
-                                           createSegmentTree(0),        createRandomTree(),  createRandomTree(7),
-                                           makePtr<UnorderedSegments>() };
+    return std::vector<Ptr<TreeStrategy>>{ createMinimumSpanningTree(),  createSegmentTree(),
+                                           createSegmentTree(40),        createSegmentTree(0),
+                                           createRandomTree(),           createRandomTree(7),
+                                           makePtr<UnorderedSegments>(), makePtr<OrderedSegments>() };
 }
 
 const Size testSizes[] = { Size(1, 1), Size(1, 9), Size(9, 1), Size(2, 2), Size(17, 13), Size(48, 40) };
@@ -143,17 +155,6 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_over_the_full_range)
             }
 }
 
-//! Lends a number of threads.
-class ScopedThreads
-{
-public:
-    explicit ScopedThreads(int threads) : before_(getNumThreads()) { setNumThreads(threads); }
-    ~ScopedThreads() { setNumThreads(before_); }
-
-private:
-    int before_;
-};
-
 //! Trees grow across stripes, whose number depends on that of threads, and edges are rejected inside areas of equal
 //! intervals, as the trees on both sides have united theirs with different ones.
 TEST(HDPStereo_DisparityForest, plain_kruskal_in_any_number_of_stripes)
@@ -161,7 +162,9 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_in_any_number_of_stripes)
     RNG rng(18);
     hdp::ForestBuffers buffers;
     DisparityForest forest;
-    const Ptr<TreeStrategy> strategies[] = { createMinimumSpanningTree(), createSegmentTree(40) };
+    const Ptr<TreeStrategy> minimum = createMinimumSpanningTree(), segments = createSegmentTree(40);
+    const Ptr<TreeStrategy> own = makePtr<OrderedSegments>();
+    const Ptr<TreeStrategy> strategies[] = { minimum, minimum, own, minimum, segments };
     for (int threads = 1; threads <= 5; ++threads)
     {
         ScopedThreads scope(threads);
@@ -180,9 +183,10 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_in_any_number_of_stripes)
                     const int last = isEmpty ? 0 : first + length - 1 + rng.uniform(0, 3);
                     pixelIntv(Rect(x, y, side, side) & Rect(Point(), size)).setTo(Scalar(first, last));
                 }
-            const bool isSegments = i % 5 == 4; // linked without prediction only, when all intervals are equal
-            testForest(image, pixelIntv, *strategies[isSegments], rng.uniform(0., 1.), !isSegments && i % 7 == 0,
-                       buffers, forest);
+            const Ptr<TreeStrategy>& strategy = strategies[i % 5];
+            // Segments are linked without prediction only, when all intervals are equal.
+            const bool link = strategy != segments && i % 7 == 0;
+            testForest(image, pixelIntv, *strategy, rng.uniform(0., 1.), link, buffers, forest);
             if (HasFatalFailure())
                 return;
         }

@@ -6,6 +6,7 @@
 #include "systems.hpp"
 #include "synthetic_pair.hpp"
 
+#include <atomic>
 #include <thread>
 
 namespace opencv_test {
@@ -168,7 +169,12 @@ public:
         NONE
     };
     //! calls: of this method that do not throw; kind: of what is thrown, 0..2
-    ThrowingTree(Method method, int calls, int kind) : method_(method), left_(calls), kind_(kind) {}
+    ThrowingTree(bool byWeight, Method method, int calls, int kind)
+        : byWeight_(byWeight), method_(method), left_(calls), kind_(kind)
+    {
+    }
+
+    bool ordersByWeight() const CV_OVERRIDE { return byWeight_; } // if so, mayJoin() is called in several threads
 
     void orderEdges(const Mat& weights, std::vector<int>& edges) const CV_OVERRIDE
     {
@@ -209,8 +215,9 @@ private:
         throw OutOfTrees();
     }
 
+    const bool byWeight_;
     const Method method_;
-    mutable int left_;
+    mutable std::atomic<int> left_;
     const int kind_;
 };
 
@@ -228,15 +235,15 @@ template <typename Action> bool throwsAnything(const Action& action)
 }
 
 //! A matcher whose strategy threw says that it has no pair, and is as good as new.
-void expectUsableAfterThrowing(int i, ThrowingTree::Method method, int calls, int kind)
+void expectUsableAfterThrowing(int i, bool byWeight, ThrowingTree::Method method, int calls, int kind)
 {
     const SyntheticPair &pair = testPairs()[1], &before = testPairs()[0];
     const Ptr<HDPTreeMatcher> matcher = createMatcher(i);
-    const Ptr<TreeStrategy> harmless = makePtr<ThrowingTree>(ThrowingTree::NONE, 0, 0);
+    const Ptr<TreeStrategy> harmless = makePtr<ThrowingTree>(byWeight, ThrowingTree::NONE, 0, 0);
     matcher->setTreeStrategy(harmless);
     computeAll(*matcher, before); // something to be left over
 
-    matcher->setTreeStrategy(makePtr<ThrowingTree>(method, calls, kind));
+    matcher->setTreeStrategy(makePtr<ThrowingTree>(byWeight, method, calls, kind));
     Mat disparity;
     const bool isThrown = throwsAnything([&] { matcher->compute(pair.left, pair.right, disparity); });
     if (isThrown)
@@ -254,7 +261,7 @@ void expectUsableAfterThrowing(int i, ThrowingTree::Method method, int calls, in
     expectEqual(computeAll(*fresh, pair), computeAll(*matcher, pair));
     // Not every layer asks every method, but the first call of the rules is always made.
     EXPECT_TRUE(isThrown || calls > 0 || method == ThrowingTree::UNITES_INTERVALS ||
-                method == ThrowingTree::LINKS_TREES);
+                method == ThrowingTree::LINKS_TREES || (byWeight && method == ThrowingTree::ORDER_EDGES));
 }
 
 TEST(HDPStereo_Threads, strategy_that_throws)
@@ -263,11 +270,12 @@ TEST(HDPStereo_Threads, strategy_that_throws)
         for (ThrowingTree::Method method : { ThrowingTree::ORDER_EDGES, ThrowingTree::MAY_JOIN,
                                              ThrowingTree::UNITES_INTERVALS, ThrowingTree::LINKS_TREES })
             for (int calls : { 0, 1, 500 })
-            {
-                SCOPED_TRACE(testing::Message()
-                             << "matcher " << i << ", method " << (int)method << " after " << calls << " calls");
-                expectUsableAfterThrowing(i, method, calls, (i + calls) % 3);
-            }
+                for (bool byWeight : { false, true })
+                {
+                    SCOPED_TRACE(testing::Message() << "matcher " << i << ", method " << (int)method << " after "
+                                                    << calls << " calls, by weight " << byWeight);
+                    expectUsableAfterThrowing(i, byWeight, method, calls, (i + calls) % 3);
+                }
 }
 
 TEST(HDPStereo_Threads, strategies_that_throw_in_eight_threads)
@@ -277,7 +285,8 @@ TEST(HDPStereo_Threads, strategies_that_throw_in_eight_threads)
         for (int repetition = 0; repetition < 10; ++repetition)
         {
             const ThrowingTree::Method method = repetition % 2 ? ThrowingTree::ORDER_EDGES : ThrowingTree::MAY_JOIN;
-            expectUsableAfterThrowing(i, method, repetition % 2 ? 0 : 100 * repetition, i % 3);
+            const bool byWeight = repetition % 4 == 0;
+            expectUsableAfterThrowing(i, byWeight, method, repetition % 2 ? 0 : 100 * repetition, i % 3);
         }
     });
 }
@@ -291,7 +300,7 @@ TEST(HDPStereo_Threads, strategy_that_throws_in_a_file)
         const Ptr<HDPTreeMatcher> matcher = createMatcher(i);
         const std::string library = serialized(*matcher);
         const Result expected = computeAll(*matcher, pair);
-        matcher->setTreeStrategy(makePtr<ThrowingTree>(ThrowingTree::NAME, 0, i % 3));
+        matcher->setTreeStrategy(makePtr<ThrowingTree>(false, ThrowingTree::NAME, 0, i % 3));
         EXPECT_TRUE(throwsAnything([&] { serialized(*matcher); }));
         deserialize(library, *matcher); // does not need to know what the strategy before is called
         EXPECT_EQ(library, serialized(*matcher));

@@ -6,6 +6,8 @@
 #include "oracles.hpp"
 #include "synthetic_pair.hpp"
 
+#include <atomic>
+
 namespace opencv_test {
 namespace {
 
@@ -32,12 +34,14 @@ TEST(HDPStereo_TreeStrategy, light_edges_first_then_in_the_order_given)
     std::stable_sort(expected.begin(), expected.end(), [weight](int a, int b) { return weight[a] < weight[b]; });
     for (const Ptr<TreeStrategy>& strategy : { createMinimumSpanningTree(), createSegmentTree() })
     {
+        EXPECT_TRUE(strategy->ordersByWeight());
         std::vector<int> edges = given, none;
         strategy->orderEdges(weights, edges);
         EXPECT_EQ(expected, edges) << strategy->getDefaultName();
         strategy->orderEdges(weights, none);
         EXPECT_TRUE(none.empty());
     }
+    EXPECT_FALSE(createRandomTree()->ordersByWeight());
 }
 
 TEST(HDPStereo_TreeStrategy, random_order_depends_on_the_seed_alone)
@@ -132,6 +136,18 @@ public:
     bool unitesIntervals() const CV_OVERRIDE { return false; }
 };
 
+//! Says that light edges come first, and is not asked for their order then.
+template <class Tree> class ByWeight : public Tree
+{
+public:
+    using Tree::Tree;
+    bool ordersByWeight() const CV_OVERRIDE { return true; }
+    void orderEdges(const Mat&, std::vector<int>&) const CV_OVERRIDE
+    {
+        CV_Error(Error::StsError, "orderEdges was called");
+    }
+};
+
 //! Horizontal edges first, then the vertical ones
 class RowTree : public TreeStrategy
 {
@@ -176,6 +192,12 @@ TEST(HDPStereo_UserTreeStrategy, equal_rules_give_the_library_s_maps)
         ASSERT_GT(countDifferent(mst, st), 0);
         expectIdentical(mst, matchWith(makePtr<OwnMinimumSpanningTree>(), usePrediction));
         expectIdentical(st, matchWith(makePtr<OwnSegmentTree>(), usePrediction));
+        for (int threads : { 1, 2, 4 })
+        {
+            const ScopedThreads scope(threads);
+            expectIdentical(mst, matchWith(makePtr<ByWeight<OwnMinimumSpanningTree>>(), usePrediction));
+            expectIdentical(st, matchWith(makePtr<ByWeight<OwnSegmentTree>>(), usePrediction));
+        }
     }
 }
 
@@ -199,7 +221,8 @@ TEST(HDPStereo_UserTreeStrategy, without_any_tree_each_pixel_takes_its_own_best)
     const Mat disparity = match(*matcher, left, right);
 
     const hdp::ColorGradientParams params = { 10, 2, 0.11f, 1 };
-    const Mat_<double> costs = oracle::costTable(oracle::ColorGradientCost(left, right, params), left.size(), disparities);
+    const Mat_<double> costs =
+        oracle::costTable(oracle::ColorGradientCost(left, right, params), left.size(), disparities);
     for (int p = 0; p < costs.rows; ++p)
     {
         const int d = disparity.at<short>(p / disparity.cols, p % disparity.cols) / 16;
@@ -230,7 +253,7 @@ private:
         if (calls_-- == 0)
             CV_Error(Error::StsError, "out of trees");
     }
-    mutable int calls_;
+    mutable std::atomic<int> calls_;
 };
 
 //! Leaves something else than a permutation.
@@ -270,6 +293,8 @@ TEST(HDPStereo_UserTreeStrategy, what_it_throws_leaves_the_matcher_usable)
     {
         SCOPED_TRACE(calls);
         expectUsableAfter([calls] { return makePtr<ThrowingTree>(calls); }, "out of trees");
+        const ScopedThreads scope(4);
+        expectUsableAfter([calls] { return makePtr<ByWeight<ThrowingTree>>(calls); }, "out of trees");
     }
 }
 

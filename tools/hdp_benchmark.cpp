@@ -25,7 +25,8 @@ using namespace hdp_tools;
 static const String KEYS =
     "{help h ?        |     | print this and exit }" + String(PAIR_KEYS) +
     "{methods         | presets,opencv | what to compare: ultrafast, fast, quality, tree, paper, bm, sgbm, sgbm-3way, "
-    "sgbm-hh4, ..., or these groups, separated by commas }"
+    "sgbm-hh4, ..., or groups: presets, systems, opencv, custom (tree with a custom strategy, in parallel and in "
+    "order), separated by commas }"
     "{resize          |     | WIDTHxHEIGHT to resize the pair to; the truth's disparities scale with the width }"
     "{threads         |     | number of threads; all processors if not given }"
     "{runs            | 7   | timed runs of each method, after one that is not timed }"

@@ -72,6 +72,32 @@ static Method systemMethod(const String& prefix, const String& tree, const Ptr<D
     return method;
 }
 
+//! The minimum spanning tree a second time, outside of the library
+class CustomTree : public cv::stereo::TreeStrategy
+{
+public:
+    explicit CustomTree(bool byWeight) : byWeight_(byWeight) {}
+    bool ordersByWeight() const override { return byWeight_; }
+    bool mayJoin(int, const cv::stereo::TreeState&, const cv::stereo::TreeState&) const override { return true; }
+
+private:
+    const bool byWeight_;
+};
+
+//! PRESET_TREE with a custom strategy, which gives the same map
+static Method customMethod(const String& name, bool byWeight)
+{
+    Method method = presetMethod("tree");
+    const std::function<Ptr<cv::StereoMatcher>(cv::Range)> create = method.create;
+    method.name = name;
+    method.create = [=](cv::Range disparities) {
+        const Ptr<cv::StereoMatcher> matcher = create(disparities);
+        matcher.dynamicCast<HDPTreeMatcher>()->setTreeStrategy(cv::makePtr<CustomTree>(byWeight));
+        return matcher;
+    };
+    return method;
+}
+
 //! 15 x 15 pixels; checks texture and uniqueness, as it does by default.
 static Method blockMatchingMethod()
 {
@@ -101,7 +127,7 @@ struct Group
 
 static std::vector<Group> allMethods(const Ptr<DisparityPredictionModel>& model)
 {
-    std::vector<Group> groups = { { "systems", {} }, { "presets", {} }, { "opencv", {} } };
+    std::vector<Group> groups = { { "systems", {} }, { "presets", {} }, { "opencv", {} }, { "custom", {} } };
     for (const char* tree : { "mst", "st", "rt" })
         for (const char* prefix : { "hdp+", "", "m+" })
             groups[0].methods.push_back(systemMethod(prefix, tree, model));
@@ -111,6 +137,7 @@ static std::vector<Group> allMethods(const Ptr<DisparityPredictionModel>& model)
     groups[2].methods = { blockMatchingMethod(), sgbmMethod("sgbm", cv::StereoSGBM::MODE_SGBM),
                           sgbmMethod(REFERENCE_METHOD, cv::StereoSGBM::MODE_SGBM_3WAY),
                           sgbmMethod("sgbm-hh4", cv::StereoSGBM::MODE_HH4) };
+    groups[3].methods = { customMethod("tree-by-weight", true), customMethod("tree-in-order", false) };
     return groups;
 }
 

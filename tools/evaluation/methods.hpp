@@ -42,6 +42,8 @@ int presetOf(const String& name);
 - the group presets: ultrafast, fast, quality, tree, paper
 - the group systems, the rows of the paper's tables: paper (HDP+MST), mst, m+mst, hdp+st, st, m+st, hdp+rt, rt, m+rt
 - the group opencv: bm, sgbm, sgbm-3way, sgbm-hh4
+- the group custom, the preset tree with a custom strategy that gives the same map: tree-by-weight, which says so, see
+  cv::stereo::TreeStrategy::ordersByWeight(), and tree-in-order, which does not and is slower
 
 @param option The name of the option, for messages.
 @param model Of the paper's systems; empty for the published ones.

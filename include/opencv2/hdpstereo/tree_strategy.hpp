@@ -62,12 +62,22 @@ public:
     to its right and of the last row below belong to no edge.
     @param edges The edges that DT-Rule 1 left, by number; without prediction all edges of the image. To be brought into
     the order in which they are tried. compute() throws cv::Exception if one is added, removed or repeated.
+
+    The default is ascending weight, equal weights by number, see ordersByWeight().
      */
-    virtual void orderEdges(const Mat& weights, std::vector<int>& edges) const = 0;
+    virtual void orderEdges(const Mat& weights, std::vector<int>& edges) const;
+
+    /** @brief Whether Rule 1 is to try edges by ascending weight, equal weights by number (false by default).
+
+    If true, orderEdges() is not called: the matcher orders the edges itself, and joins trees in several parts of the
+    image in parallel. The trees are the same as with orderEdges() in that order. mayJoin() is called from several
+    threads at the same time then.
+     */
+    virtual bool ordersByWeight() const { return false; }
 
     /** @brief Rule 2: may this edge join these two trees?
 
-    Called only for ends that are in different trees, from one thread.
+    Called only for ends that are in different trees; from one thread, unless ordersByWeight().
     @param weight The edge's weight, 0..255.
     @param a, b The trees at the edge's two ends, before they are joined.
     @return Whether Rule 2 allows it. DT-Rule 2 may still forbid it.
