@@ -15,31 +15,58 @@ namespace {
 // The surface beyond a discontinuity is looked for in the pixels of the upper layer up to this far away.
 const int neighborhood = 3;
 
-void dispatchRow(const ushort* own, const ushort* least, const ushort* most, int width, int numDisparities,
-                 ushort* windows)
+void dispatchRow(const DisparityRow& filtered, const DisparityRow& unfiltered, const ushort* matches, int width,
+                 int numDisparities, ushort* windows)
 {
-    CV_CPU_DISPATCH(predictRow, (own, least, most, width, numDisparities, windows), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(predictRow, (filtered, unfiltered, matches, width, numDisparities, windows),
+                    CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! The match in the square of each pixel of a row of the layer above
+void spreadMatches(const Mat& matches, int upperRow, std::vector<ushort>& row)
+{
+    const int spacing = SparseMatches::spacing / 2;
+    const ushort* match = matches.ptr<ushort>(std::min(upperRow / spacing, matches.rows - 1));
+    for (int x = 0; x < (int)row.size(); ++x)
+        row[x] = match[std::min(x / spacing, matches.cols - 1)];
 }
 
 } // namespace
 
-void predictWindows(const Mat& upper, int numDisparities, Mat& smallest, Mat& largest, Mat& windows)
+void predictWindows(const WindowPrediction& prediction, int numDisparities, WindowBuffers& buffers, Mat& windows)
 {
+    const Mat maps[2] = { prediction.upper, prediction.unfiltered };
+    const Mat& upper = prediction.upper;
     const int stripes = std::max(1, std::min(16, upper.rows / 16));
-    smallest.create(upper.size(), CV_16U);
-    largest.create(upper.size(), CV_16U);
+    for (int i = 0; i < 2; ++i)
+    {
+        buffers.smallest[i].create(upper.size(), CV_16U);
+        buffers.largest[i].create(upper.size(), CV_16U);
+    }
     windows.create(upper.size(), CV_16UC4);
     const Mat kernel = Mat::ones(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U);
     parallel_for_(Range(0, stripes), [&](const Range& range) {
+        std::vector<ushort> matches(upper.cols);
         for (int i = range.start; i < range.end; ++i)
         {
             const Range rows(upper.rows * i / stripes, upper.rows * (i + 1) / stripes);
-            Mat minima = smallest.rowRange(rows), maxima = largest.rowRange(rows);
-            erode(upper.rowRange(rows), minima, kernel); // a stripe sees its neighbours' rows
-            dilate(upper.rowRange(rows), maxima, kernel);
+            for (int map = 0; map < 2; ++map)
+            {
+                Mat minima = buffers.smallest[map].rowRange(rows), maxima = buffers.largest[map].rowRange(rows);
+                erode(maps[map].rowRange(rows), minima, kernel); // a stripe sees its neighbours' rows
+                dilate(maps[map].rowRange(rows), maxima, kernel);
+            }
+            const auto rowOf = [&](int map, int y) {
+                const DisparityRow row = { maps[map].ptr<ushort>(y), buffers.smallest[map].ptr<ushort>(y),
+                                           buffers.largest[map].ptr<ushort>(y) };
+                return row;
+            };
             for (int y = rows.start; y < rows.end; ++y)
-                dispatchRow(upper.ptr<ushort>(y), smallest.ptr<ushort>(y), largest.ptr<ushort>(y), upper.cols,
-                            numDisparities, windows.ptr<ushort>(y));
+            {
+                spreadMatches(prediction.matches, y, matches);
+                dispatchRow(rowOf(0, y), rowOf(1, y), matches.data(), upper.cols, numDisparities,
+                            windows.ptr<ushort>(y));
+            }
         }
     });
 }

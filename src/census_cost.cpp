@@ -69,6 +69,7 @@ void CensusCost::prepareImage(const Mat& image, int radius, bool isRight, int af
             for (int plane = 0; plane <= planes; ++plane)
             {
                 uchar* row = right_.ptr(plane * rows + y) + censusMargin;
+                std::fill(row - censusMargin, row, row[0]);
                 std::fill(row + width, right_.ptr(plane * rows + y) + right_.cols, row[width - 1]);
             }
         }

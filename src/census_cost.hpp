@@ -44,7 +44,8 @@ public:
     //! There are 16 more pixels to read before and behind the row.
     const uchar* leftPixels(int y) const { return planes_.left + y * planes_.leftStep; }
     //! A row of the right image's census, or of its grey levels for plane = planes(): candidate d of pixel x is at
-    //! [width - 1 - x + d]. There are 16 more bytes to read before the row and 48 behind the last candidate.
+    //! [width - 1 - x + d]. There are 16 more bytes to read before the row, of the last column, and 48
+    //! behind the last candidate.
     const uchar* rightPlane(int plane, int y) const
     {
         return planes_.right + plane * planes_.rightPlane + y * planes_.rightStep;

@@ -69,7 +69,7 @@ void predictIntervals(const DisparityPredictionModel& model, int layer, const st
 
 void upperHistogram(const Mat& upper, int numDisparities, std::vector<double>& histogram)
 {
-    std::vector<double> pixels((numDisparities + 1) / 2);
+    std::vector<double> pixels(numDisparities / 2 + 1); // of the layer above
     for (int y = 0; y < upper.rows; ++y)
         for (int x = 0; x < upper.cols; ++x)
             ++pixels[wholeDisparity(upper.at<ushort>(y, x))];

@@ -52,6 +52,23 @@ void checkLeftRight(const Mat& disparity, int maxDiff, int invalid, const Visit&
     });
 }
 
+//! Whether enough pixels around this one have its disparity
+bool isInStructure(const Mat& disparity, int y, int x)
+{
+    const int radius = ThinStructures::window / 2, maxDifference = ThinStructures::maxDifference * subpixelScale;
+    const Range rows(std::max(y - radius, 0), std::min(y + radius + 1, disparity.rows));
+    const Range columns(std::max(x - radius, 0), std::min(x + radius + 1, disparity.cols));
+    const int own = disparity.at<ushort>(y, x);
+    int count = 0;
+    for (int v = rows.start; v < rows.end; ++v)
+    {
+        const ushort* row = disparity.ptr<ushort>(v);
+        for (int u = columns.start; u < columns.end; ++u)
+            count += std::abs(row[u] - own) <= maxDifference;
+    }
+    return 100 * count >= ThinStructures::minShare * rows.size() * columns.size();
+}
+
 } // namespace
 
 void medianDisparity(const Mat& disparity, int size, Mat& filtered)
@@ -69,6 +86,21 @@ void medianDisparity(const Mat& disparity, int size, Mat& filtered)
             for (int i = 0; i < size; ++i)
                 rows[i] = disparity.ptr<ushort>(std::min(std::max(y + i - radius, 0), disparity.rows - 1));
             dispatchMedian(rows.data(), size, width, sorted.data(), filtered.ptr<ushort>(y));
+        }
+    });
+}
+
+void restoreThinStructures(const Mat& unfiltered, Mat& disparity)
+{
+    const int minDistance = ThinStructures::minDistance * subpixelScale;
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const ushort* before = unfiltered.ptr<ushort>(y);
+            ushort* row = disparity.ptr<ushort>(y);
+            for (int x = 0; x < disparity.cols; ++x)
+                if (before[x] - row[x] >= minDistance && isInStructure(unfiltered, y, x))
+                    row[x] = before[x];
         }
     });
 }

@@ -14,18 +14,37 @@ namespace hdp {
 //! not share the work on a column of the window. disparity: CV_16UC1; filtered: another Mat.
 CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& filtered);
 
+//! The constants of restoreThinStructures()
+struct ThinStructures
+{
+    enum
+    {
+        window = 7,       // side of the square, in pixels
+        minShare = 30,    // percent of its pixels that are of the structure
+        minDistance = 5,  // in front of what the median left, in pixels
+        maxDifference = 1 // inside the structure, in pixels
+    };
+};
+
+/** Gives back what the median removed although it is more than noise: a pixel takes its disparity from before the median
+if this is nearer by minDistance, and if minShare of the pixels in the window around it, as far as that is inside the
+image, had the same disparity but for maxDifference.
+@param unfiltered The map before the median, CV_16UC1.
+@param disparity The map after the median. */
+CV_EXPORTS void restoreThinStructures(const Mat& unfiltered, Mat& disparity);
+
 //! Memory for a row of fillOccluded()
 struct OcclusionScratch
 {
     explicit OcclusionScratch(int width)
-        : columns(width), keys(width), there((size_t)width + 1), visible(width), atBorder(width)
+        : columns(width), keys(width), there((size_t)width + 1), visible(width), shown(width)
     {
     }
 
-    std::vector<int> columns;             // of the right image that each pixel maps to, from 1 on; 0: none
-    std::vector<unsigned> keys;           // of each pixel, by which the lowest wins its column: residual and disparity
-    std::vector<unsigned> there;          // the key that won each column
-    std::vector<uchar> visible, atBorder; // which pixels the right image shows, and in its first columns
+    std::vector<int> columns;          // of the right image that each pixel maps to, from 1 on; 0: none
+    std::vector<unsigned> keys;        // of each pixel, by which the lowest wins its column: residual and disparity
+    std::vector<unsigned> there;       // the key that won each column
+    std::vector<uchar> visible, shown; // which pixels the right image shows, and in its first columns
 };
 
 /** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the

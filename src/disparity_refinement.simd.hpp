@@ -50,22 +50,32 @@ inline int findByte(const uchar* bytes, int begin, int end, uchar value)
     return found ? (int)((const uchar*)found - bytes) : end;
 }
 
-//! The last of the pixels at the border of the right image with which a visible surface begins: what is on its left is
-//! not in the right image.
+//! Where the part of the row begins that the right image shows: at the last visible surface that begins at the border of
+//! the right image. One that begins farther inside counts, too, if hardly a pixel before it is visible.
 int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width)
 {
-    const int surface = 4; // columns, at least
+    const int surface = 4, near = 2; // columns, at least and at most
+    const int hidden = 7;            // pixels before it per visible one, at least
     const uchar* visible = scratch.visible.data();
-    int border = 0;
-    for (int x = findByte(scratch.atBorder.data(), 0, width, 1); x < width;
-         x = findByte(scratch.atBorder.data(), x + 1, width, 1))
+    const int* columns = scratch.columns.data();
+    int border = 0, visibleBefore = 0;
+    for (int begin = findByte(visible, 0, width, 1); begin < width;)
     {
-        int end = x + 1;
-        while (end < std::min(x + surface, width) && visible[end] &&
-               std::abs(disparity[end] - disparity[end - 1]) <= subpixelScale)
-            ++end;
-        if (end == x + surface)
-            border = x;
+        const int runEnd = findByte(visible, begin, width, 0);
+        for (int x = begin; x < runEnd; ++x)
+        {
+            const bool isAtBorder = columns[x] <= 1 + near;
+            if (!isAtBorder && (x > begin || hidden * visibleBefore > x))
+                break;
+            int end = x + 1;
+            while (end < std::min(x + surface, runEnd) &&
+                   std::abs(disparity[end] - disparity[end - 1]) <= subpixelScale)
+                ++end;
+            if (end == x + surface)
+                border = x;
+        }
+        visibleBefore += runEnd - begin;
+        begin = findByte(visible, runEnd, width, 1);
     }
     return border;
 }
@@ -76,7 +86,7 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, Occlus
 {
     unsigned *there = scratch.there.data(), *keys = scratch.keys.data();
     int* columns = scratch.columns.data();
-    uchar *visible = scratch.visible.data(), *atBorder = scratch.atBorder.data();
+    uchar *visible = scratch.visible.data(), *shown = scratch.shown.data();
     std::fill(there, there + width + 1, UINT_MAX);
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
@@ -90,10 +100,8 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, Occlus
     {
         const int difference = (int)(0xffff - (keys[x] & 0xffff)) - disparity[x];
         visible[x] = (uchar)((columns[x] > 0) & (difference <= subpixelScale) & (difference >= -subpixelScale));
-        atBorder[x] = (uchar)(visible[x] & (columns[x] <= 1 + 2));
     }
     std::fill(visible, visible + findBorder(disparity, scratch, width), (uchar)0);
-    uchar* shown = atBorder; // the memory is free
     shown[0] = visible[0];
     shown[width - 1] = visible[width - 1];
     HDP_VECTORIZED for (int x = 1; x < width - 1; ++x) shown[x] = visible[x] & (visible[x - 1] | visible[x + 1]);

@@ -48,7 +48,7 @@ public:
         layers_.resize(settings.layers);
         for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
         {
-            const Mat upper = layer + 1 < settings.layers ? layers_[layer + 1].disparity : Mat();
+            const MatchedLayer* const upper = layer + 1 < settings.layers ? &layers_[layer + 1] : nullptr;
             const LayerInput input = { layer, images[layer], upper, p_, settings };
             matchLayer(input, buffers_, clock_, layers_[layer]);
         }
@@ -152,7 +152,7 @@ public:
         const PairSettings& settings = result_.settings;
         const MatchedLayer& finest = layers_[settings.finestLayer];
         Mat ofLayer, extended;
-        const int disparities = layerDisparities(result_.numDisparities, settings.finestLayer);
+        const int disparities = layerDisparities(result_.numDisparities, settings.finestLayer, settings.subpixel);
         if (finest.isCensus)
             disparityConfidence(finest.disparity, disparities, finest.census, ofLayer);
         else

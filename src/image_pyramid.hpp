@@ -15,8 +15,13 @@ namespace hdp {
 //! Number of layers, at most numLayers, in which an image of this size has at least one pixel.
 CV_EXPORTS int countLayers(Size size, int numLayers);
 
-//! d_l + 1 = floor((numDisparities - 1) / 2^l) + 1: the number of candidates of layer l.
-inline int layerDisparities(int numDisparities, int layer) { return ((numDisparities - 1) >> layer) + 1; }
+//! d_l + 1, the number of candidates of layer l: floor((numDisparities - 1) / 2^l) + 1 for whole disparities (section 2.1).
+//! Sub-pixel disparities keep their fraction from layer to layer, so the largest one needs the next candidate, too.
+inline int layerDisparities(int numDisparities, int layer, bool subpixel)
+{
+    const int64 largest = numDisparities - 1, step = (int64)1 << layer;
+    return (int)((subpixel ? largest + step - 1 : largest) >> layer) + 1;
+}
 
 //! G_{l+1} of G_l: means of 2 x 2 pixels, truncated to 8 bit (CV_8U) or rounded (CV_16U); an odd last row or column is
 //! left out. The authors' program truncates and leaves out, too; the paper rounds sizes up.

@@ -9,6 +9,7 @@
 #include "disparity_refinement.hpp"
 #include "image_pyramid.hpp"
 #include "nonlocal_refinement.hpp"
+#include "sparse_matches.hpp"
 
 namespace cv {
 namespace stereo {
@@ -26,7 +27,18 @@ const double meanGamma = 0.2;
 const int stableMaxDiff = 1;
 const double refinementGamma = 0.25;
 
-int disparitiesOf(const LayerInput& in) { return layerDisparities(in.parameters.numDisparities, in.layer); }
+int disparitiesOf(const LayerInput& in, int layer)
+{
+    return layerDisparities(in.parameters.numDisparities, layer, in.settings.subpixel);
+}
+
+int disparitiesOf(const LayerInput& in) { return disparitiesOf(in, in.layer); }
+
+//! Of the layer's map
+int largestDisparity(const LayerInput& in)
+{
+    return (int)((int64)(in.parameters.numDisparities - 1) * subpixelScale >> in.layer);
+}
 
 void prepareCost(const LayerInput& in, MatchedLayer& matched)
 {
@@ -45,7 +57,8 @@ void estimatePrior(const LayerInput& in, LayerBuffers& buffers, StageClock& cloc
 {
     const int disparities = disparitiesOf(in);
     if (in.parameters.disparityPrior == HDPTreeMatcher::PRIOR_UPPER_LAYER)
-        return clock.run("disparity prediction", [&] { upperHistogram(in.upper, disparities, matched.prior); });
+        return clock.run("disparity prediction",
+                         [&] { upperHistogram(in.upper->disparity, disparities, matched.prior); });
     clock.run("support points", [&] {
         Mat left = in.images.left, right = in.images.right;
         if (left.depth() != CV_8U) // greyLevels()
@@ -70,10 +83,10 @@ void predict(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
         return;
     }
     const PairSettings& settings = in.settings;
-    const int upperDisparities = layerDisparities(in.parameters.numDisparities, in.layer + 1);
+    const int upperDisparities = disparitiesOf(in, in.layer + 1);
     predictIntervals(*settings.model, in.layer, matched.prior, upperDisparities, settings.delta0 * (1 << in.layer),
                      in.parameters.intervalMargin, buffers.intervals);
-    assignIntervals(in.upper, size, buffers.intervals, matched.pixelIntv);
+    assignIntervals(in.upper->disparity, size, buffers.intervals, matched.pixelIntv);
 }
 
 //! Section 3.2. The median is that of the M+ systems; as in the authors' program, the cost does not see it.
@@ -120,6 +133,8 @@ void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clo
         aggregateForest(buffers.forest, matched.cost(), p.gamma, in.settings.subpixel, buffers.aggregation,
                         matched.winner);
     });
+    if (in.settings.subpixel && in.layer > 0) // the last candidate may be beyond the range
+        min(matched.winner, largestDisparity(in), matched.winner);
     if (p.fillOcclusions)
         clock.run("occlusions", [&] {
             matched.census.ofDisparities(matched.winner, matched.residual);
@@ -134,21 +149,26 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
     const MatcherParameters& p = in.parameters;
     const int disparities = disparitiesOf(in);
     matched.searchRatio = std::min<double>(CandidateWindow::candidates, disparities) / disparities;
+    clock.run("disparity prediction",
+              [&] { findSparseMatches(matched.census, in.images.left.size(), disparities, matched.matches); });
     for (int pass = 0; pass < p.scanlinePasses; ++pass)
     {
         if (pass > 0)
             clock.run("disparity median", [&] {
                 medianDisparity(matched.winner, secondPassMedian, matched.filtered);
                 halveDisparity(matched.filtered, matched.lastPass);
+                halveDisparity(matched.winner, matched.lastUnfiltered);
             });
         clock.run("disparity prediction", [&] {
-            const Mat& guess = pass > 0 ? matched.lastPass : in.upper;
-            predictWindows(guess, disparities, matched.smallest, matched.largest, matched.windows);
+            const WindowPrediction prediction = { pass > 0 ? matched.lastPass : in.upper->disparity,
+                                                  pass > 0 ? matched.lastUnfiltered : in.upper->unfiltered,
+                                                  matched.matches };
+            predictWindows(prediction, disparities, matched.windowBuffers, matched.windows);
         });
         clock.run("cost aggregation", [&] {
             const ScanlinePenalties penalties = { p.P1, p.P2, pass == 0 ? 1 : 2 };
-            aggregateScanlines(matched.census, in.images.left.size(), disparities, matched.windows, penalties,
-                               buffers.scanlines, matched.winner, matched.residual);
+            aggregateScanlines(matched.census, in.images.left.size(), disparities, largestDisparity(in),
+                               matched.windows, penalties, buffers.scanlines, matched.winner, matched.residual);
         });
         if (p.fillOcclusions)
             clock.run("occlusions", [&] { fillOccluded(matched.winner, matched.residual); });
@@ -167,12 +187,18 @@ void refine(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 //! From the winners to the layer's disparities. The authors' program has this median; the paper has no such filter.
 void filter(const LayerInput& in, MatchedLayer& matched)
 {
-    swap(matched.winner, matched.disparity);
-    for (int pass = 0; in.settings.medianSize > 0 && pass < in.parameters.disparityMedianPasses; ++pass)
+    swap(matched.winner, matched.unfiltered);
+    const int size = in.settings.medianSize;
+    if (size == 0)
+        return matched.unfiltered.copyTo(matched.disparity);
+    medianDisparity(matched.unfiltered, size, matched.disparity);
+    for (int pass = 1; pass < in.parameters.disparityMedianPasses; ++pass)
     {
-        medianDisparity(matched.disparity, in.settings.medianSize, matched.winner);
-        swap(matched.winner, matched.disparity);
+        swap(matched.disparity, matched.winner);
+        medianDisparity(matched.winner, size, matched.disparity);
     }
+    if (in.isFinest() && in.parameters.aggregation == HDPTreeMatcher::AGGREGATION_SCANLINES)
+        restoreThinStructures(matched.unfiltered, matched.disparity);
 }
 
 } // namespace

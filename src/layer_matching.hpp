@@ -4,6 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 #define OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 
+#include "candidate_windows.hpp"
 #include "census_cost.hpp"
 #include "color_gradient_cost.hpp"
 #include "disparity_forest.hpp"
@@ -19,22 +20,11 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
-//! What the disparities of a layer depend on
-struct LayerInput
-{
-    int layer;
-    const LayerImages& images;
-    const Mat& upper; // the disparities of the layer above; of no use at the top layer
-    const MatcherParameters& parameters;
-    const PairSettings& settings;
-
-    bool isTop() const { return layer == settings.layers - 1; }
-};
-
 //! A layer's result, and memory that is kept for the next pair
 struct MatchedLayer
 {
     Mat disparity;             // CV_16UC1, a disparity map
+    Mat unfiltered;            // the same before the median
     double searchRatio;        // R_l of the paper's Table 1
     std::vector<double> prior; // P(D_l) up to a factor; empty if the layer was not predicted from one
 
@@ -44,8 +34,22 @@ struct MatchedLayer
     const MatchingCost& cost() const { return isCensus ? static_cast<const MatchingCost&>(census) : colorGradient; }
 
     Mat guide, pixelIntv;
-    Mat smallest, largest, windows;
-    Mat winner, residual, filtered, lastPass, stable;
+    WindowBuffers windowBuffers;
+    Mat matches, windows;
+    Mat winner, residual, filtered, lastPass, lastUnfiltered, stable;
+};
+
+//! What the disparities of a layer depend on
+struct LayerInput
+{
+    int layer;
+    const LayerImages& images;
+    const MatchedLayer* upper; // the layer above; none at the top layer
+    const MatcherParameters& parameters;
+    const PairSettings& settings;
+
+    bool isTop() const { return !upper; }
+    bool isFinest() const { return layer == settings.finestLayer; }
 };
 
 //! What the layers of a pair make one after the other in the same memory

@@ -297,7 +297,7 @@ int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities)
     if (maxTopDisparities == 0)
         return numLayers;
     int layers = numLayers;
-    const auto topDisparities = [&](int count) { return layerDisparities(numDisparities, count - 1); };
+    const auto topDisparities = [&](int count) { return layerDisparities(numDisparities, count - 1, false); };
     while (layers > 2 && topDisparities(layers) < leastTopDisparities)
         --layers;
     while (topDisparities(layers) > maxTopDisparities && topDisparities(layers + 1) >= leastTopDisparities)

@@ -45,10 +45,10 @@ void ScanlineScratch::prepare(int width)
     winnerSums.resize(blockColumns);
 }
 
-void aggregateScanlines(const CensusCost& cost, Size size, int numDisparities, const Mat& windows,
+void aggregateScanlines(const CensusCost& cost, Size size, int numDisparities, int largest, const Mat& windows,
                         const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
-    const ScanlineProblem problem = { &cost, size, numDisparities, &windows, penalties };
+    const ScanlineProblem problem = { &cost, size, numDisparities, largest, &windows, penalties };
     const int stripes =
         size.height < stripeHeight / 2 ? 1 : 2 * std::max(1, cvRound(size.height / (2. * stripeHeight)));
     disparity.create(size, CV_16U);

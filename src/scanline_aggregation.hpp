@@ -30,8 +30,15 @@ struct ScanlineProblem
     const CensusCost* cost;
     Size size;
     int numDisparities;
+    int largest; // disparity of a map
     const Mat* windows;
     ScanlinePenalties penalties;
+
+    //! Of a window: others are outside of the range.
+    int validCandidates() const
+    {
+        return std::min(CandidateWindow::candidates + 0, numDisparities + 2 * CandidateWindow::beyondRange);
+    }
 };
 
 /** Memory of a sweep over one stripe. A block is the rows that a sweep does at once, at most maxBlock. */
@@ -86,14 +93,16 @@ above each of them.
 @param cost The layer's census cost.
 @param size Of the layer.
 @param numDisparities Of the layer.
+@param largest The largest disparity that a map of the layer may have. The winner may be beyond the ends of the range; its
+disparity is not.
 @param windows From predictWindows().
 @param penalties The penalties.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
-CV_EXPORTS void aggregateScanlines(const CensusCost& cost, Size size, int numDisparities, const Mat& windows,
-                                   const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity,
-                                   Mat& residual);
+CV_EXPORTS void aggregateScanlines(const CensusCost& cost, Size size, int numDisparities, int largest,
+                                   const Mat& windows, const ScanlinePenalties& penalties, ScanlineBuffers& buffers,
+                                   Mat& disparity, Mat& residual);
 
 } // namespace hdp
 } // namespace stereo

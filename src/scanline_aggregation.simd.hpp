@@ -201,7 +201,7 @@ private:
         const Window* const windows = windows_;
         // An odd last column belongs to the pixel of the layer above that the one before belongs to.
         const int pairs = pairs_, lastWindow = p_.windows->cols - 1;
-        const int lanesUsed = std::min<int>(Window::candidates, p_.numDisparities);
+        const int lanesUsed = p_.validCandidates();
         Column* column = columns_;
         short *firstOfLow = first_[0], *firstOfHigh = first_[1];
         uchar *prior = priors_, *intoRight = intoRight_, *intoLeft = intoLeft_ + Window::candidates,
@@ -420,7 +420,7 @@ private:
     void finishRow(int group, ushort* disparity, uchar* residual) const
     {
         const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers, rounded to the nearest
-        const int last = std::min<int>(Window::candidates, p_.numDisparities) - 1, large = p_.penalties.large;
+        const int last = p_.validCandidates() - 1, large = p_.penalties.large, largest = p_.largest;
         const short *firstOfLow = first_[0], *firstOfHigh = first_[1];
         const uchar *winners = winners_[group], *costs = costs_[group];
         const unsigned* sums = sums_[group];
@@ -437,7 +437,8 @@ private:
             const float slope = (float)std::max(std::max(before, after) - sum, 1);
             const float rise = (float)((before - after) & -isInner);
             const float offset = rise * (subpixelScale / 2) / slope;
-            disparity[x] = (ushort)(whole * subpixelScale + (int)((offset + wholes) - wholes));
+            const int tip = whole * subpixelScale + (int)((offset + wholes) - wholes);
+            disparity[x] = (ushort)std::min(std::max(tip, 0), largest);
         }
         HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - large);
     }

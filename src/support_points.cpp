@@ -120,7 +120,7 @@ void disparityHistogram(const Mat& points, int numDisparities, std::vector<doubl
         for (int x = 0; x < points.cols; ++x)
         {
             const int disparity = points.at<short>(y, x);
-            if (disparity > 0 && disparity < numDisparities)
+            if (disparity >= 0 && disparity < numDisparities)
             {
                 ++histogram[disparity];
                 found = true;

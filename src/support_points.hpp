@@ -59,7 +59,8 @@ struct GradientPair
 CV_EXPORTS void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, SupportPointBuffers& buffers,
                                   Mat& points);
 
-//! P(D_l) (section 3.1) up to a factor: how many points have each disparity, 0 left out. Uniform if there is none.
+//! P(D_l) (section 3.1) up to a factor: how many points have each disparity. Uniform if there is none.
+//! (The authors' program leaves out disparity 0, which is "unknown" there: the smallest one is then never predicted.)
 CV_EXPORTS void disparityHistogram(const Mat& points, int numDisparities, std::vector<double>& histogram);
 
 } // namespace hdp

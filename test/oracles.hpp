@@ -160,6 +160,19 @@ private:
     int radius_;
 };
 
+//! How many of the census's comparisons find a darker pixel, in some pixels of a row
+inline int countDarker(const Mat& image, int radius, int y, const Range& columns)
+{
+    int count = 0;
+    for (int x = columns.start; x < columns.end; ++x)
+        for (int dy = -radius; dy <= radius; ++dy)
+            for (int dx = -radius; dx <= radius; ++dx)
+                if ((dx + dy) % 2 != 0 && image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) <
+                                              image.at<ushort>(y, x))
+                    ++count;
+    return count;
+}
+
 //! ELAS's support points by direct search.
 class SupportPoints
 {
@@ -294,7 +307,7 @@ inline std::vector<double> histogram(const Mat& points, int numDisparities)
 //! P(D_l) from the layer above: the pixels there that have half the disparity, and the mean of these numbers.
 inline std::vector<double> upperHistogram(const Mat& upper, int numDisparities)
 {
-    const int upperDisparities = (numDisparities - 1) / 2 + 1;
+    const int upperDisparities = numDisparities / 2 + 1; // rounded up
     std::vector<double> result;
     for (int d = 0; d < numDisparities; ++d)
     {
@@ -565,16 +578,74 @@ inline Mat median(const Mat& image, int size)
     return result;
 }
 
+//! The map with what the median removed, see restoreThinStructures().
+inline Mat restoreThinStructures(const Mat& unfiltered, const Mat& filtered)
+{
+    Mat result = filtered.clone();
+    for (int y = 0; y < result.rows; ++y)
+        for (int x = 0; x < result.cols; ++x)
+        {
+            const int before = unfiltered.at<ushort>(y, x);
+            int same = 0, all = 0;
+            for (int v = y - 3; v <= y + 3; ++v)
+                for (int u = x - 3; u <= x + 3; ++u)
+                    if (v >= 0 && v < result.rows && u >= 0 && u < result.cols)
+                    {
+                        ++all;
+                        same += std::abs(unfiltered.at<ushort>(v, u) - before) <= 16 ? 1 : 0;
+                    }
+            if (before - filtered.at<ushort>(y, x) >= 5 * 16 && same >= 0.3 * all)
+                result.at<ushort>(y, x) = (ushort)before;
+        }
+    return result;
+}
+
+//! Unique matches of single points by direct search, see findSparseMatches().
+inline Mat findSparseMatches(const Mat& left, const Mat& right, int blockSize, int numDisparities)
+{
+    const CensusCost census(left, right, blockSize);
+    Mat result((left.rows + 23) / 24, (left.cols + 23) / 24, CV_16UC1, Scalar(0xffff));
+    for (int i = 0; i < result.rows; ++i)
+        for (int j = 0; j < result.cols; ++j)
+        {
+            const int x = 24 * j + 12, y = std::min(24 * i + 12, left.rows - 1);
+            if (x + 7 >= left.cols)
+                continue;
+            std::vector<int> costs;
+            for (int d = 0; d < numDisparities && d <= x - 7; ++d)
+            {
+                costs.push_back(0);
+                for (int u = x - 7; u <= x + 7; ++u)
+                    costs[d] = std::min(costs[d] + census(y, u, d), 255);
+            }
+            if (costs.empty() || 4 * countDarker(left, blockSize / 2, y, Range(x - 7, x + 8)) <
+                                     15 * (blockSize * blockSize / 2))
+                continue;
+            const int best = (int)(std::min_element(costs.begin(), costs.end()) - costs.begin());
+            bool isUnique = costs.size() > 1;
+            int rivals = 0;
+            for (int d = 0; d < (int)costs.size(); ++d)
+                if (std::abs(d - best) > 2)
+                {
+                    ++rivals;
+                    isUnique = isUnique && 2 * costs[best] < costs[d];
+                }
+            if (isUnique && rivals > 0)
+                result.at<ushort>(i, j) = (ushort)(16 * best);
+        }
+    return result;
+}
+
 //! Semi-global matching of a layer from the left, the right and above, over the candidates of windows alone: see
 //! aggregateScanlines(). Disparities are in 1/16 pixel.
 class Scanlines
 {
 public:
     //! left, right: grey levels in quarters; windows: CandidateWindow, one for every 2 x 2 pixels.
-    Scanlines(const Mat& left, const Mat& right, int blockSize, int numDisparities, const Mat& windows,
+    Scanlines(const Mat& left, const Mat& right, int blockSize, int numDisparities, int largest, const Mat& windows,
               const hdp::ScanlinePenalties& penalties)
         : left_(left), right_(right), census_(left, right, blockSize), size_(left.size()),
-          numDisparities_(numDisparities), windows_(windows), small_(penalties.small), large_(penalties.large),
+          numDisparities_(numDisparities), largest_(largest), windows_(windows), small_(penalties.small), large_(penalties.large),
           prior_(penalties.prior)
     {
     }
@@ -623,7 +694,7 @@ private:
         std::vector<int> result;
         for (int run = 0; run < 2; ++run)
             for (int i = 0; i < 8; ++i)
-                if (window(p).first[run] + i < numDisparities_)
+                if (window(p).first[run] + i <= numDisparities_) // one beyond the range
                     result.push_back(window(p).first[run] + i);
         return result;
     }
@@ -684,13 +755,13 @@ private:
             if (slope > 0)
                 offset = (sums[i - 1] - sums[i + 1]) / (2 * slope);
         }
-        return (ushort)(16 * d[i] + cvRound(16 * offset));
+        return (ushort)std::min(std::max(16 * d[i] + cvRound(16 * offset), 0), largest_);
     }
 
     Mat left_, right_;
     CensusCost census_;
     Size size_;
-    int numDisparities_;
+    int numDisparities_, largest_;
     Mat windows_;
     int small_, large_, prior_;
 };

@@ -5,6 +5,7 @@
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "../src/candidate_windows.hpp"
+#include "../src/sparse_matches.hpp"
 
 namespace opencv_test {
 namespace {
@@ -29,11 +30,46 @@ Mat patchesAbove(RNG& rng, Size size, int numDisparities, int patch)
     return upper;
 }
 
-Mat predict(const Mat& upper, int numDisparities)
+const int noMatch = hdp::SparseMatches::noMatch;
+
+//! What is known of a layer; without matches of its own
+struct Prediction
 {
-    Mat smallest(3, 3, CV_16UC1), largest, windows(7, 2, CV_16UC4); // buffers of other sizes
-    hdp::predictWindows(upper, numDisparities, smallest, largest, windows);
+    Mat upper, unfiltered, matches;
+
+    explicit Prediction(const Mat& upper_)
+        : upper(upper_), unfiltered(upper_.clone()),
+          matches((2 * upper.rows + 23) / 24, (2 * upper.cols + 23) / 24, CV_16UC1, Scalar(noMatch))
+    {
+    }
+};
+
+Mat predict(const Prediction& prediction, int numDisparities)
+{
+    hdp::WindowBuffers buffers;
+    buffers.smallest[0].create(3, 3, CV_16UC1); // of another size
+    Mat windows(7, 2, CV_16UC4);
+    const hdp::WindowPrediction all = { prediction.upper, prediction.unfiltered, prediction.matches };
+    hdp::predictWindows(all, numDisparities, buffers, windows);
     return windows;
+}
+
+//! Single pixels that the median removed, and matches of the layer itself here and there
+Prediction withThinStructuresAndMatches(RNG& rng, const Prediction& alone, int numDisparities)
+{
+    Prediction result = alone;
+    result.unfiltered = alone.upper.clone();
+    result.matches = alone.matches.clone();
+    const int largest = (numDisparities - 1) * scale;
+    for (int y = 0; y < result.unfiltered.rows; ++y)
+        for (int x = 0; x < result.unfiltered.cols; ++x)
+            if (rng.uniform(0, 30) == 0)
+                result.unfiltered.at<ushort>(y, x) = (ushort)rng.uniform(0, largest / 2 + 1);
+    for (int y = 0; y < result.matches.rows; ++y)
+        for (int x = 0; x < result.matches.cols; ++x)
+            if (rng.uniform(0, 2) == 0)
+                result.matches.at<ushort>(y, x) = (ushort)(scale * rng.uniform(0, numDisparities));
+    return result;
 }
 
 bool contains(const CandidateWindow& window, int disparity)
@@ -46,11 +82,9 @@ bool contains(const CandidateWindow& window, int disparity)
 
 int nearestDisparity(int predicted) { return cvFloor(predicted / (double)scale + 0.5); }
 
-//! The disparity in 7 x 7 pixels that is farthest from that in the middle; of two as far, the larger one. As one of the
-//! layer below, times scale.
-int beyond(const Mat& upper, int y, int x)
+//! The disparity in 7 x 7 pixels that is farthest from another one; of two as far, the larger one
+int farthest(const Mat& upper, int y, int x, int own)
 {
-    const int own = upper.at<ushort>(y, x);
     int result = own;
     for (int v = std::max(y - 3, 0); v <= std::min(y + 3, upper.rows - 1); ++v)
         for (int u = std::max(x - 3, 0); u <= std::min(x + 3, upper.cols - 1); ++u)
@@ -59,25 +93,40 @@ int beyond(const Mat& upper, int y, int x)
             if (farther > 0 || (farther == 0 && other > result))
                 result = other;
         }
-    return 2 * result;
+    return result;
 }
 
-void expectWindows(const Mat& upper, int numDisparities)
+//! The disparity of the layer, times scale, that the second run is there for, or one near the pixel's own
+int otherSurface(const Prediction& prediction, int y, int x)
 {
-    const Mat windows = predict(upper, numDisparities);
+    const int own = 2 * prediction.upper.at<ushort>(y, x);
+    const ushort match = prediction.matches.at<ushort>(y / 12, x / 12);
+    const int sources[] = { 2 * prediction.unfiltered.at<ushort>(y, x), match != noMatch ? match : own,
+                            2 * farthest(prediction.upper, y, x, own / 2),
+                            2 * farthest(prediction.unfiltered, y, x, own / 2) };
+    for (int other : sources)
+        if (std::abs(other - own) >= 5 * scale)
+            return other;
+    return own;
+}
+
+void expectWindows(const Prediction& prediction, int numDisparities)
+{
+    const Mat& upper = prediction.upper;
+    const Mat windows = predict(prediction, numDisparities);
     ASSERT_EQ(upper.size(), windows.size());
     ASSERT_EQ(CV_16UC4, windows.type());
     for (int y = 0; y < upper.rows; ++y)
         for (int x = 0; x < upper.cols; ++x)
         {
             const CandidateWindow& w = windows.ptr<CandidateWindow>(y)[x];
-            const int own = 2 * upper.at<ushort>(y, x), other = beyond(upper, y, x);
+            const int own = 2 * upper.at<ushort>(y, x), other = otherSurface(prediction, y, x);
             SCOPED_TRACE(testing::Message() << "y " << y << " x " << x << ": runs from " << w.first[0] << " and "
                                             << w.first[1] << ", own " << own / 16. << ", beyond " << other / 16.);
             for (int run = 0; run < CandidateWindow::runs; ++run)
             {
-                ASSERT_GE(w.first[run], 0);
-                ASSERT_LE(w.first[run] + 8, std::max(numDisparities, 16));
+                ASSERT_GE(w.first[run], -1);
+                ASSERT_LE(w.first[run] + 8, std::max(numDisparities + 1, 15));
             }
             ASSERT_GE(std::abs(w.first[0] - w.first[1]), 8) << "runs overlap";
             ASSERT_TRUE(contains(w, nearestDisparity(own)));
@@ -86,7 +135,7 @@ void expectWindows(const Mat& upper, int numDisparities)
                 // One run after the other, around the pixel's own disparity but for the ends of the range
                 ASSERT_TRUE(w.isContiguous());
                 const int first = nearestDisparity(own) - 7;
-                ASSERT_EQ(std::max(0, std::min(first, numDisparities - 16)), w.first[0]);
+                ASSERT_EQ(std::max(-1, std::min(first, numDisparities + 1 - 16)), w.first[0]);
                 ASSERT_TRUE(w.predicted[0] == own && w.predicted[1] == own);
                 continue;
             }
@@ -94,7 +143,7 @@ void expectWindows(const Mat& upper, int numDisparities)
             // Candidates on both sides of both surfaces
             for (int surface : { nearestDisparity(own), nearestDisparity(other) })
                 for (int d = surface - 3; d <= surface + 4; ++d)
-                    ASSERT_TRUE(d < 0 || d >= numDisparities || contains(w, d)) << d;
+                    ASSERT_TRUE(d < -1 || d > numDisparities || contains(w, d)) << d;
             if (w.isContiguous() && w.predicted[0] != own)
                 ASSERT_TRUE(w.predicted[0] == other && w.predicted[1] == own && other < own);
             else
@@ -111,7 +160,9 @@ TEST(HDPStereo_CandidateWindows, properties)
             {
                 SCOPED_TRACE(testing::Message()
                              << size << ", " << numDisparities << " disparities, patches of " << patch);
-                expectWindows(patchesAbove(rng, size, numDisparities, patch), numDisparities);
+                const Prediction alone(patchesAbove(rng, size, numDisparities, patch));
+                expectWindows(alone, numDisparities);
+                expectWindows(withThinStructuresAndMatches(rng, alone, numDisparities), numDisparities);
             }
 }
 
@@ -121,7 +172,7 @@ TEST(HDPStereo_CandidateWindows, a_step)
     const int back = 10, front = 30;
     Mat upper(12, 40, CV_16UC1, Scalar(back * scale));
     upper.colRange(20, 40).setTo(front * scale);
-    const Mat windows = predict(upper, 100);
+    const Mat windows = predict(Prediction(upper), 100);
     for (int x = 0; x < upper.cols; ++x)
     {
         const CandidateWindow& w = windows.ptr<CandidateWindow>(5)[x];

@@ -37,6 +37,36 @@ TEST(HDPStereo_DisparityRefinement, median_of_many_rows)
         }
 }
 
+TEST(HDPStereo_DisparityRefinement, thin_structures_by_counting)
+{
+    RNG rng(26);
+    for (const Size& size : { Size(1, 1), Size(3, 9), Size(60, 41) })
+        for (int share : { 3, 8 })
+        {
+            Mat unfiltered(size, CV_16UC1, Scalar(200)), filtered, result;
+            for (ushort& d : Mat_<ushort>(unfiltered))
+                if (rng.uniform(0, share) == 0)
+                    d = (ushort)(250 + rng.uniform(0, 60));
+            for (int x = 0; x < size.width; x += 9)
+                unfiltered.colRange(x, std::min(x + 2, size.width)).setTo(330);
+            hdp::medianDisparity(unfiltered, 7, filtered);
+            filtered.copyTo(result);
+            hdp::restoreThinStructures(unfiltered, result);
+            expectIdentical(oracle::restoreThinStructures(unfiltered, filtered), result);
+        }
+    // A line of three pixels comes back, one of two does not, nor does a background seen through a gap.
+    Mat unfiltered(30, 60, CV_16UC1, Scalar(160)), result;
+    unfiltered.colRange(10, 13).setTo(400);
+    unfiltered.colRange(20, 22).setTo(400);
+    unfiltered.colRange(40, 43).setTo(16);
+    hdp::medianDisparity(unfiltered, 7, result);
+    EXPECT_EQ((int)result.total(), countNonZero(result == 160));
+    hdp::restoreThinStructures(unfiltered, result);
+    Mat expected(unfiltered.size(), CV_16UC1, Scalar(160));
+    expected.colRange(10, 13).setTo(400);
+    expectIdentical(expected, result);
+}
+
 TEST(HDPStereo_DisparityRefinement, upsampled_bilinearly_inside_surfaces)
 {
     RNG rng(45);
@@ -159,6 +189,19 @@ TEST(HDPStereo_DisparityRefinement, what_is_left_of_a_surface_at_the_border_is_n
     // Three columns of disparity 6 stand in front of a background that is seen on both sides of them.
     expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 12 }, { 1, 1, 1, 1, 1, 1, 1, 6, 6, 6, 1, 1 })),
                     filled({ 1, 1, 1, 1, 1, 1, 1, 6, 6, 6, 1, 1 }, { 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1 }));
+}
+
+TEST(HDPStereo_DisparityRefinement, what_is_left_of_the_first_surface_is_not_visible)
+{
+    // The surface is seen from column 4 of the right image on. On its left all but one pixel map to what it has itself, or
+    // beside the right image.
+    const std::vector<int> residuals = { 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 0, 0, 0, 0, 0, 0, 0, 0 };
+    std::vector<int> disparities = { 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 8, 8, 8, 8, 8, 8, 8, 8 };
+    const Mat surface(1, (int)disparities.size(), CV_16UC1, Scalar(8));
+    for (int x = 0; x < 12; ++x)
+        disparities[x] = x < 5 ? x + 1 : x - 5; // no column, and column 5
+    disparities[3] = 1;                         // column 2, which nothing else maps to
+    expectIdentical(surface, filled(disparities, residuals));
 }
 
 TEST(HDPStereo_DisparityRefinement, a_match_by_chance_in_an_occlusion_is_not_visible)

@@ -90,7 +90,16 @@ TEST(HDPStereo_ImagePyramid, largest_disparity_is_halved_and_included)
 {
     for (int largest = 0; largest < 300; ++largest)
         for (int layer = 0, expected = largest; layer < 10; ++layer, expected /= 2)
-            ASSERT_EQ(expected + 1, hdp::layerDisparities(largest + 1, layer));
+            ASSERT_EQ(expected + 1, hdp::layerDisparities(largest + 1, layer, false));
+}
+
+//! The largest disparity of a layer, which need not be whole, lies between two of its candidates.
+TEST(HDPStereo_ImagePyramid, subpixel_range_includes_the_largest_disparity)
+{
+    for (int largest = 0; largest < 300; ++largest)
+        for (int layer = 0; layer < 10; ++layer)
+            ASSERT_EQ(cvCeil(largest / std::pow(2., layer)) + 1, hdp::layerDisparities(largest + 1, layer, true));
+    EXPECT_EQ(2, hdp::layerDisparities(INT_MAX, 31, true));
 }
 
 TEST(HDPStereo_ImagePyramid, shifts_columns_and_repeats_the_nearest)

@@ -174,13 +174,6 @@ struct Change
     void (*set)(HDPTreeMatcher&);
 };
 
-void setOtherTree(HDPTreeMatcher& matcher)
-{
-    const Ptr<TreeStrategy> segments = createSegmentTree();
-    const bool isSegments = matcher.getTreeStrategy()->getDefaultName() == segments->getDefaultName();
-    matcher.setTreeStrategy(isSegments ? createMinimumSpanningTree() : segments);
-}
-
 // clang-format off
 const Change commonChanges[] = {
     { "minDisparity", [](HDPTreeMatcher& m) { m.setMinDisparity(2); } },
@@ -188,7 +181,7 @@ const Change commonChanges[] = {
     { "blockSize", [](HDPTreeMatcher& m) { m.setBlockSize(3); } },
     { "disp12MaxDiff", [](HDPTreeMatcher& m) { m.setDisp12MaxDiff(1); } },
     { "speckles", [](HDPTreeMatcher& m) { m.setSpeckleWindowSize(100), m.setSpeckleRange(1); } },
-    { "treeStrategy: MST or ST", setOtherTree },
+    { "treeStrategy: ST", [](HDPTreeMatcher& m) { m.setTreeStrategy(createSegmentTree(1)); } },
     { "treeStrategy: RT", [](HDPTreeMatcher& m) { m.setTreeStrategy(createRandomTree()); } },
     { "usePrediction", [](HDPTreeMatcher& m) { m.setUsePrediction(false); } },
     { "useMedianPrefilter", [](HDPTreeMatcher& m) { m.setUseMedianPrefilter(true); } },
@@ -523,8 +516,10 @@ TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
             const Range inside(disparities + 20, moved.cols - 36);
             const Mat difference = disparity.colRange(inside) - expected.colRange(inside);
             // The columns that only one of the pairs has, or that are added, count in P(D_l), and so reach every pixel.
+            // The squares of the sparse matches begin with the added columns.
+            const int tolerance = matcher->getAggregation() == HDPTreeMatcher::AGGREGATION_SCANLINES ? 8 : 0;
             const int share = !system.usePrediction ? 200 : matcher->getUseSubpixel() ? 25 : 33;
-            EXPECT_LE(cv::countNonZero(difference != 16 * k), (int)difference.total() / share);
+            EXPECT_LE(cv::countNonZero(cv::abs(difference - 16 * k) > tolerance), (int)difference.total() / share);
         }
     }
 }
@@ -560,10 +555,8 @@ TEST(HDPStereo_MatcherContract, equal_images_have_disparity_0)
         for (int minDisparity : { 0, -4 })
         {
             const bool isPaper = system.preset == HDPTreeMatcher::PRESET_PAPER;
-            if (isPaper && minDisparity == 0)
-                continue; // support points leave the first candidate out of P(D_l)
             const Mat disparity = match(*createSystem(system, disparities, minDisparity), left, left);
-            const int tolerance = isPaper || minDisparity == 0 ? 0 : 8; // sub-pixel, but at the end of the range
+            const int tolerance = isPaper ? 0 : 8; // sub-pixel
             EXPECT_LE(cv::countNonZero(cv::abs(disparity) > tolerance), (int)disparity.total() / 50)
                 << system.name << " from " << minDisparity;
         }
@@ -798,7 +791,9 @@ TEST(HDPStereo_MatcherContract, layers_of_an_image)
             std::vector<double> ratios, ofLayers(layers, 1.);
             for (int layer = 0; layer < layers - 1; ++layer) // 16 candidates
                 ofLayers[layer] =
-                    layer < matcher->getFinestLayer() ? 0 : std::min(1., 16. / (((numDisparities - 1) >> layer) + 1));
+                    layer < matcher->getFinestLayer()
+                        ? 0
+                        : std::min(1., 16. / (cvCeil((numDisparities - 1) / std::pow(2., layer)) + 1));
             match(*matcher, image, image);
             matcher->getSearchRatios(ratios);
             EXPECT_EQ(ofLayers, ratios);
@@ -837,7 +832,7 @@ TEST(HDPStereo_MatcherContract, disparities_of_layers)
                 ASSERT_EQ(Size(pair.left.cols >> layer, pair.left.rows >> layer), ofLayer.size());
                 double least, most;
                 cv::minMaxLoc(ofLayer, &least, &most);
-                EXPECT_TRUE(least >= 0 && most <= (disparities - 1) / (1 << layer)) << least << " .. " << most;
+                EXPECT_TRUE(least >= 0 && most <= (disparities - 1) / std::pow(2., layer)) << least << " .. " << most;
                 if (!upper.empty()) // most of the pixels have about twice the disparity of the pixel above them
                 {
                     Mat predicted;

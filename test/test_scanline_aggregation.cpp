@@ -9,6 +9,7 @@
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "../src/scanline_aggregation.hpp"
+#include "../src/sparse_matches.hpp"
 
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_END
@@ -51,11 +52,14 @@ struct Layer
                         if (rng.uniform(0, 10)) // noise
                             right.at<ushort>(y, x - d) = left.at<ushort>(y, x);
             }
-        Mat smallest, largestOf;
-        hdp::predictWindows(upper, numDisparities, smallest, largestOf, windows);
+        hdp::WindowBuffers buffers;
+        const Mat matches(1, 1, CV_16UC1, Scalar(hdp::SparseMatches::noMatch));
+        const hdp::WindowPrediction prediction = { upper, upper, matches };
+        hdp::predictWindows(prediction, numDisparities, buffers, windows);
     }
 
     Size size() const { return left.size(); }
+    int largest() const { return scale * (numDisparities - 1); }
 
     hdp::CensusCost cost() const
     {
@@ -69,7 +73,7 @@ struct Layer
     {
         Mat residual;
         const Mat disparity =
-            oracle::Scanlines(left, right, blockSize, numDisparities, windows, penalties).match(residual);
+            oracle::Scanlines(left, right, blockSize, numDisparities, largest(), windows, penalties).match(residual);
         return beside(disparity, residual);
     }
 
@@ -85,8 +89,8 @@ struct Layer
 Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::ScanlineBuffers& buffers)
 {
     Mat disparity, residual;
-    hdp::aggregateScanlines(layer.cost(), layer.size(), layer.numDisparities, layer.windows, penalties, buffers,
-                            disparity, residual);
+    hdp::aggregateScanlines(layer.cost(), layer.size(), layer.numDisparities, layer.largest(), layer.windows, penalties,
+                            buffers, disparity, residual);
     return Layer::beside(disparity, residual);
 }
 
@@ -152,7 +156,8 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
             SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
             const Layer layer(rng, size, numDisparities, GetParam());
             const hdp::CensusCost cost = layer.cost();
-            const hdp::ScanlineProblem problem = { &cost, size, numDisparities, &layer.windows, usualPenalties };
+            const hdp::ScanlineProblem problem = { &cost,           size,           numDisparities,
+                                                   layer.largest(), &layer.windows, usualPenalties };
             Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
             scratch.prepare(size.width);
             hdp::opt_emulated::aggregateStripe(problem, 0, Range(0, size.height), scratch, disparity, residual);

@@ -72,7 +72,7 @@ TEST(HDPStereo_SupportPoints, buffers_serve_pairs_of_any_size)
     }
 }
 
-TEST(HDPStereo_SupportPoints, histogram_leaves_out_0)
+TEST(HDPStereo_SupportPoints, histogram_counts_every_disparity)
 {
     const Mat points = Mat_<short>({ 2, 4 }, { -1, 0, 3, 3, 1, -1, 0, 3 });
     std::vector<double> histogram;
@@ -80,12 +80,12 @@ TEST(HDPStereo_SupportPoints, histogram_leaves_out_0)
     ASSERT_EQ(5u, histogram.size());
     ASSERT_GT(histogram[1], 0);
     for (int d = 0; d < 5; ++d)
-        EXPECT_DOUBLE_EQ(d == 1 ? 1 : d == 3 ? 3 : 0, histogram[d] / histogram[1]) << d;
+        EXPECT_DOUBLE_EQ(d == 0 ? 2 : d == 1 ? 1 : d == 3 ? 3 : 0, histogram[d] / histogram[1]) << d;
 }
 
 TEST(HDPStereo_SupportPoints, histogram_without_points_is_uniform)
 {
-    for (int value : { -1, 0 })
+    for (int value : { -1, 4 })
     {
         std::vector<double> histogram;
         hdp::disparityHistogram(Mat(3, 5, CV_16SC1, Scalar(value)), 4, histogram);

@@ -1,0 +1,78 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "sparse_matches.hpp"
+#include "sparse_matches.simd.hpp"
+#include "sparse_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+void dispatchCosts(const uchar* left, const uchar* right, size_t planeStride, int planes, int numDisparities,
+                   uchar* costs)
+{
+    CV_CPU_DISPATCH(sumWindowCosts, (left, right, planeStride, planes, numDisparities, costs),
+                    CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! Whether enough of the window's comparisons found a darker pixel
+bool hasTexture(const uchar* left, int planes)
+{
+    const int comparisons = planes == 3 ? 24 : planes == 2 ? 12 : 4; // per pixel: windows of 7, 5 and 3
+    int darker = 0;
+    for (int i = 0; i <= 2 * SparseMatches::radius; ++i)
+        for (int plane = 0; plane < planes; ++plane)
+            for (int bits = left[4 * i + plane]; bits; bits &= bits - 1)
+                ++darker;
+    return darker * SparseMatches::texture >= comparisons * (2 * SparseMatches::radius + 1);
+}
+
+//! The disparity of a unique minimum
+ushort uniqueMatch(const uchar* costs, int count)
+{
+    const int best = (int)(std::min_element(costs, costs + count) - costs);
+    const int before = std::max(best - SparseMatches::tolerance, 0);
+    const int after = std::min(best + SparseMatches::tolerance + 1, count);
+    int rival = UCHAR_MAX + 1;
+    if (before > 0)
+        rival = *std::min_element(costs, costs + before);
+    if (after < count)
+        rival = std::min<int>(rival, *std::min_element(costs + after, costs + count));
+    const bool isUnique = rival <= UCHAR_MAX && costs[best] * SparseMatches::uniqueness < rival;
+    return (ushort)(isUnique ? best * subpixelScale : SparseMatches::noMatch);
+}
+
+} // namespace
+
+void findSparseMatches(const CensusCost& cost, Size size, int numDisparities, Mat& matches)
+{
+    const int spacing = SparseMatches::spacing, radius = SparseMatches::radius;
+    matches.create((size.height + spacing - 1) / spacing, (size.width + spacing - 1) / spacing, CV_16U);
+    parallel_for_(Range(0, matches.rows), [&](const Range& range) {
+        std::vector<uchar> costs(alignSize(numDisparities, 32));
+        for (int i = range.start; i < range.end; ++i)
+            for (int j = 0; j < matches.cols; ++j)
+            {
+                const int x = j * spacing + spacing / 2, y = std::min(i * spacing + spacing / 2, size.height - 1);
+                const int count = std::min(x - radius + 1, numDisparities); // those inside the right image
+                ushort& match = matches.at<ushort>(i, j);
+                match = SparseMatches::noMatch;
+                if (count <= 0 || x + radius >= size.width)
+                    continue;
+                const uchar* left = cost.leftPixels(y) + 4 * (x - radius);
+                if (!hasTexture(left, cost.planes()))
+                    continue;
+                const uchar* right = cost.rightPlane(0, y) + size.width - 1 - (x - radius);
+                dispatchCosts(left, right, cost.planeStride(), cost.planes(), count, costs.data());
+                match = uniqueMatch(costs.data(), count);
+            }
+    });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
