@@ -241,6 +241,9 @@ public:
     CV_WRAP virtual double getColorWeight() const = 0;
 
     /** @brief Side of the median filter over each layer's disparities.
+
+    With HDPTreeMatcher::AGGREGATION_SCANLINES the finest layer keeps thin structures in front of their surroundings
+    that are more than noise.
     @param size In pixels of the layer: 0 (none), 3, 5 or 7. 7 in PRESET_QUALITY, HDPTreeMatcher::AUTO in PRESET_PAPER,
     5 in the others. AUTO is 7 with prediction and 5 without, as in the authors' program; the paper has no such filter.
     */
@@ -291,8 +294,9 @@ public:
     /** @brief Cost aggregation of the layers below the top one; for that one see setTopAggregation().
     @param aggregation HDPTreeMatcher::AGGREGATION_TREES (PRESET_PAPER, PRESET_TREE): section 3.
     HDPTreeMatcher::AGGREGATION_SCANLINES (the others): semi-global matching @cite Hirschmuller2008SGM from the left,
-    from the right and from above, over 16 candidates per pixel around the disparity of the layer above. It needs
-    HDPTreeMatcher::COST_CENSUS, and has no use for the prediction model, delta0, beta, the margin and the prior. */
+    from the right and from above, over 16 candidates per pixel around the disparity of the layer above and, if there
+    may be one, that of another surface. It needs HDPTreeMatcher::COST_CENSUS, and has no use for the prediction model,
+    delta0, beta, the margin and the prior. */
     CV_WRAP virtual void setAggregation(int aggregation) = 0;
     /** @copybrief setAggregation @sa setAggregation */
     CV_WRAP virtual int getAggregation() const = 0;
