@@ -296,7 +296,11 @@ class hdpstereo_test(TestCase):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
         self.assertIsNone(matcher.getConfidence())
         matcher.setDisp12MaxDiff(1)
-        disparity = matcher.compute(self.left, self.right)
+        right = self.right.copy()  # of which a part matches nothing
+        height, width = right.shape[:2]
+        part = right[height // 3 : height // 2, width // 3 : width // 2]
+        part[:] = np.random.RandomState(1).randint(0, 256, part.shape)
+        disparity = matcher.compute(self.left, right)
         confidence = matcher.getConfidence()
         self.assertEqual((np.uint8, disparity.shape), (confidence.dtype, confidence.shape))
         rejected = disparity == -16
