@@ -19,6 +19,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 
 using namespace cv;
@@ -115,8 +116,7 @@ void fill(Input& input, Mat& image)
         const int periodX = rng.uniform(1, 9), periodY = rng.uniform(1, 9);
         for (int y = 0; y < image.rows; ++y)
             for (int x = 0; x < image.cols; ++x)
-                for (int c = 0; c < image.channels(); ++c)
-                    image.ptr(y)[x * image.channels() + c] = (x / periodX + y / periodY) % 2 ? 255 : 0;
+                std::memset(image.ptr(y, x), (x / periodX + y / periodY) % 2 ? 255 : 0, image.elemSize());
         break;
     }
     default: // the fuzzer's own
@@ -126,6 +126,8 @@ void fill(Input& input, Mat& image)
             for (size_t i = 0; i < image.cols * image.elemSize(); ++i)
                 image.ptr(y)[i] = bytes[(i + 7 * y) % bytes.size()];
     }
+    if (image.depth() == CV_16U) // of any number of bits
+        image *= 1 + rng.uniform(0, 257);
 }
 
 //! The same image, or a part of a larger one with this content
@@ -143,7 +145,8 @@ Mat placed(Input& input, const Mat& image)
 //! A pair of a number of pixels that keeps one call below a second; rarely one that does not go together.
 void makePair(Input& input, int numDisparities, Mat& left, Mat& right)
 {
-    const int types[] = { CV_8UC1, CV_8UC3 }, otherTypes[] = { CV_16UC1, CV_8SC3, CV_32FC1, CV_8UC4 };
+    const int types[] = { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 };
+    const int otherTypes[] = { CV_16UC3, CV_8SC3, CV_32FC1, CV_8UC2 };
     const int most = std::max(48, std::min(8000, (1 << 18) / std::max(numDisparities, 1)));
     const bool isStrip = input.ConsumeBool();
     int width = input.ConsumeIntegralInRange(1, isStrip ? most : std::min(300, most));

@@ -191,6 +191,17 @@ static int presetOf(const String& name)
                                : HDPTreeMatcher::PRESET_ULTRAFAST;
 }
 
+//! An image as it is shown, in colors of 8 bit. Cameras and pictures may have grey levels, also in 16 bit.
+static Mat colorsOf(const Mat& image)
+{
+    Mat colors = image;
+    if (image.depth() == CV_16U)
+        normalize(image, colors, 0, 255, NORM_MINMAX, CV_8U);
+    if (colors.channels() != 3)
+        cvtColor(colors, colors, colors.channels() == 1 ? COLOR_GRAY2BGR : COLOR_BGRA2BGR);
+    return colors;
+}
+
 //! The left image beside its disparities, from blue (far) to orange (near)
 static Mat drawPicture(const Mat& left, const Mat& disparity16, const HDPTreeMatcher& matcher, const String& text)
 {
@@ -199,7 +210,7 @@ static Mat drawPicture(const Mat& left, const Mat& disparity16, const HDPTreeMat
     disparity16.convertTo(levels, CV_8U, 150. / range, 20 - 150. / range * smallest);
     applyColorMap(levels, colors, COLORMAP_TURBO);
     colors.setTo(Scalar::all(0), disparity16 < smallest);
-    hconcat(left, colors, picture);
+    hconcat(colorsOf(left), colors, picture);
     const double size = std::max(picture.cols / 1280., 0.4);
     const Point origin(cvRound(12 * size), cvRound(30 * size));
     putText(picture, text, origin, FONT_HERSHEY_SIMPLEX, size, Scalar::all(0), cvRound(4 * size) + 1, LINE_AA);

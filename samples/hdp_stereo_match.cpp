@@ -19,7 +19,7 @@ using cv::stereo::HDPTreeMatcher;
 
 static const char* const keys =
     "{help h ?        |      | print this and exit }"
-    "{@left           |      | left image of a rectified pair }"
+    "{@left           |      | left image of a rectified pair, of 8 or 16 bit }"
     "{@right          |      | right image }"
     "{preset          | fast | set of parameters: ultrafast, fast, quality, tree or paper }"
     "{min-disparity   | 0    | smallest disparity in pixels }"
@@ -54,6 +54,26 @@ static Mat readImage(const String& path, int flags)
     if (image.empty())
         CV_Error(Error::StsError, "cannot read the image '" + path + "'");
     return image;
+}
+
+//! Colours in 8 bit, or grey levels in 16 bit of a picture that has them
+static Mat readPicture(const String& path)
+{
+    Mat image = readImage(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
+    if (image.depth() == CV_16U)
+        cvtColor(image, image, COLOR_BGR2GRAY);
+    return image;
+}
+
+//! For points: in 8 bit, from black to the brightest pixel
+static Mat colorsOf(const Mat& image)
+{
+    if (image.type() == CV_8UC3)
+        return image;
+    Mat colors;
+    normalize(image, colors, 0, 255, NORM_MINMAX, CV_8U);
+    cvtColor(colors, colors, COLOR_GRAY2BGR);
+    return colors;
 }
 
 static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
@@ -131,8 +151,7 @@ static void run(const CommandLineParser& parser)
     const double f = parser.get<double>("focal"), B = parser.get<double>("baseline");
     if (parser.has("point-cloud") && !(f > 0 && B > 0))
         CV_Error(Error::StsBadArg, "--point-cloud needs --focal and --baseline, each above 0");
-    const Mat left = readImage(parser.get<String>("@left"), IMREAD_COLOR),
-              right = readImage(parser.get<String>("@right"), IMREAD_COLOR);
+    const Mat left = readPicture(parser.get<String>("@left")), right = readPicture(parser.get<String>("@right"));
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.cols);
     if (!parser.check())
         CV_Error(Error::StsBadArg, "an option needs a number, see --help");
@@ -162,7 +181,7 @@ static void run(const CommandLineParser& parser)
     if (parser.has("point-cloud"))
     {
         const Matx44d Q(1, 0, 0, -0.5 * (left.cols - 1), 0, 1, 0, -0.5 * (left.rows - 1), 0, 0, 0, f, 0, 0, 1 / B, 0);
-        writeFile(parser.get<String>("point-cloud"), pointCloud(disparity, known, left, Q));
+        writeFile(parser.get<String>("point-cloud"), pointCloud(disparity, known, colorsOf(left), Q));
     }
     if (!std::cout.flush())
         CV_Error(Error::StsError, "cannot write to the standard output");

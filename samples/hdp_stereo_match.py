@@ -42,11 +42,25 @@ end_header
 '''
 
 
-def read_image(filename, flags=cv.IMREAD_COLOR):
+def read_image(filename, flags):
     image = cv.imread(cv.samples.findFile(filename, required=False) or filename, flags)
     if image is None:
         sys.exit('cannot read the image ' + filename)
     return image
+
+
+def read_picture(filename):
+    '''Colors in 8 bit, or grey levels in 16 bit of a picture that has them.'''
+    image = read_image(filename, cv.IMREAD_COLOR | cv.IMREAD_ANYDEPTH)
+    return cv.cvtColor(image, cv.COLOR_BGR2GRAY) if image.dtype == np.uint16 else image
+
+
+def in_8_bit(*images):
+    '''Colors, as cv.StereoSGBM and windows take them: the brightest pixel of 16 bit becomes white.'''
+    if images[0].dtype == np.uint8:
+        return images
+    scale = 255.0 / max([image.max() for image in images] + [1])
+    return [cv.cvtColor(cv.convertScaleAbs(image, alpha=scale), cv.COLOR_GRAY2BGR) for image in images]
 
 
 def read_disparity(filename):
@@ -112,13 +126,13 @@ def compute(matcher, left, right):
     return disparity
 
 
-def time_in_turns(matchers, left, right, runs):
+def time_in_turns(matchers, pairs, runs):
     '''Median milliseconds of compute(): in turns, so that what else the machine does hits all of them.'''
     times = {name: [] for name in matchers}
     for _ in range(runs):
         for name, matcher in matchers.items():
             start = cv.getTickCount()
-            matcher.compute(left, right)
+            matcher.compute(*pairs[name])
             times[name].append((cv.getTickCount() - start) * 1000 / cv.getTickFrequency())
     return {name: np.median(values) for name, values in times.items()}
 
@@ -150,30 +164,33 @@ def main():
     if args.left is None:
         args.left, args.right, args.truth = 'aloeL.jpg', 'aloeR.jpg', args.truth or 'aloeGT.png'
 
-    left, right = read_image(args.left), read_image(args.right)
+    left, right = read_picture(args.left), read_picture(args.right)
     truth = read_disparity(args.truth) if args.truth else None
     if truth is not None and truth.shape != left.shape[:2]:
         sys.exit('the truth has another size than the images')
     num_disparities = args.num_disparities
     if num_disparities is None:
         num_disparities = max((left.shape[1] // 5 + 15) // 16 * 16, 16)
-    if args.compare and left.shape[1] <= args.min_disparity + num_disparities:
-        sys.exit('error: --compare needs images that are wider than the disparities, for cv.StereoSGBM')
+    has_sgbm = args.compare and left.shape[1] > args.min_disparity + num_disparities
+    if args.compare and not has_sgbm:
+        print('without cv.StereoSGBM, which takes images that are wider than the disparities')
 
     try:
         matcher = cv.stereo.HDPTreeMatcher.create(args.min_disparity, num_disparities, PRESETS[args.preset])
         matchers = {args.preset: matcher}
-        if args.compare:
+        pairs = {args.preset: (left, right)}
+        if has_sgbm:
+            pairs['sgbm'] = in_8_bit(left, right)
             matchers['sgbm'] = cv.StereoSGBM.create(
                 args.min_disparity, (num_disparities + 15) // 16 * 16, blockSize=3, P1=8 * 27, P2=32 * 27,
                 mode=cv.StereoSGBM_MODE_SGBM_3WAY)
-        disparities = {name: compute(m, left, right) for name, m in matchers.items()}
+        disparities = {name: compute(m, *pairs[name]) for name, m in matchers.items()}
     except cv.error as e:
         sys.exit('error: ' + e.err)
 
     print('images %d x %d, disparities %d to %d' % (left.shape[1], left.shape[0], args.min_disparity,
                                                   args.min_disparity + num_disparities - 1))
-    times = time_in_turns(matchers, left, right, args.runs) if args.compare else {}
+    times = time_in_turns(matchers, pairs, args.runs) if args.compare else {}
     for stage, milliseconds in zip(*matcher.getStageTimes()):
         print('%-24s%10.1f ms' % (stage, milliseconds))
     for name, disparity in disparities.items():
@@ -193,9 +210,9 @@ def main():
     if args.picture:
         write(args.picture, color_picture(disparity))
     if args.point_cloud:
-        write_point_cloud(args.point_cloud, disparity, left, args.focal, args.baseline)
+        write_point_cloud(args.point_cloud, disparity, in_8_bit(left)[0], args.focal, args.baseline)
     if args.show:
-        cv.imshow('left', left)
+        cv.imshow('left', in_8_bit(left)[0])
         for name in disparities:
             cv.imshow(name, color_picture(disparities[name]))
         cv.waitKey()

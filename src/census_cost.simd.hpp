@@ -4,7 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "census_cost.hpp"
-#include "image_pyramid.hpp"
+#include "image_levels.hpp"
 #include "vectorized.hpp"
 #include <cstring>
 #include <type_traits>

@@ -22,11 +22,6 @@ void dispatchHalve(const ushort* upper, const ushort* lower, int width, int, ush
     CV_CPU_DISPATCH(halveGreyRow, (upper, lower, width, means), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-void dispatchGrey(const uchar* pixels, int width, ushort* levels)
-{
-    CV_CPU_DISPATCH(greyRow, (pixels, width, levels), CV_CPU_DISPATCH_MODES_ALL);
-}
-
 template <typename T> void halve(const Mat& image, Mat& half)
 {
     parallel_for_(Range(0, half.rows), [&](const Range& rows) {
@@ -52,24 +47,6 @@ void halveImage(const Mat& image, Mat& half)
         halve<ushort>(image, half);
     else
         halve<uchar>(image, half);
-}
-
-void greyLevels(const Mat& image, Mat& grey)
-{
-    const int channels = image.channels();
-    grey.create(image.size(), CV_16U);
-    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const uchar* pixel = image.ptr(y);
-            ushort* level = grey.ptr<ushort>(y);
-            if (channels == 1)
-                for (int x = 0; x < image.cols; ++x)
-                    level[x] = (ushort)(pixel[x] * greyScale);
-            else
-                dispatchGrey(pixel, image.cols, level);
-        }
-    });
 }
 
 } // namespace hdp

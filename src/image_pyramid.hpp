@@ -27,15 +27,6 @@ inline int layerDisparities(int numDisparities, int layer, bool subpixel)
 //! left out. The authors' program truncates and leaves out, too; the paper rounds sizes up.
 CV_EXPORTS void halveImage(const Mat& image, Mat& half);
 
-//! Units of greyLevels() in one level
-const int greyScale = 4;
-
-/** Grey levels 0.299 R + 0.587 G + 0.114 B in 1 / greyScale of a level. Means of many pixels tell faint texture apart
-that 8 bits lose: the census cost of the coarse layers lives on it.
-@param image CV_8UC1 or CV_8UC3.
-@param grey CV_16UC1. */
-CV_EXPORTS void greyLevels(const Mat& image, Mat& grey);
-
 } // namespace hdp
 } // namespace stereo
 } // namespace cv

@@ -17,9 +17,6 @@ void halveRow(const uchar* upper, const uchar* lower, int width, int channels, u
 //! Means of 2 x 2 grey levels, rounded.
 void halveGreyRow(const ushort* upper, const ushort* lower, int width, ushort* means);
 
-//! Grey levels of BGR pixels, see greyLevels().
-void greyRow(const uchar* pixels, int width, ushort* levels);
-
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 void halveRow(const uchar* upper, const uchar* lower, int width, int channels, uchar* means)
@@ -43,16 +40,6 @@ void halveGreyRow(const ushort* upper, const ushort* lower, int width, ushort* m
 {
     HDP_VECTORIZED for (int x = 0; x < width; ++x) means[x] =
         (ushort)((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) / 4);
-}
-
-void greyRow(const uchar* pixels, int width, ushort* levels)
-{
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
-    {
-        const uchar* bgr = pixels + 3 * x;
-        levels[x] =
-            (ushort)((7471u * bgr[0] + 38470u * bgr[1] + 19595u * bgr[2] + 32768 / greyScale) / (65536 / greyScale));
-    }
 }
 
 #endif

@@ -7,6 +7,7 @@
 #include "candidate_windows.hpp"
 #include "disparity_prediction.hpp"
 #include "disparity_refinement.hpp"
+#include "image_levels.hpp"
 #include "image_pyramid.hpp"
 #include "nonlocal_refinement.hpp"
 #include "sparse_matches.hpp"

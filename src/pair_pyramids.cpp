@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
+#include "image_levels.hpp"
 #include "image_pyramid.hpp"
 #include "pair_pyramids.hpp"
 
@@ -26,8 +27,9 @@ void checkPair(const Mat& left, const Mat& right)
 {
     if (left.empty())
         CV_Error(Error::StsBadArg, "left must not be empty");
-    if (left.dims != 2 || (left.type() != CV_8UC1 && left.type() != CV_8UC3))
-        CV_Error(Error::StsUnsupportedFormat, "left must be CV_8UC1 or CV_8UC3");
+    const int type = left.type();
+    if (left.dims != 2 || (type != CV_8UC1 && type != CV_8UC3 && type != CV_8UC4 && type != CV_16UC1))
+        CV_Error(Error::StsUnsupportedFormat, "left must be CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1");
     if (right.dims != 2 || right.size() != left.size())
         CV_Error(Error::StsUnmatchedSizes, "right must have the size of left");
     if (right.type() != left.type())
@@ -53,16 +55,17 @@ void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int 
         copyMakeBorder(left, pyramids.extendedLeft, 0, 0, extension, 0, BORDER_REPLICATE);
         extended = pyramids.extendedLeft;
     }
-    buildPyramid(extended, layers, pyramids.left);
+    const int bits = countBits(left, right);
+    buildPyramid(byteLevels(extended, bits, pyramids.leftBytes), layers, pyramids.left);
     if (census)
     {
-        greyLevels(extended, pyramids.leftLevels);
-        greyLevels(shifted, pyramids.rightLevels);
+        greyLevels(extended, bits, pyramids.leftLevels);
+        greyLevels(shifted, bits, pyramids.rightLevels);
         buildPyramid(pyramids.leftLevels, layers, pyramids.leftGrey);
         buildPyramid(pyramids.rightLevels, layers, pyramids.right);
     }
     else
-        buildPyramid(shifted, layers, pyramids.right);
+        buildPyramid(byteLevels(shifted, bits, pyramids.rightBytes), layers, pyramids.right);
     images.resize(layers);
     for (int layer = 0; layer < layers; ++layer)
     {
@@ -70,7 +73,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int 
         images[layer].left = census ? pyramids.leftGrey[layer] : pyramids.left[layer];
         images[layer].right = pyramids.right[layer];
     }
-    pyramids.left[0].release(); // the caller's
+    pyramids.left[0].release(); // may be the caller's
     pyramids.right[0].release();
 }
 

@@ -29,17 +29,17 @@ struct LayerImages
 struct PairPyramids
 {
     std::vector<Mat> left, leftGrey, right;
-    Mat extendedLeft, shiftedRight, leftLevels, rightLevels;
+    Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels;
 };
 
 /** The pyramids of a pair (section 2.1), for candidates that count from 0.
-@param left CV_8UC1 or CV_8UC3.
+@param left CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param right Of the same size and type.
 @param minDisparity The disparity that candidate 0 stands for.
 @param extension Columns added on the left of both images, so that the first columns have their matches if
 disparities are negative; a multiple of 2^(layers - 1).
 @param layers Number of layers.
-@param census Whether the matching cost gets grey levels, see greyLevels(), instead of the images themselves.
+@param census Whether the matching cost gets grey levels, see greyLevels(), instead of byteLevels().
 @param pyramids Memory to work in.
 @param images Receives the images of each layer. */
 void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int extension, int layers, bool census,

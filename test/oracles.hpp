@@ -65,6 +65,19 @@ inline Mat halve(const Mat& image)
     return image.depth() == CV_16U ? halve<ushort>(image, 0.5) : halve<uchar>(image, 0);
 }
 
+//! The number of bits in use, see hdp::countBits(). left, right: CV_16UC1.
+inline int countBits(const Mat& left, const Mat& right)
+{
+    std::vector<ushort> pixels(left.begin<ushort>(), left.end<ushort>());
+    pixels.insert(pixels.end(), right.begin<ushort>(), right.end<ushort>());
+    std::sort(pixels.begin(), pixels.end());
+    const int brightest = pixels[pixels.size() - 1 - pixels.size() / 1024];
+    int bits = 8;
+    while (brightest >= 1 << bits)
+        ++bits;
+    return bits;
+}
+
 //! Grey levels in quarters of a level, rounded
 inline Mat greyLevels(const Mat& image)
 {
@@ -167,8 +180,8 @@ inline int countDarker(const Mat& image, int radius, int y, const Range& columns
     for (int x = columns.start; x < columns.end; ++x)
         for (int dy = -radius; dy <= radius; ++dy)
             for (int dx = -radius; dx <= radius; ++dx)
-                if ((dx + dy) % 2 != 0 && image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) <
-                                              image.at<ushort>(y, x))
+                if ((dx + dy) % 2 != 0 &&
+                    image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) < image.at<ushort>(y, x))
                     ++count;
     return count;
 }
@@ -618,8 +631,8 @@ inline Mat findSparseMatches(const Mat& left, const Mat& right, int blockSize, i
                 for (int u = x - 7; u <= x + 7; ++u)
                     costs[d] = std::min(costs[d] + census(y, u, d), 255);
             }
-            if (costs.empty() || 4 * countDarker(left, blockSize / 2, y, Range(x - 7, x + 8)) <
-                                     15 * (blockSize * blockSize / 2))
+            if (costs.empty() ||
+                4 * countDarker(left, blockSize / 2, y, Range(x - 7, x + 8)) < 15 * (blockSize * blockSize / 2))
                 continue;
             const int best = (int)(std::min_element(costs.begin(), costs.end()) - costs.begin());
             bool isUnique = costs.size() > 1;
@@ -645,8 +658,8 @@ public:
     Scanlines(const Mat& left, const Mat& right, int blockSize, int numDisparities, int largest, const Mat& windows,
               const hdp::ScanlinePenalties& penalties)
         : left_(left), right_(right), census_(left, right, blockSize), size_(left.size()),
-          numDisparities_(numDisparities), largest_(largest), windows_(windows), small_(penalties.small), large_(penalties.large),
-          prior_(penalties.prior)
+          numDisparities_(numDisparities), largest_(largest), windows_(windows), small_(penalties.small),
+          large_(penalties.large), prior_(penalties.prior)
     {
     }
 

@@ -10,7 +10,7 @@
 #include "../src/color_gradient_cost.hpp"
 #include "../src/disparity_confidence.hpp"
 #include "../src/disparity_units.hpp"
-#include "../src/image_pyramid.hpp"
+#include "../src/image_levels.hpp"
 #include "../src/pair_pyramids.hpp"
 
 namespace opencv_test {
@@ -28,8 +28,8 @@ Mat confidenceOf(const Mat& left, const Mat& right, const Mat& disparity, int nu
     if (isCensus)
     {
         Mat leftGrey, rightGrey;
-        hdp::greyLevels(left, leftGrey);
-        hdp::greyLevels(right, rightGrey);
+        hdp::greyLevels(left, 8, leftGrey);
+        hdp::greyLevels(right, 8, rightGrey);
         hdp::CensusCost cost;
         cost.prepare(leftGrey, rightGrey, numDisparities, blockSize);
         hdp::disparityConfidence(disparity, numDisparities, cost, confidence);

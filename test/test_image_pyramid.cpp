@@ -39,32 +39,6 @@ TEST(HDPStereo_ImagePyramid, means_of_2x2_grey_levels_rounded)
         }
 }
 
-TEST(HDPStereo_ImagePyramid, grey_levels_in_quarters)
-{
-    RNG rng(38);
-    for (const Size& size : { Size(1, 1), Size(1, 9), Size(9, 1), Size(67, 31) })
-        for (int type : { CV_8UC1, CV_8UC3 })
-        {
-            SCOPED_TRACE(testing::Message() << size << " type " << type);
-            const Mat image = randomImage(rng, Size(size.width + 5, size.height + 2), type)(Rect(Point(3, 1), size));
-            Mat levels;
-            hdp::greyLevels(image, levels);
-            ASSERT_EQ(CV_16UC1, levels.type());
-            ASSERT_EQ(size, levels.size());
-            // What is halfway between two quarters may go either way; one channel is exact.
-            const Mat_<double> exact = oracle::exactGrey(image);
-            for (int y = 0; y < size.height; ++y)
-                for (int x = 0; x < size.width; ++x)
-                    ASSERT_NEAR(4 * exact(y, x), levels.at<ushort>(y, x), type == CV_8UC1 ? 0 : 0.505);
-        }
-    for (int value = 0; value < 256; ++value) // three equal channels are grey
-    {
-        Mat levels;
-        hdp::greyLevels(Mat(1, 1, CV_8UC3, Scalar::all(value)), levels);
-        EXPECT_EQ(4 * value, levels.at<ushort>(0, 0));
-    }
-}
-
 TEST(HDPStereo_ImagePyramid, halves_a_region_of_interest)
 {
     RNG rng(2);

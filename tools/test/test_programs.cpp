@@ -190,6 +190,33 @@ TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
         EXPECT_EQ(1, run(folder, program + wrong).status) << wrong;
 }
 
+//! Pictures of 16 bit stay so: in 8 bit, this texture would have 13 levels.
+TEST(HDPStereo_Programs, stereo_match_reads_16_bit)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 23);
+    for (const char* side : { "left", "right" })
+    {
+        Mat grey, faint;
+        cv::cvtColor(side == String("left") ? pair.left : pair.right, grey, COLOR_BGR2GRAY);
+        folder.write("grey/" + String(side) + ".png", grey);
+        grey.convertTo(faint, CV_16U, 13, 61000);
+        folder.write("faint/" + String(side) + ".png", faint);
+    }
+    Mat errors[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        const String scene = i == 0 ? "grey/" : "faint/", map = folder.path(scene + "map.pfm");
+        const Execution result =
+            run(folder, "example_hdpstereo_hdp_stereo_match " + folder.path(scene + "left.png") + " " +
+                            folder.path(scene + "right.png") + " --num-disparities=32" + " --output=" + map +
+                            " --focal=100 --baseline=2 --point-cloud=" + folder.path(scene + "points.ply"));
+        EXPECT_EQ(0, result.status) << result.errors;
+        errors[i] = cv::abs(cv::imread(map, IMREAD_UNCHANGED) - pair.truth) >= 1;
+    }
+    EXPECT_LT(cv::countNonZero(errors[1]), 1.5 * cv::countNonZero(errors[0]));
+}
+
 //! Two numbered sequences, with the calibration of cameras that are rectified already
 TEST(HDPStereo_Programs, live)
 {
@@ -216,6 +243,18 @@ TEST(HDPStereo_Programs, live)
     EXPECT_EQ(Size(320, 120), cv::imread(folder.path("shown02.png")).size());
     EXPECT_EQ(0u, run(folder, command + " --frames=2 --scale=0.5").output.find("2 frames, "));
     EXPECT_EQ(1, run(folder, command + " --preset=tree").status);
+
+    for (int type : { CV_8UC1, CV_16UC1, CV_8UC4 })
+    {
+        for (const String side : { "left", "right" })
+        {
+            Mat image = side == "left" ? pair.left : pair.right;
+            cv::cvtColor(image, image, type == CV_8UC4 ? COLOR_BGR2BGRA : COLOR_BGR2GRAY);
+            image.convertTo(image, type, CV_MAT_DEPTH(type) == CV_16U ? 16 : 1);
+            folder.write(side + "01.png", image);
+        }
+        EXPECT_EQ(0u, run(folder, command + " --frames=1").output.find("1 frames, ")) << "type " << type;
+    }
     EXPECT_EQ(1, run(folder, "example_hdpstereo_hdp_live no/such/video.avi --no-gui").status);
 }
 

@@ -24,13 +24,13 @@ namespace stereo {
 
 /** @brief Stereo matching over disparity trees with hierarchical disparity prediction @cite Luo2015HDP.
 
-compute() takes a rectified pair: CV_8UC1 or CV_8UC3 (BGR), both images of one size and type. The result is
-what cv::StereoMatcher promises: the disparity of every pixel of the left image as CV_16SC1, times 16
-(StereoMatcher::DISP_SCALE), or as CV_32FC1 in pixels, see setDisparityDepth(); a pixel (x, y) of the left image shows
-the same point as (x - disparity, y) of the right one. Pixels that a filter rejects get (minDisparity - 1) * 16, or
-minDisparity - 1. Unlike cv::StereoSGBM, the matcher leaves no border of invalid pixels: candidates outside the right
-image are compared with its nearest column. Images may have 1 x 1 to 32767 x 32767 pixels, and fewer columns than there
-are disparities.
+compute() takes a rectified pair, both images of one size and type: CV_8UC1, CV_8UC3 (BGR), CV_8UC4 (BGR and alpha,
+which is ignored) or CV_16UC1 (see below). The result is what cv::StereoMatcher promises: the disparity of every pixel
+of the left image as CV_16SC1, times 16 (StereoMatcher::DISP_SCALE), or as CV_32FC1 in pixels, see setDisparityDepth();
+a pixel (x, y) of the left image shows the same point as (x - disparity, y) of the right one. Pixels that a filter
+rejects get (minDisparity - 1) * 16, or minDisparity - 1. Unlike cv::StereoSGBM, the matcher leaves no border of invalid
+pixels: candidates outside the right image are compared with its nearest column. Images may have 1 x 1 to 32767 x 32767
+pixels, and fewer columns than there are disparities.
 
 @ref tutorial_hdpstereo_matching explains the algorithm, how to choose a preset, and what each parameter does.
 
@@ -47,6 +47,14 @@ The parameters of cv::StereoMatcher mean what they mean there:
   those that match the same pixel of the right image. <= 0 (default) turns the check off.
 - speckleWindowSize, speckleRange: see cv::filterSpeckles. The window size is a number of pixels; <= 0 (default 0) turns
   the filter off. speckleRange is in pixels, >= 0; more than 2047 counts as 2047.
+
+CV_16UC1 is for cameras of 10 to 16 bits. All parameters in intensity levels are for 8 bits, so the upper 8 of the bits
+in use stand for them. These are the fewest, 8 to 16, that are enough for all pixels of both images but one in 1024;
+what is brighter, such as highlights and defective pixels, is white. The census sees the upper 10 of them; edge weights,
+COST_COLOR_GRADIENT and the grey difference of scanlines see 8. So images of 8 bits times 2^k give the same map as
+without the factor, if more than one pixel in 1024 has a level of 128 or more. Darker ones gain contrast: if the largest
+value of a 12-bit camera is 300, 9 bits are in use, and 300 becomes level 150. Each pair has its own number of bits; to
+keep the contrast of a sequence, scale it to 8 bits yourself.
 
 The result depends neither on the number of threads nor on the instruction set. A matcher may be used by one thread at a
 time; two matchers never share state. Its buffers are kept for the next pair.
@@ -78,8 +86,8 @@ the default.
 
 A setter throws cv::Exception if a value is out of range, and leaves the matcher as it was. What depends on several
 parameters or on the images is checked by compute(), before any work. compute() throws if
-- an image is empty or neither CV_8UC1 nor CV_8UC3, if they differ in size or type, are wider or higher than 32767
-  pixels, or have 2^31 bytes and more, with the columns that a negative minDisparity adds;
+- an image is empty or of another type than CV_8UC1, CV_8UC3, CV_8UC4 and CV_16UC1, if they differ in size or type, are
+  wider or higher than 32767 pixels, or have 2^31 bytes and more, with the columns that a negative minDisparity adds;
 - speckleWindowSize is > 0 and the images have more than 238609294 pixels;
 - minDisparity and numDisparities give disparities that CV_16S cannot hold;
 - the cost is not COST_CENSUS with AGGREGATION_SCANLINES or fillOcclusions;

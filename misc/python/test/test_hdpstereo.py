@@ -199,6 +199,26 @@ class hdpstereo_test(TestCase):
         left, right = self.left[:, :, 1].copy(), self.right[:, :, 1].copy()
         self.assertSame(matcher.compute(left, right), matcher.compute(left[:, :, None], right[:, :, None]))
 
+    def test_alpha_is_ignored(self):
+        alpha = np.random.RandomState(8).randint(0, 256, (2,) + self.truth.shape).astype(np.uint8)
+        for preset in PRESETS.values():
+            matcher = cv.stereo.HDPTreeMatcher.create(0, 32, preset)
+            expected = matcher.compute(self.left, self.right)
+            self.assertSame(expected, matcher.compute(np.dstack((self.left, alpha[0])),
+                                                      np.dstack((self.right, alpha[1]))))
+
+    def test_16_bit(self):
+        left, right = [cv.cvtColor(image, cv.COLOR_BGR2GRAY) for image in (self.left, self.right)]
+        for name, preset in PRESETS.items():
+            matcher = cv.stereo.HDPTreeMatcher.create(0, 32, preset)
+            expected = matcher.compute(left, right)
+            for factor in (1, 4, 16, 64, 256):
+                self.assertSame(expected, matcher.compute(left.astype(np.uint16) * factor,
+                                                          right.astype(np.uint16) * factor))
+            # Others, of 12 bit
+            disparity = matcher.compute(left.astype(np.uint16) * 14 + 9, right.astype(np.uint16) * 14 + 9)
+            self.assertLess(self.wrong(disparity / 16.0), 1.1 * self.wrong(expected / 16.0) + 0.01, name)
+
     def test_memory_layouts(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
         views = {
@@ -551,15 +571,17 @@ class hdpstereo_test(TestCase):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
         expected = matcher.compute(left, right)
         grey = left[:, :, 0].copy()
+        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1'
         for message, pair in (
                 ('left must not be empty', (None, right)),
                 ('left must not be empty', (left[:0], right[:0])),
-                ('left must be CV_8UC1 or CV_8UC3', (grey.astype(np.uint16), grey.astype(np.uint16))),
-                ('left must be CV_8UC1 or CV_8UC3', (grey / 255.0, grey / 255.0)),
-                ('left must be CV_8UC1 or CV_8UC3', (grey.astype(np.int64), grey.astype(np.int64))),
-                ('left must be CV_8UC1 or CV_8UC3', (left[:, :, :2], right[:, :, :2])),
-                ('left must be CV_8UC1 or CV_8UC3', (np.dstack((left, grey)), np.dstack((right, grey)))),
-                ('left must be CV_8UC1 or CV_8UC3', (np.zeros((4, 4, 3, 2), np.uint8),) * 2),
+                (types, (left.astype(np.uint16), right.astype(np.uint16))),
+                (types, (grey.astype(np.int16), grey.astype(np.int16))),
+                (types, (grey / 255.0, grey / 255.0)),
+                (types, (grey.astype(np.int64), grey.astype(np.int64))),
+                (types, (left[:, :, :2], right[:, :, :2])),
+                (types, (np.zeros((4, 4, 3, 2), np.uint8),) * 2),
+                ('right must have the type of left', (grey, grey.astype(np.uint16))),
                 ('right must have the size of left', (left, right[:-1])),
                 ('right must have the size of left', (left, None)),
                 ('right must have the type of left', (left, grey))):

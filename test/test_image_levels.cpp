@@ -1,0 +1,337 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// The types of images that a pair may have: the levels that the stages get of them, and the maps.
+
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "oracles.hpp"
+#include "synthetic_pair.hpp"
+#include "systems.hpp"
+#include "../src/image_levels.hpp"
+
+namespace opencv_test {
+namespace {
+
+////////////////////////////////////////////// the stage //////////////////////////////////////////////
+
+TEST(HDPStereo_ImageLevels, grey_levels_in_quarters)
+{
+    RNG rng(38);
+    for (const Size& size : { Size(1, 1), Size(1, 9), Size(9, 1), Size(67, 31) })
+        for (int type : { CV_8UC1, CV_8UC3, CV_8UC4 })
+        {
+            SCOPED_TRACE(testing::Message() << size << " type " << type);
+            const Mat image = randomImage(rng, Size(size.width + 5, size.height + 2), type)(Rect(Point(3, 1), size));
+            Mat levels;
+            hdp::greyLevels(image, 8, levels);
+            ASSERT_EQ(CV_16UC1, levels.type());
+            ASSERT_EQ(size, levels.size());
+            // What is halfway between two quarters may go either way; one channel is exact.
+            const Mat_<double> exact = oracle::exactGrey(image);
+            for (int y = 0; y < size.height; ++y)
+                for (int x = 0; x < size.width; ++x)
+                    ASSERT_NEAR(4 * exact(y, x), levels.at<ushort>(y, x), type == CV_8UC1 ? 0 : 0.505);
+        }
+    for (int value = 0; value < 256; ++value) // three equal channels are grey
+    {
+        Mat levels;
+        hdp::greyLevels(Mat(1, 1, CV_8UC3, Scalar::all(value)), 8, levels);
+        EXPECT_EQ(4 * value, levels.at<ushort>(0, 0));
+    }
+}
+
+TEST(HDPStereo_ImageLevels, of_16_bits)
+{
+    RNG rng(50);
+    for (int bits = 8; bits <= 16; ++bits)
+        for (const Size& size : { Size(1, 1), Size(1, 9), Size(67, 31) })
+        {
+            SCOPED_TRACE(testing::Message() << bits << " bits, " << size);
+            const Mat image = randomImage(rng, Size(size.width + 5, size.height + 2), CV_16UC1,
+                                          std::min(3 << (bits - 1), 65536))(Rect(Point(3, 1), size));
+            Mat buffer, grey;
+            const Mat bytes = hdp::byteLevels(image, bits, buffer);
+            hdp::greyLevels(image, bits, grey);
+            ASSERT_EQ(CV_8UC1, bytes.type());
+            ASSERT_EQ(CV_16UC1, grey.type());
+            ASSERT_EQ(size, bytes.size());
+            ASSERT_EQ(size, grey.size());
+            for (int y = 0; y < size.height; ++y)
+                for (int x = 0; x < size.width; ++x)
+                {
+                    const double level = image.at<ushort>(y, x) * 256. / (1 << bits);
+                    ASSERT_EQ(std::min(std::floor(level), 255.), bytes.at<uchar>(y, x));
+                    ASSERT_EQ(std::min(std::floor(4 * level), 1023.), grey.at<ushort>(y, x));
+                }
+        }
+}
+
+TEST(HDPStereo_ImageLevels, of_8_bits_are_the_image_without_alpha)
+{
+    RNG rng(51);
+    Mat buffer;
+    for (int type : { CV_8UC1, CV_8UC3 })
+    {
+        const Mat image = randomImage(rng, Size(9, 7), type);
+        EXPECT_EQ(image.data, hdp::byteLevels(image, 8, buffer).data);
+    }
+    const Mat image = randomImage(rng, Size(9, 7), CV_8UC4);
+    Mat expected;
+    cv::cvtColor(image, expected, COLOR_BGRA2BGR);
+    expectIdentical(expected, hdp::byteLevels(image, 8, buffer));
+}
+
+TEST(HDPStereo_ImageLevels, count_of_bits)
+{
+    const auto countBits = [](const Mat& left, const Mat& right) {
+        const int bits = hdp::countBits(left, right);
+        EXPECT_EQ(oracle::countBits(left, right), bits);
+        return bits;
+    };
+    RNG rng(52);
+    const Size size(70, 50);
+    for (int type : { CV_8UC1, CV_8UC3, CV_8UC4 })
+        EXPECT_EQ(8, hdp::countBits(randomImage(rng, size, type), randomImage(rng, size, type)));
+    for (int used = 1; used <= 16; ++used)
+    {
+        SCOPED_TRACE(testing::Message() << used << " bits");
+        const Mat bright = randomImage(rng, size, CV_16UC1, 1 << used);
+        const Mat dark = randomImage(rng, size, CV_16UC1, std::max(1 << used >> 3, 2));
+        EXPECT_EQ(std::max(used, 8), countBits(bright, dark));
+        EXPECT_EQ(std::max(used, 8), countBits(dark, bright));
+        const Mat column = bright.col(3); // of 50 pixels
+        EXPECT_EQ(std::max(used, 8), countBits(column, column));
+        for (int number : { 6, 7 }) // of white pixels, of 7000 in both images
+        {
+            Mat defective = dark.clone();
+            for (int i = 0; i < number; ++i)
+                defective.at<ushort>(500 * i) = 65535;
+            EXPECT_EQ(number == 7 ? 16 : std::max(used - 3, 8), countBits(dark, defective));
+            EXPECT_EQ(number == 7 ? 16 : std::max(used - 3, 8), countBits(defective, dark));
+        }
+    }
+    const auto countBitsOf = [&](int level) {
+        const Mat pixel(1, 1, CV_16UC1, Scalar(level));
+        return countBits(pixel, pixel);
+    };
+    for (int bits = 9; bits <= 16; ++bits)
+    {
+        EXPECT_EQ(bits - 1, countBitsOf((1 << (bits - 1)) - 1));
+        EXPECT_EQ(bits, countBitsOf(1 << (bits - 1)));
+    }
+    EXPECT_EQ(8, countBitsOf(0));
+    EXPECT_EQ(16, countBitsOf(65535));
+}
+
+////////////////////////////////////////////// the matcher //////////////////////////////////////////////
+
+const int numDisparities = 16;
+
+//! A pair in grey
+SyntheticPair greyPair(int seed)
+{
+    SyntheticPair pair = makeSyntheticPair(Size(131, 83), numDisparities, seed);
+    cv::cvtColor(pair.left, pair.left, COLOR_BGR2GRAY);
+    cv::cvtColor(pair.right, pair.right, COLOR_BGR2GRAY);
+    return pair;
+}
+
+Mat inWords(const Mat& image, int factor)
+{
+    Mat result;
+    image.convertTo(result, CV_16U, factor);
+    return result;
+}
+
+//! Disparities and confidence
+std::vector<Mat> results(HDPTreeMatcher& matcher, InputArray left, InputArray right)
+{
+    std::vector<Mat> maps(2);
+    matcher.compute(left, right, maps[0]);
+    matcher.getConfidence(maps[1]);
+    return maps;
+}
+
+void expectSameResults(HDPTreeMatcher& matcher, const std::vector<Mat>& expected, InputArray left, InputArray right)
+{
+    const std::vector<Mat> actual = results(matcher, left, right);
+    for (size_t i = 0; i < expected.size(); ++i)
+        expectIdentical(expected[i], actual[i]);
+}
+
+//! The share of pixels, in percent, that are wrong by a pixel or more
+double wrong(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, const Mat& truth)
+{
+    Mat disparity;
+    match(matcher, left, right).convertTo(disparity, CV_32F, 1. / 16);
+    return 100. * cv::countNonZero(cv::abs(disparity - truth) >= 1) / (double)truth.total();
+}
+
+TEST(HDPStereo_ImageTypes, alpha_is_ignored)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(131, 83), numDisparities, 21);
+    RNG rng(53);
+    Mat left, right;
+    cv::merge(std::vector<Mat>{ pair.left, randomImage(rng, pair.left.size(), CV_8UC1) }, left);
+    cv::merge(std::vector<Mat>{ pair.right, randomImage(rng, pair.left.size(), CV_8UC1) }, right);
+    const Mat before = left.clone();
+    for (const System& system : allSystems())
+        for (int minDisparity : { 0, -5 })
+        {
+            SCOPED_TRACE(testing::Message() << system.name << ", from " << minDisparity);
+            const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities, minDisparity);
+            expectSameResults(*matcher, results(*matcher, pair.left, pair.right), left, right);
+        }
+    expectIdentical(before, left);
+}
+
+//! The upper 8 of a number of bits
+Mat upperLevels(const Mat& image, int bits)
+{
+    Mat levels(image.size(), CV_8U);
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+            levels.at<uchar>(y, x) = (uchar)(image.at<ushort>(y, x) >> (bits - 8));
+    return levels;
+}
+
+TEST(HDPStereo_ImageTypes, eight_bits_in_words_of_16)
+{
+    const SyntheticPair pair = greyPair(22);
+    const Mat darkLeft = pair.left / 3, darkRight = pair.right / 3, coarseLeft = pair.left & 0xf0,
+              coarseRight = pair.right & 0xf0; // whose lowest bits are 0
+    const Mat pairs[][2] = {
+        { pair.left, pair.right }, { darkLeft, pair.right }, { pair.left, darkRight }, { coarseLeft, coarseRight }
+    };
+    for (const System& system : allSystems())
+    {
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities, -3);
+        for (size_t i = 0; i < 4; ++i)
+        {
+            const Mat &left = pairs[i][0], &right = pairs[i][1];
+            ASSERT_GT(cv::countNonZero(left >= 128) + cv::countNonZero(right >= 128), (int)left.total() / 512);
+            const std::vector<Mat> expected = results(*matcher, left, right);
+            for (int k = 0; k <= 8; ++k)
+            {
+                SCOPED_TRACE(testing::Message() << system.name << ", pair " << i << ", times 2^" << k);
+                expectSameResults(*matcher, expected, inWords(left, 1 << k), inWords(right, 1 << k));
+            }
+        }
+    }
+}
+
+//! Levels from 32 to 63 are the brightest, so wider words hold up to 4 times the contrast.
+TEST(HDPStereo_ImageTypes, dark_images_gain_contrast)
+{
+    const SyntheticPair pair = greyPair(24);
+    const Mat left = pair.left / 4, right = pair.right / 4;
+    ASSERT_GT(cv::countNonZero(left >= 32) + cv::countNonZero(right >= 32), (int)left.total() / 512);
+    for (const System& system : allSystems())
+    {
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
+        std::vector<Mat> expected;
+        for (int k = 0; k <= 10; ++k)
+        {
+            SCOPED_TRACE(testing::Message() << system.name << ", times 2^" << k);
+            if (k <= 2)
+                expected = results(*matcher, left * (1 << k), right * (1 << k));
+            expectSameResults(*matcher, expected, inWords(left, 1 << k), inWords(right, 1 << k));
+        }
+    }
+}
+
+//! The mean error of a preset on grey levels of 12 bits, which are those of colours, and on the upper 8 of the bits.
+//! contrast: 1 has about all levels, less the brightest ones.
+Vec2d errorsOf12And8Bits(const System& system, double contrast)
+{
+    const int pairs = 8;
+    const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
+    Vec2d errors;
+    for (int i = 0; i < pairs; ++i)
+    {
+        const SyntheticPair pair = makeSyntheticPair(Size(131, 83), numDisparities, 23 + i);
+        Mat left, right;
+        oracle::exactGrey(pair.left).convertTo(left, CV_16U, 16 * contrast, 4079 * (1 - contrast));
+        oracle::exactGrey(pair.right).convertTo(right, CV_16U, 16 * contrast, 4079 * (1 - contrast));
+        const Mat left8 = upperLevels(left, 12), right8 = upperLevels(right, 12);
+        errors += Vec2d(wrong(*matcher, left, right, pair.truth), wrong(*matcher, left8, right8, pair.truth));
+        if (system.preset == HDPTreeMatcher::PRESET_PAPER) // its cost has 8 bits
+            expectSameResults(*matcher, results(*matcher, left8, right8), left, right);
+    }
+    return errors / pairs;
+}
+
+//! The census of faint texture gains by two more bits; where the upper 8 bits tell all, they do no harm.
+TEST(HDPStereo_ImageTypes, bits_below_the_eighth)
+{
+    for (const System& system : presets)
+    {
+        SCOPED_TRACE(system.name);
+        const Vec2d full = errorsOf12And8Bits(system, 1), faint = errorsOf12And8Bits(system, 0.025); // of 6 levels
+        EXPECT_LE(full[0], full[1] + 0.15); // percent of the pixels
+        const double limit = system.preset == HDPTreeMatcher::PRESET_PAPER       ? 1
+                             : system.preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 0.95
+                             : system.preset == HDPTreeMatcher::PRESET_TREE      ? 0.95 // edge weights have 8 bits
+                                                                                 : 0.5;
+        EXPECT_LE(faint[0], limit * faint[1]);
+    }
+}
+
+//! 256 of the 4096 levels of a camera of 12 bits, without and with defective pixels
+TEST(HDPStereo_ImageTypes, dark_images_of_12_bits)
+{
+    const SyntheticPair pair = greyPair(24);
+    const Mat left = inWords(pair.left, 1), right = inWords(pair.right, 1);
+    Mat defective = left.clone();
+    for (int i = 0; i < 9; ++i)
+        defective.at<ushort>(9 * i, 14 * i) = 4095;
+    const Mat left8 = upperLevels(left, 12), right8 = upperLevels(right, 12);
+    for (const System& system : presets)
+    {
+        SCOPED_TRACE(system.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
+        const double error = wrong(*matcher, pair.left, pair.right, pair.truth);
+        EXPECT_EQ(error, wrong(*matcher, left, right, pair.truth));
+        EXPECT_LT(wrong(*matcher, defective, right, pair.truth), 1.05 * error + 0.5);
+        EXPECT_LT(3 * error, wrong(*matcher, left8, right8, pair.truth)); // the bits that such cameras are said to have
+    }
+}
+
+TEST(HDPStereo_ImageTypes, regions_and_kinds_of_arrays)
+{
+    const SyntheticPair pair = greyPair(25);
+    const Mat left = inWords(pair.left, 11), right = inWords(pair.right, 11);
+    const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, numDisparities);
+    const std::vector<Mat> expected = results(*matcher, left, right);
+    Mat larger(left.rows + 4, left.cols + 7, CV_16UC1, Scalar(65535));
+    const Mat region = larger(Rect(Point(5, 1), left.size()));
+    left.copyTo(region);
+    expectSameResults(*matcher, expected, region, right);
+    const Mat_<ushort> typed = left;
+    expectSameResults(*matcher, expected, typed, right.getUMat(ACCESS_READ));
+    EXPECT_EQ(65535, larger.at<ushort>(0, 0));
+}
+
+TEST(HDPStereo_ImageTypes, any_number_of_threads)
+{
+    const SyntheticPair pair = greyPair(26);
+    const int threads = cv::getNumThreads();
+    for (const System& system : presets)
+    {
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
+        const Mat left = inWords(pair.left, 37), right = inWords(pair.right, 37);
+        cv::setNumThreads(1);
+        const std::vector<Mat> expected = results(*matcher, left, right);
+        for (int n : { 2, 5 })
+        {
+            cv::setNumThreads(n);
+            expectSameResults(*matcher, expected, left, right);
+        }
+        cv::setNumThreads(threads);
+    }
+}
+
+} // namespace
+} // namespace opencv_test
