@@ -12,3 +12,8 @@ find_dependency(OpenCV ${OpenCV_VERSION})
 include(\"\${CMAKE_CURRENT_LIST_DIR}/hdpstereo-targets.cmake\")
 ")
 install(FILES "${CMAKE_BINARY_DIR}/hdpstereo-config.cmake" DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/hdpstereo)
+
+if(HDPSTEREO_PRELOAD)
+  install(TARGETS hdpstereo_preload hdpstereo_adapters LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/hdpstereo)
+  install(PROGRAMS "${CMAKE_BINARY_DIR}/preload/hdpstereo-run" DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()

@@ -2,6 +2,7 @@
 #   unit, tools       one test for each test suite of opencv_test_hdpstereo and opencv_test_hdpstereo_tools
 #   slow, threads     unit tests that take minutes under a sanitizer; those for ThreadSanitizer
 #   instruction-sets  unit tests, and the maps to the bit, without the wider instruction sets; the objects for those
+#   preload           programs under hdpstereo-run, and what it puts in the place of StereoSGBM
 #   samples, python   programs of samples/ and of OpenCV's own samples; the Python module
 #   performance       one round of the performance tests: that they run, not how fast
 #   documentation     the reference and the tutorials, without a warning
@@ -88,6 +89,10 @@ file(GLOB test_sources CONFIGURE_DEPENDS test/test_*.cpp)
 add_suites(opencv_test_hdpstereo unit ${test_sources})
 file(GLOB tools_test_sources CONFIGURE_DEPENDS tools/test/test_*.cpp)
 add_suites(opencv_test_hdpstereo_tools tools ${tools_test_sources})
+if(HDPSTEREO_PRELOAD)
+  file(GLOB preload_test_sources CONFIGURE_DEPENDS preload/test/test_*.cpp)
+  add_suites(opencv_test_hdpstereo_preload preload ${preload_test_sources})
+endif()
 
 # Samples. These figures are checked elsewhere; this is the only place where the programs see a pair of full size.
 set(aloe "${samples_data}/aloeL.jpg" "${samples_data}/aloeR.jpg" "--truth=${samples_data}/aloeGT.png" --num-disparities=256)
@@ -144,6 +149,15 @@ if(NOT missing)
     "PYTHONPATH=${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/python3")
   set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "OK \\(skipped=")
 endif()
+
+set(missing "")
+if(NOT HDPSTEREO_PRELOAD)
+  set(missing "HDPSTEREO_PRELOAD in this build")
+endif()
+foreach(programs cpp python gstreamer)
+  add_optional_check(run_${programs} preload "${missing}" "${PROJECT_SOURCE_DIR}/scripts/check_run.sh" "${CMAKE_BINARY_DIR}"
+    "${OPENCV_SOURCE_DIR}" ${programs})
+endforeach()
 
 set(missing "")
 find_program(DOXYGEN doxygen)

@@ -15,7 +15,9 @@ if [ "${1:-}" = --sanitize ]; then
     preset=sanitize
     shift
 else
-    packages+=(python3-dev python3-numpy doxygen texlive-binaries libjs-mathjax)
+    packages+=(python3-dev python3-numpy doxygen texlive-binaries libjs-mathjax
+        # programs for hdpstereo-run
+        python3-opencv gstreamer1.0-opencv gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good)
 fi
 install_packages "${packages[@]}"
 cd "$checkout"
