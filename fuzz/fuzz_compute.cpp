@@ -345,7 +345,8 @@ void readFile(Input& input, Algorithm& algorithm)
 Ptr<DisparityPredictionModel> makeModel(Input& input)
 {
     const Ptr<DisparityPredictionModel> model =
-        input.ConsumeBool() ? DisparityPredictionModel::createPublished(input.ConsumeIntegralInRange(0, 3))
+        input.ConsumeBool() ? DisparityPredictionModel::createPublished(input.ConsumeIntegralInRange<int>(
+                                  DisparityPredictionModel::PUBLISHED_LARGE, DisparityPredictionModel::PUBLISHED_SMALL))
                             : DisparityPredictionModel::create();
     for (int layers = input.ConsumeIntegralInRange(0, 4); layers > 0; --layers)
     {
