@@ -11,6 +11,7 @@
 #include "opencv2/core/utils/logger.hpp"
 #include "opencv2/hdpstereo.hpp"
 #include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
 
 using namespace cv;
 using cv::stereo::HDPTreeMatcher;
@@ -52,7 +53,7 @@ private:
 //! [class]
 
 static const char* const keys = "{help h ?        |     | print this and exit }"
-                                "{@left           |     | left image of a rectified pair }"
+                                "{@left           |     | left image of a rectified pair, of 8 or 16 bit }"
                                 "{@right          |     | right image }"
                                 "{num-disparities | 128 | number of disparities, from 0 }"
                                 "{max-weight      | 20  | largest weight of an edge of a tree, 0..255 }"
@@ -63,6 +64,15 @@ static Mat readImage(const String& path, int flags)
     const Mat image = imread(path, flags);
     if (image.empty())
         CV_Error(Error::StsError, "cannot read the image '" + path + "'");
+    return image;
+}
+
+//! Colours in 8 bit, or grey levels in 16 bit of a picture that has them
+static Mat readPicture(const String& path)
+{
+    Mat image = readImage(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
+    if (image.depth() == CV_16U)
+        cvtColor(image, image, COLOR_BGR2GRAY);
     return image;
 }
 
@@ -81,8 +91,7 @@ static void printErrors(const Mat& disparity16, const Mat& truth)
 
 static void run(const CommandLineParser& parser)
 {
-    const Mat left = readImage(parser.get<String>("@left"), IMREAD_COLOR),
-              right = readImage(parser.get<String>("@right"), IMREAD_COLOR),
+    const Mat left = readPicture(parser.get<String>("@left")), right = readPicture(parser.get<String>("@right")),
               truth = parser.has("truth") ? readImage(parser.get<String>("truth"), IMREAD_GRAYSCALE) : Mat();
     const int numDisparities = parser.get<int>("num-disparities"), maxWeight = parser.get<int>("max-weight");
 

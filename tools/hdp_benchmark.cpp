@@ -79,16 +79,16 @@ static void measureRun(Measurement& result, Ptr<cv::StereoMatcher>& matcher, con
         if (!method.isHdp) // its buffers are those of a wider pair
             matcher.release();
     }
-    const Mat left = imageFor(method, pair.left), right = imageFor(method, pair.right);
+    const std::array<Mat, 2> images = imagesFor(method, pair.left, pair.right);
     Mat disparity;
     if (!matcher)
     {
         matcher = method.create(pair.disparities);
-        matcher->compute(left, right, disparity);
+        matcher->compute(images[0], images[1], disparity);
     }
     TickMeter timer;
     timer.start();
-    matcher->compute(left, right, disparity);
+    matcher->compute(images[0], images[1], disparity);
     timer.stop();
     result.milliseconds.push_back(timer.getTimeMilli());
     if (method.isHdp)

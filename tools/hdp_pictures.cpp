@@ -49,6 +49,8 @@ static int run(const CommandLineParser& parser)
     const Pair pair = readPair(parser);
     if (pair.truth.empty())
         fail("--truth is needed");
+    Mat left = pair.left, right = pair.right;
+    toColors(left, right);
     const int width = getInteger(parser, "width", 16, 4096);
     const Vec2f range = colorRange(pair.truth);
 
@@ -69,9 +71,9 @@ static int run(const CommandLineParser& parser)
     const Method sgbm = selectMethods("", "sgbm-3way")[0];
     const Mat ofSgbm = matchDensely(sgbm, *sgbm.create(pair.disparities), pair.left, pair.right);
     const Mat ofFast = match(*create(HDPTreeMatcher::PRESET_FAST));
-    save("sgbm.jpg", { pair.left, colorPicture(ofSgbm, range), colorPicture(ofFast, range) }, INTER_AREA);
+    save("sgbm.jpg", { left, colorPicture(ofSgbm, range), colorPicture(ofFast, range) }, INTER_AREA);
 
-    save("pair.jpg", { pair.left, pair.right, colorPicture(pair.truth, range) }, INTER_AREA);
+    save("pair.jpg", { left, right, colorPicture(pair.truth, range) }, INTER_AREA);
 
     const Ptr<HDPTreeMatcher> paper = create(HDPTreeMatcher::PRESET_PAPER), fast = create(HDPTreeMatcher::PRESET_FAST);
     for (const Ptr<HDPTreeMatcher>& matcher : { paper, fast })

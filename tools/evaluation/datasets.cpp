@@ -277,12 +277,17 @@ static int readDisparityCount(const String& path)
 }
 
 //! Reads a picture that must have the size of the left image.
-static Mat readOfSize(const String& path, int flags, cv::Size size)
+static void expectSize(const String& path, const Mat& image, cv::Size size)
 {
-    const Mat image = readImage(path, flags);
     if (image.size() != size)
         fail(cv::format("'%s' is %d x %d, the left image is %d x %d", path.c_str(), image.cols, image.rows, size.width,
                         size.height));
+}
+
+static Mat readOfSize(const String& path, int flags, cv::Size size)
+{
+    const Mat image = readImage(path, flags);
+    expectSize(path, image, size);
     return image;
 }
 
@@ -327,9 +332,10 @@ Pair readPair(const Scene& scene)
 {
     Pair pair;
     pair.protocol = Pair::NO_TRUTH;
-    pair.left = readImage(scene.left, cv::IMREAD_COLOR);
+    pair.left = readPicture(scene.left);
+    pair.right = readPicture(scene.right);
     const cv::Size size = pair.left.size();
-    pair.right = readOfSize(scene.right, cv::IMREAD_COLOR, size);
+    expectSize(scene.right, pair.right, size);
     if (!scene.truth.empty())
     {
         int depth = 0;

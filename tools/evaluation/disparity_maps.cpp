@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
 
 #include "command_line.hpp"
 
@@ -43,6 +44,14 @@ Mat readImage(const String& path, int flags)
     if (image.empty())
         fail("cannot read the image '" + path + "'");
     return image;
+}
+
+Mat readPicture(const String& path)
+{
+    Mat picture = readImage(path, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH);
+    if (picture.depth() == CV_16U)
+        cv::cvtColor(picture, picture, cv::COLOR_BGR2GRAY);
+    return picture;
 }
 
 void writeImage(const String& path, const Mat& image)

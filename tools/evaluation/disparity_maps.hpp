@@ -33,6 +33,9 @@ bool hasExtension(const String& path, const String& extension);
 //! Reads an image; throws an exception that names the file.
 Mat readImage(const String& path, int flags);
 
+//! Reads a picture of a camera as HDPTreeMatcher takes it: BGR in 8 bit, or grey levels in 16 bit if the file has 16.
+Mat readPicture(const String& path);
+
 //! Writes an image in the format of the path's extension; fails on a full disk, too.
 void writeImage(const String& path, const Mat& image);
 

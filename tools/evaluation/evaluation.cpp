@@ -84,7 +84,9 @@ static void evaluateScene(const EvaluationSettings& settings, SceneResult& resul
     result.size = pair.left.size();
     if (settings.hasReport)
     {
-        result.maps = figure(pair.left, "left image");
+        Mat left = pair.left, right = pair.right;
+        toColors(left, right);
+        result.maps = figure(left, "left image");
         if (pair.protocol != Pair::NO_TRUTH)
             result.maps += figure(resultPicture(pair.truth, pair), "truth");
     }

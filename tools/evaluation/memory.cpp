@@ -37,18 +37,18 @@ double measureMemory(const Method& method, const Pair& pair)
     // Threads, tables and the like are there after a first small pair.
     Mat noise(64, 128, CV_8UC3), disparity;
     cv::randu(noise, 0, 256);
-    const Mat small = imageFor(method, noise);
-    method.create(cv::Range(0, 16))->compute(small, small, disparity);
+    const std::array<Mat, 2> small = imagesFor(method, noise, noise);
+    method.create(cv::Range(0, 16))->compute(small[0], small[1], disparity);
 
-    const Mat left = imageFor(method, pair.left), right = imageFor(method, pair.right);
-    disparity = Mat(left.size(), CV_16SC1, cv::Scalar(0));
+    const std::array<Mat, 2> images = imagesFor(method, pair.left, pair.right);
+    disparity = Mat(images[0].size(), CV_16SC1, cv::Scalar(0));
     const Ptr<cv::StereoMatcher> matcher = method.create(pair.disparities);
 #ifdef __GLIBC__
     malloc_trim(0); // or compute() would be given what reading the images left behind
 #endif
     std::ofstream("/proc/self/clear_refs") << 5 << std::flush; // the peak starts again at what is in use
     const long before = peakKilobytes();
-    matcher->compute(left, right, disparity);
+    matcher->compute(images[0], images[1], disparity);
     return (peakKilobytes() - before) * 1024. / double(disparity.total());
 }
 

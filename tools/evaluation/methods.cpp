@@ -9,6 +9,7 @@
 #include "opencv2/imgproc.hpp"
 
 #include "command_line.hpp"
+#include "pair.hpp"
 
 namespace hdp_tools {
 
@@ -175,12 +176,15 @@ std::vector<Method> selectMethods(const String& option, const String& list, cons
     return selected;
 }
 
-Mat imageFor(const Method& method, const Mat& image)
+std::array<Mat, 2> imagesFor(const Method& method, const Mat& left, const Mat& right)
 {
-    Mat result = image;
-    if (method.isGray)
-        cv::cvtColor(image, result, cv::COLOR_BGR2GRAY);
-    return result;
+    std::array<Mat, 2> images = { { left, right } };
+    if (!method.isHdp)
+        toColors(images[0], images[1]);
+    for (Mat& image : images)
+        if (method.isGray)
+            cv::cvtColor(image, image, cv::COLOR_BGR2GRAY);
+    return images;
 }
 
 Mat matchDensely(const Method& method, cv::StereoMatcher& matcher, const Mat& left, const Mat& right, double* seconds,
@@ -189,7 +193,7 @@ Mat matchDensely(const Method& method, cv::StereoMatcher& matcher, const Mat& le
     const int minDisparity = matcher.getMinDisparity();
     const int before = method.isHdp ? 0 : std::max(minDisparity + matcher.getNumDisparities(), 0),
               behind = method.isHdp ? 0 : std::max(-minDisparity, 0);
-    Mat images[2] = { imageFor(method, left), imageFor(method, right) };
+    std::array<Mat, 2> images = imagesFor(method, left, right);
     if (!method.isHdp)
         for (Mat& image : images)
             cv::copyMakeBorder(image, image, 0, 0, before, behind, cv::BORDER_CONSTANT);

@@ -7,6 +7,7 @@
 #ifndef OPENCV_HDPSTEREO_TOOLS_METHODS_HPP
 #define OPENCV_HDPSTEREO_TOOLS_METHODS_HPP
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -51,8 +52,8 @@ int presetOf(const String& name);
 std::vector<Method> selectMethods(const String& option, const String& list,
                                   const Ptr<DisparityPredictionModel>& model = Ptr<DisparityPredictionModel>());
 
-//! The image as the method takes it
-Mat imageFor(const Method& method, const Mat& image);
+//! The images as the method takes them; those of OpenCV in 8 bit
+std::array<Mat, 2> imagesFor(const Method& method, const Mat& left, const Mat& right);
 
 /** Matches a pair; disparities in pixels.
 

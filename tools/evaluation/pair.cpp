@@ -7,13 +7,14 @@
 #include <algorithm>
 
 #include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
 
 #include "command_line.hpp"
 
 namespace hdp_tools {
 
 const char* const PAIR_KEYS =
-    "{@left           |     | left image of a rectified pair }"
+    "{@left           |     | left image of a rectified pair, of 8 or 16 bit }"
     "{@right          |     | right image }"
     "{min-disparity   | 0   | smallest disparity in pixels }"
     "{num-disparities |     | number of disparities; by default a fifth of the width, rounded up to a multiple of 16 }"
@@ -51,14 +52,26 @@ static void readTruth(const cv::CommandLineParser& parser, Pair& pair)
         fail("--truth knows no pixel" + String(hasRight ? " that --truth-right agrees with" : ""));
 }
 
+void toColors(Mat& left, Mat& right)
+{
+    const double largest = std::max(cv::norm(left, cv::NORM_INF), cv::norm(right, cv::NORM_INF));
+    for (Mat* image : { &left, &right })
+        if (image->depth() == CV_16U)
+        {
+            Mat bytes;
+            image->convertTo(bytes, CV_8U, 255 / std::max(largest, 1.));
+            cv::cvtColor(bytes, *image, cv::COLOR_GRAY2BGR);
+        }
+}
+
 Pair readPair(const cv::CommandLineParser& parser)
 {
     if (!parser.has("@left") || !parser.has("@right"))
         fail("a left and a right image are needed, see --help");
     Pair pair;
     pair.protocol = Pair::NO_TRUTH;
-    pair.left = readImage(parser.get<String>("@left"), cv::IMREAD_COLOR);
-    pair.right = readImage(parser.get<String>("@right"), cv::IMREAD_COLOR);
+    pair.left = readPicture(parser.get<String>("@left"));
+    pair.right = readPicture(parser.get<String>("@right"));
     if (pair.left.size() != pair.right.size())
         fail(cv::format("the images differ in size: %d x %d and %d x %d", pair.left.cols, pair.left.rows,
                         pair.right.cols, pair.right.rows));

@@ -24,7 +24,7 @@ struct Pair
         BAD         //!< Middlebury 2014, MiddEval3, ETH3D: errors above 0.5, 1, 2 and 4 of the non-occluded pixels
     };
     Protocol protocol;
-    Mat left, right;       // CV_8UC3
+    Mat left, right;       // CV_8UC3 or CV_16UC1, see readPicture()
     cv::Range disparities; // to be searched
     Mat truth;             // NO_DISPARITY where unknown; empty without truth
     Mat judged;            // mask of the pixels that count
@@ -36,6 +36,9 @@ extern const char* const PAIR_KEYS;
 
 //! The pair of a command line; of the protocol MIDDLEBURY if there is a truth.
 Pair readPair(const cv::CommandLineParser& parser);
+
+//! Images in CV_8UC3, for cv::StereoSGBM and to be shown: of 16 bit, the largest value of both images becomes white.
+void toColors(Mat& left, Mat& right);
 
 //! A number of disparities for a pair that nothing is known of: a fifth of the width, a multiple of 16
 int defaultNumDisparities(int width);

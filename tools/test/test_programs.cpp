@@ -191,30 +191,56 @@ TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
 }
 
 //! Pictures of 16 bit stay so: in 8 bit, this texture would have 13 levels.
-TEST(HDPStereo_Programs, stereo_match_reads_16_bit)
+TEST(HDPStereo_Programs, read_16_bit)
 {
     const DatasetFolder folder;
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 23);
-    for (const char* side : { "left", "right" })
+    Mat truth;
+    pair.truth.convertTo(truth, CV_16U, 256);
+    for (const String scene : { "scenes/grey/", "scenes/faint/" })
     {
-        Mat grey, faint;
-        cv::cvtColor(side == String("left") ? pair.left : pair.right, grey, COLOR_BGR2GRAY);
-        folder.write("grey/" + String(side) + ".png", grey);
-        grey.convertTo(faint, CV_16U, 13, 61000);
-        folder.write("faint/" + String(side) + ".png", faint);
+        for (const String side : { "left", "right" })
+        {
+            Mat image;
+            cv::cvtColor(side == "left" ? pair.left : pair.right, image, COLOR_BGR2GRAY);
+            if (scene == "scenes/faint/")
+                image.convertTo(image, CV_16U, 13, 61000);
+            folder.write(scene + side + ".png", image);
+        }
+        folder.write(scene + "disp_left.png", truth);
     }
-    Mat errors[2];
-    for (int i = 0; i < 2; ++i)
+    const auto countErrors = [&](const String& map, double scale) {
+        Mat disparity;
+        cv::imread(folder.path(map), IMREAD_UNCHANGED).convertTo(disparity, CV_32F, scale);
+        EXPECT_EQ(pair.truth.size(), disparity.size());
+        return disparity.empty() ? INT_MAX : cv::countNonZero(cv::abs(disparity - pair.truth) >= 1);
+    };
+    const auto images = [&](const String& scene) {
+        return " " + folder.path("scenes/" + scene + "/left.png") + " " +
+               folder.path("scenes/" + scene + "/right.png") + " --num-disparities=32";
+    };
+    for (const String scene : { "grey", "faint" })
     {
-        const String scene = i == 0 ? "grey/" : "faint/", map = folder.path(scene + "map.pfm");
-        const Execution result =
-            run(folder, "example_hdpstereo_hdp_stereo_match " + folder.path(scene + "left.png") + " " +
-                            folder.path(scene + "right.png") + " --num-disparities=32" + " --output=" + map +
-                            " --focal=100 --baseline=2 --point-cloud=" + folder.path(scene + "points.ply"));
+        const Execution result = run(folder, "example_hdpstereo_hdp_stereo_match" + images(scene) +
+                                                 " --output=" + folder.path(scene + ".pfm") + " --focal=100" +
+                                                 " --baseline=2 --point-cloud=" + folder.path(scene + ".ply"));
         EXPECT_EQ(0, result.status) << result.errors;
-        errors[i] = cv::abs(cv::imread(map, IMREAD_UNCHANGED) - pair.truth) >= 1;
     }
-    EXPECT_LT(cv::countNonZero(errors[1]), 1.5 * cv::countNonZero(errors[0]));
+    const int limit = 3 * countErrors("grey.pfm", 1) / 2;
+    EXPECT_LT(countErrors("faint.pfm", 1), limit);
+
+    const Execution evaluated =
+        run(folder, "hdp_evaluate " + folder.path("scenes") + " --num-disparities=32 --methods=fast,opencv --maps=" +
+                        folder.path("maps") + " --report=" + folder.path("report"));
+    EXPECT_EQ(0, evaluated.status) << evaluated.errors;
+    EXPECT_LT(countErrors("maps/fast/scenes/faint.png", 1. / 256), limit);
+    for (const String command : { "hdp_benchmark --runs=1 --methods=fast,opencv", "example_hdpstereo_hdp_own_tree" })
+    {
+        const Execution result = run(folder, command + images("faint"));
+        EXPECT_EQ(0, result.status) << result.errors;
+    }
+    const String option = " --truth=" + folder.path("scenes/faint/disp_left.png") + " --output=" + folder.root;
+    EXPECT_EQ(0, run(folder, "hdp_pictures" + images("faint") + option).status);
 }
 
 //! Two numbered sequences, with the calibration of cameras that are rectified already
