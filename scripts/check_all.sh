@@ -7,6 +7,7 @@
 #     memory     10,000 calls of compute() under LeakSanitizer, and what is allocated meanwhile
 #     fuzz       scripts/fuzz.sh, for 1800 s or N
 #     in-tree    scripts/build_in_tree.sh
+#     ros        ROS 1's stereo_image_proc under hdpstereo-run
 #     bookworm, trixie   scripts/test.sh from a clone in a fresh Debian 12 or 13 (as root; mmdebstrap makes it)
 # Each step's messages are in build/check_all/STEP.log; a summary comes last, and the status is that of the worst step.
 # HDPSTEREO_MMDEBSTRAP: further options of mmdebstrap.
@@ -18,11 +19,11 @@ steps=()
 for argument in "$@"; do
     case $argument in
     --fuzz-seconds=*) fuzz_seconds=${argument#*=} ;;
-    warnings | widths | threads | memory | fuzz | in-tree | bookworm | trixie) steps+=("$argument") ;;
+    warnings | widths | threads | memory | fuzz | in-tree | ros | bookworm | trixie) steps+=("$argument") ;;
     *) fail "no step $argument: $(sed -n 's/^#     \([a-z, -]*\)   .*/\1/p' "${BASH_SOURCE[0]}" | paste -sd ' ')" ;;
     esac
 done
-[ ${#steps[@]} -gt 0 ] || steps=(warnings widths threads memory fuzz in-tree bookworm trixie)
+[ ${#steps[@]} -gt 0 ] || steps=(warnings widths threads memory fuzz in-tree ros bookworm trixie)
 
 # build_tests DIRECTORY TARGET [OPTION...]: a build with tests, with these options of CMake.
 build_tests()
@@ -82,6 +83,15 @@ check_fuzz()
 check_in-tree()
 {
     "$checkout/scripts/build_in_tree.sh"
+}
+
+check_ros()
+{
+    install_packages build-essential cmake libopencv-dev python3-opencv ros-stereo-image-proc libstereo-image-proc-dev \
+        libimage-proc-dev libnodeletlib-tools python3-rosmaster python3-rospy python3-netifaces \
+        python3-sensor-msgs python3-stereo-msgs
+    build_tests "$build/release" hdpstereo_preload
+    "$checkout/scripts/check_run.sh" "$build/release" "$OPENCV_SOURCE_DIR" ros
 }
 
 # check_debian SUITE: what is committed, on a machine that has nothing yet.
