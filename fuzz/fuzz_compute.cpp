@@ -397,7 +397,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         return input.ConsumeBool() && input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-1, last + 1);
     };
     change(m, [&] {
-        switch (input.ConsumeIntegralInRange(0, 36))
+        switch (input.ConsumeIntegralInRange(0, 37))
         {
         case 0:
             return m.setMinDisparity(input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-200, 200));
@@ -469,6 +469,8 @@ void setParameter(Input& input, HDPTreeMatcher& m)
             return m.setMaxTopDisparities(upTo(100));
         case 35:
             return m.setTopAggregation(upTo(1));
+        case 36:
+            return m.setMaxRowOffset(upTo(100));
         default:
             return m.setUseNonLocalRefinement(input.ConsumeBool());
         }

@@ -45,6 +45,12 @@ public:
                               p_.matchingCost == COST_CENSUS, pyramids_, images);
         });
 
+        if (p_.maxRowOffset > 0)
+            clock_.run("row alignment", [&] {
+                const RowSearch search = { p_.numDisparities, p_.maxRowOffset };
+                result_.hasAlignedRows = alignPair(search, settings.finestLayer, pyramids_, images, result_.rows);
+            });
+
         layers_.resize(settings.layers);
         for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
         {
@@ -59,6 +65,7 @@ public:
             const Mat& finest = layers_[settings.finestLayer].disparity;
             result_.isFiltered = outputDisparity(finest, p_, settings, output_, disparity);
         });
+        result_.rows = result_.rows.about(0.5 * settings.extension + p_.minDisparity);
         result_.size = left.size();
         result_.settings = settings;
         result_.numDisparities = p_.numDisparities;
@@ -102,6 +109,7 @@ public:
     HDP_PARAMETER(bool, FillOcclusions, fillOcclusions)
     HDP_PARAMETER(int, DisparityDepth, disparityDepth)
     HDP_PARAMETER(bool, UseNonLocalRefinement, useNonLocalRefinement)
+    HDP_PARAMETER(int, MaxRowOffset, maxRowOffset)
 
     void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE
     {
@@ -166,6 +174,14 @@ public:
             confidence.setTo(Scalar(0), output_.rejected);
     }
 
+    bool getRowAlignment(std::vector<double>& model) const CV_OVERRIDE
+    {
+        model.assign(RowModel::terms, 0);
+        if (isMatched())
+            std::copy(result_.rows.coefficients.val, result_.rows.coefficients.val + RowModel::terms, model.begin());
+        return isMatched() && result_.hasAlignedRows;
+    }
+
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
     {
         stages = isMatched() ? clock_.stages : std::vector<String>();
@@ -195,6 +211,8 @@ private:
         Size size; // of the image; empty: no pair is matched
         PairSettings settings;
         int numDisparities = 0;
+        RowModel rows; // about the right image's centre
+        bool hasAlignedRows = false;
         bool isFiltered = false; // OutputBuffers::rejected has a meaning
     };
 

@@ -51,6 +51,7 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
     visit("speckleWindowSize", &P::speckleWindowSize);
     visit("speckleRange", &P::speckleRange, ">= 0", [](int v) { return v >= 0; });
     visit("disp12MaxDiff", &P::disp12MaxDiff);
+    visit("maxRowOffset", &P::maxRowOffset, ">= 0", [](int v) { return v >= 0; });
     visit("usePrediction", &P::usePrediction);
     visit("useMedianPrefilter", &P::useMedianPrefilter);
     visit("numLayers", &P::numLayers, "in 1..16", [](int v) { return isIn(v, 1, 16); });
@@ -212,6 +213,7 @@ MatcherParameters presetParameters(int preset)
     if (preset == M::PRESET_PAPER)
         return p;
 
+    p.maxRowOffset = 64;
     p.matchingCost = M::COST_CENSUS;
     p.blockSize = 7;
     p.gamma = 20;

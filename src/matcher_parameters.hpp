@@ -20,6 +20,7 @@ struct MatcherParameters
     int speckleWindowSize = 0;
     int speckleRange = 0;
     int disp12MaxDiff = -1;
+    int maxRowOffset = 0;
 
     Ptr<TreeStrategy> treeStrategy = createMinimumSpanningTree();
     Ptr<DisparityPredictionModel> predictionModel; // empty: the published one

@@ -125,6 +125,7 @@ TEST(HDPStereo_BadInput, setters)
     {
         expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleRange(bad); }, "speckleRange");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setMaxTopDisparities(bad); }, "maxTopDisparities");
+        expectBadValue([bad](HDPTreeMatcher& m) { m.setMaxRowOffset(bad); }, "maxRowOffset");
     }
     for (int bad : { 0, -1, 17, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setNumLayers(bad); }, "numLayers");

@@ -22,6 +22,7 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setUseMedianPrefilter(true);
     matcher->setNumLayers(2);
     matcher->setMaxTopDisparities(48);
+    matcher->setMaxRowOffset(7);
     const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
     model->addLayer(std::vector<double>(1, 0.375), std::vector<double>(1, 1.25), std::vector<double>(1, 1.));
     matcher->setPredictionModel(model);
@@ -76,6 +77,7 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_TRUE(read->getUseMedianPrefilter());
             EXPECT_EQ(2, read->getNumLayers());
             EXPECT_EQ(48, read->getMaxTopDisparities());
+            EXPECT_EQ(7, read->getMaxRowOffset());
             ASSERT_FALSE(read->getPredictionModel().empty());
             EXPECT_EQ(1, read->getPredictionModel()->getNumLayers());
             EXPECT_EQ(0.03125, read->getDelta0());
@@ -235,6 +237,7 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "useMedianPrefilter", { "0.5", 0 } },
         { "numLayers", { "0", "-1", "17", "2147483647", "1.5", 0 } },
         { "maxTopDisparities", { "-1", "-2147483648", "1.5", 0 } },
+        { "maxRowOffset", { "-1", "-2147483648", "1.5", 0 } },
         { "disparityMedianSize", { "1", "2", "-2", "4", "9", "2147483647", 0 } },
         { "disparityMedianPasses", { "0", "-1", "9", "2147483647", "1.5", 0 } },
         { "matchingCost", { "-1", "2", "2147483647", "0.5", 0 } },
@@ -305,6 +308,7 @@ TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
                                   "P1",
                                   "P2",
                                   "maxTopDisparities",
+                                  "maxRowOffset",
                                   "scanlinePasses",
                                   "finestLayer",
                                   "useNonLocalRefinement",

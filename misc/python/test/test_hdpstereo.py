@@ -40,6 +40,7 @@ PARAMETERS = {
     'UseMedianPrefilter': (False, True),
     'NumLayers': (3, 2),
     'MaxTopDisparities': (0, 64),
+    'MaxRowOffset': (0, 16),
     'Delta0': (-1, 0.125),
     'Beta': (-1, 0.5),
     'Gamma': (25.5, 12.75),
@@ -336,6 +337,17 @@ class hdpstereo_test(TestCase):
         self.assertRaises(cv.error, matcher.compute, self.left, self.right[:-1])
         self.assertIsNone(matcher.getConfidence())
 
+    def test_row_alignment(self):
+        moved = np.roll(self.right, 2, axis=0)  # the right camera looks 2 rows higher
+        matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
+        matcher.compute(self.left, moved)
+        aligned, model = matcher.getRowAlignment()
+        self.assertTrue(aligned)
+        self.assertEqual(5, len(model))
+        self.assertAlmostEqual(2, model[0], delta=0.1)
+        matcher.compute(self.left, self.right)
+        self.assertFalse(matcher.getRowAlignment()[0])
+
     def test_what_the_last_compute_did(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32, PRESETS['PAPER'])
         self.assertEqual(0, len(matcher.getSearchRatios()))
@@ -529,6 +541,7 @@ class hdpstereo_test(TestCase):
                 ('SpeckleRange', -1, 'speckleRange must be >= 0, not -1'),
                 ('NumLayers', 17, 'numLayers must be in 1..16, not 17'),
                 ('MaxTopDisparities', -1, 'maxTopDisparities must be >= 0, not -1'),
+                ('MaxRowOffset', -1, 'maxRowOffset must be >= 0, not -1'),
                 ('Delta0', 1.0, 'delta0 must be in [0, 1) or AUTO, not 1'),
                 ('Beta', 1.5, 'beta must be in [0, 1] or AUTO, not 1.5'),
                 ('Gamma', 0, 'gamma must be finite and > 0, not 0'),

@@ -1,0 +1,280 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "row_alignment.hpp"
+#include "row_alignment.simd.hpp"
+#include "row_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+
+#include "image_pyramid.hpp"
+#include "row_matches.hpp"
+
+#include <cfloat>
+#include <cmath>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+const int coarseArea = 45000; // of the layer that the search begins on, at most, in pixels
+const int leastMatches = 24;
+const double ownVariance = 0.02 * 0.02; // of a match's row, beside what its window says, in pixels of its layer
+const int fitIterations = 12;
+const double outlier = 2; // deviation in standard deviations at which the weight of a match is a half
+
+// What is expected of a model: standard deviations of a slope, and of its change over the width of the image
+const double slopeDeviation = 2e-3, slopeChange = 1e-3;
+
+// A model is applied if it moves rows by more than this root of the mean square, in pixels, when its deviation is taken
+// from it so many times. What is below costs more by interpolation than it gains.
+const double leastMove = 0.12, certainty = 2;
+
+typedef RowModel::Coefficients Coefficients;
+typedef Matx<double, RowModel::terms, RowModel::terms> Covariance;
+
+void dispatchMix(const uchar* const rows[4], const int weights[4], int begin, int end, uchar* mixed)
+{
+    CV_CPU_DISPATCH(mixRows, (rows, weights, begin, end, mixed), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchMix(const ushort* const rows[4], const int weights[4], int begin, int end, ushort* mixed)
+{
+    CV_CPU_DISPATCH(mixRows, (rows, weights, begin, end, mixed), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! A match in pixels of the image
+struct RowMove
+{
+    Coefficients basis; // of its place
+    double move, deviation;
+};
+
+//! Places are in pixels of a layer.
+Point2d fromCentre(double x, double y, int layer, Size size)
+{
+    const double scale = 1 << layer;
+    return Point2d((x + 0.5) * scale - 0.5 * size.width, (y + 0.5) * scale - 0.5 * size.height);
+}
+
+std::vector<RowMove> toMoves(const std::vector<RowMatch>& matches, int layer, Size size)
+{
+    const double scale = 1 << layer;
+    std::vector<RowMove> moves;
+    for (const RowMatch& match : matches)
+        if (match.isValid)
+        {
+            const Point2d place = fromCentre(match.x, match.left.y, layer, size);
+            const RowMove move = { RowModel::basis(place), (match.y - match.left.y) * scale,
+                                   std::sqrt(match.variance + ownVariance) * scale };
+            moves.push_back(move);
+        }
+    return moves;
+}
+
+double medianOf(std::vector<double>& values)
+{
+    const size_t middle = values.size() / 2;
+    std::nth_element(values.begin(), values.begin() + middle, values.end());
+    return values[middle];
+}
+
+struct RowFit
+{
+    RowModel model;
+    Covariance covariance;
+};
+
+//! Least squares, reweighted for Cauchy's distribution of the deviations
+RowFit fitRows(const std::vector<RowMove>& moves, Size size)
+{
+    const double curve = slopeChange / size.width;
+    const Coefficients expected(size.height, slopeDeviation, slopeDeviation, curve, curve);
+    RowFit fit;
+    std::vector<double> values;
+    for (const RowMove& move : moves)
+        values.push_back(move.move);
+    fit.model.coefficients[0] = medianOf(values);
+    for (int iteration = 0; iteration < fitIterations; ++iteration)
+    {
+        values.clear();
+        for (const RowMove& move : moves)
+            values.push_back(std::abs(move.move - fit.model.coefficients.dot(move.basis)) / move.deviation);
+        std::vector<double> sorted = values;
+        const double scale = std::max(1.4826 * medianOf(sorted), 1.); // of the deviations, at least as they claim
+        Covariance information;
+        Coefficients sum;
+        for (int i = 0; i < RowModel::terms; ++i)
+            information(i, i) = 1 / (expected[i] * expected[i]);
+        for (size_t m = 0; m < moves.size(); ++m)
+        {
+            const RowMove& move = moves[m];
+            const double relative = values[m] / (scale * outlier), deviation = scale * move.deviation;
+            const double weight = 1 / ((1 + relative * relative) * deviation * deviation);
+            information += weight * move.basis * move.basis.t();
+            sum += weight * move.move * move.basis;
+        }
+        fit.covariance = information.inv(DECOMP_CHOLESKY);
+        fit.model.coefficients = fit.covariance * sum;
+    }
+    return fit;
+}
+
+//! Means over the image
+struct MeanSquares
+{
+    double move, deviation; // of the model
+
+    MeanSquares(const RowFit& fit, Size size) : move(0), deviation(0)
+    {
+        const int side = 8;
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j)
+            {
+                const Point2d place(((j + 0.5) / side - 0.5) * size.width, ((i + 0.5) / side - 0.5) * size.height);
+                const Coefficients basis = RowModel::basis(place);
+                const double value = fit.model.coefficients.dot(basis);
+                move += value * value / (side * side);
+                deviation += basis.dot(fit.covariance * basis) / (side * side);
+            }
+    }
+};
+
+//! The largest move at a corner of the image
+double largestMove(const RowModel& model, Size size)
+{
+    double largest = 0;
+    for (int i = 0; i < 4; ++i)
+        largest =
+            std::max(largest, std::abs(model.at(Point2d((i % 2 - 0.5) * size.width, (i / 2 - 0.5) * size.height))));
+    return largest;
+}
+
+//! The matches of a layer where they are to be tracked in the next finer one: rows are those of the model.
+void enterFinerLayer(const RowModel& model, int layer, Size size, std::vector<RowMatch>& matches)
+{
+    for (RowMatch& match : matches)
+    {
+        const double move = model.at(fromCentre(match.x, match.left.y, layer, size)) / (1 << (layer - 1));
+        match.left *= 2;
+        match.x *= 2;
+        match.y = match.left.y + move;
+    }
+}
+
+//! The pyramid down to coarseArea; returns its last layer.
+int buildCoarse(const std::vector<Mat>& layers, std::vector<Mat>& pyramid)
+{
+    if (pyramid.size() < layers.size())
+        pyramid.resize(layers.size());
+    std::copy(layers.begin(), layers.end(), pyramid.begin());
+    int layer = 0;
+    for (; pyramid[layer].total() > (size_t)coarseArea; ++layer)
+        if (layer + 1 >= (int)layers.size())
+        {
+            if (layer + 1 == (int)pyramid.size())
+                pyramid.push_back(Mat());
+            halveImage(pyramid[layer], pyramid[layer + 1]);
+        }
+    return layer;
+}
+
+const int fractions = 64; // of a row
+
+int64 wholeOf(double value) { return (int64)std::floor(value + 0.5); }
+
+//! Of four rows in 1/1024, for the place between the second and the third (Catmull and Rom)
+void cubicWeights(double t, int weights[4])
+{
+    weights[0] = cvRound(512 * (-t + 2 * t * t - t * t * t));
+    weights[2] = cvRound(512 * (t + 4 * t * t - 3 * t * t * t));
+    weights[3] = cvRound(512 * (t * t * t - t * t));
+    weights[1] = 1024 - weights[0] - weights[2] - weights[3];
+}
+
+//! The columns of a row that come from the same place between the rows of the other image
+template <typename T> void mixColumns(const Mat& right, int row, const int weights[4], Range columns, T* aligned)
+{
+    const T* rows[4];
+    for (int i = 0; i < 4; ++i)
+        rows[i] = right.ptr<T>(std::min(std::max(row - 1 + i, 0), right.rows - 1));
+    dispatchMix(rows, weights, columns.start * right.channels(), columns.end * right.channels(), aligned);
+}
+
+//! aligned(x, y) for all x. A row of the model is a straight line: its columns come in runs from the same place.
+template <typename T> void alignRow(const Mat& right, const RowModel& model, int y, const int weights[][4], T* aligned)
+{
+    const int64 one = (int64)1 << 24; // a place
+    const double first = y + model.at(fromCentre(0, y, 0, right.size()));
+    const double last = y + model.at(fromCentre(right.cols, y, 0, right.size()));
+    const int64 start = wholeOf(first * fractions * one) + one / 2;
+    const int64 step = wholeOf((last - first) / right.cols * fractions * one);
+    for (int begin = 0, end; begin < right.cols; begin = end)
+    {
+        const int64 position = start + begin * step, within = position & (one - 1);
+        const int64 run = step > 0 ? (one - within + step - 1) / step : step < 0 ? within / -step + 1 : right.cols;
+        end = (int)std::min<int64>(begin + run, right.cols);
+        const int place = (int)(position >> 24);
+        mixColumns(right, place >> 6, weights[place & (fractions - 1)], Range(begin, end), aligned);
+    }
+}
+
+} // namespace
+
+bool estimateRows(const std::vector<Mat>& left, const std::vector<Mat>& right, const RowSearch& search, int finestLayer,
+                  RowBuffers& buffers, RowModel& model)
+{
+    model = RowModel();
+    const Size size = left[0].size();
+    const int top = buildCoarse(left, buffers.left);
+    finestLayer = std::min(finestLayer, top);
+    buildCoarse(right, buffers.right);
+    if (std::min(buffers.left[top].rows, buffers.left[top].cols) < RowMatching::leastSide)
+        return false;
+
+    // Noise and other light may leave more to be seen on a coarse layer than on the image: the most certain fit counts.
+    std::vector<RowMatch> matches;
+    findRowMatches(buffers.left[top], buffers.right[top], layerDisparities(search.numDisparities, top, true), matches);
+    RowFit best;
+    double leastDeviation = DBL_MAX;
+    for (int layer = top; layer >= finestLayer; --layer)
+    {
+        trackRowMatches(buffers.left[layer], buffers.right[layer], matches);
+        const std::vector<RowMove> moves = toMoves(matches, layer, size);
+        if ((int)moves.size() < leastMatches)
+            break;
+        const RowFit fit = fitRows(moves, size);
+        const double deviation = MeanSquares(fit, size).deviation;
+        if (deviation < leastDeviation)
+        {
+            leastDeviation = deviation;
+            best = fit;
+        }
+        if (layer > finestLayer)
+            enterFinerLayer(fit.model, layer, size, matches);
+    }
+    if (leastDeviation == DBL_MAX || largestMove(best.model, size) > search.maxOffset)
+        return false;
+    model = best.model;
+    return MeanSquares(best, size).move - certainty * certainty * leastDeviation > leastMove * leastMove;
+}
+
+void alignRows(const Mat& right, const RowModel& model, Mat& aligned)
+{
+    int weights[fractions][4];
+    for (int i = 0; i < fractions; ++i)
+        cubicWeights((double)i / fractions, weights[i]);
+    aligned.create(right.size(), right.type());
+    parallel_for_(Range(0, right.rows), [&](const Range& range) {
+        for (int y = range.start; y < range.end; ++y)
+            if (right.depth() == CV_8U)
+                alignRow(right, model, y, weights, aligned.ptr(y));
+            else
+                alignRow(right, model, y, weights, aligned.ptr<ushort>(y));
+    });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

@@ -1,0 +1,89 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_ROW_ALIGNMENT_HPP
+#define OPENCV_HDPSTEREO_ROW_ALIGNMENT_HPP
+
+#include "opencv2/core.hpp"
+
+#include <vector>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+/** How far the rows of the right image are below those of the left one, in pixels, at a place from the image's centre.
+These are the differences that small rotations of a camera and another focal length make. */
+struct RowModel
+{
+    enum
+    {
+        terms = 5
+    };
+    typedef Vec<double, terms> Coefficients;
+
+    Coefficients coefficients; // zero
+
+    //! 1, x, y, x y, y^2: of every row, a straight line
+    static Coefficients basis(Point2d p) { return Coefficients(1, p.x, p.y, p.x * p.y, p.y * p.y); }
+    double at(Point2d fromCentre) const { return coefficients.dot(basis(fromCentre)); }
+
+    //! The same about a point that is x to the right of the centre
+    RowModel about(double x) const
+    {
+        RowModel model;
+        model.coefficients = coefficients;
+        model.coefficients[0] += coefficients[1] * x;
+        model.coefficients[2] += coefficients[3] * x;
+        return model;
+    }
+
+    //! The same in the pixels of a layer
+    RowModel ofLayer(int layer) const
+    {
+        const double scale = 1 << layer;
+        RowModel model;
+        model.coefficients = Coefficients(coefficients[0] / scale, coefficients[1], coefficients[2],
+                                          coefficients[3] * scale, coefficients[4] * scale);
+        return model;
+    }
+};
+
+//! What estimateRows() searches, in pixels of the image
+struct RowSearch
+{
+    int numDisparities;
+    int maxOffset; // of a pixel's row
+};
+
+//! Memory of estimateRows(), kept from pair to pair
+struct RowBuffers
+{
+    std::vector<Mat> left, right;
+};
+
+/** Finds how the rows of the right image lie against those of the left one, from matches of corners on a coarse layer,
+which are followed to the image itself.
+
+@param left The left pyramid, CV_16UC1 with values up to 1023.
+@param right The right one.
+@param search What is searched.
+@param finestLayer The last layer that matches are followed to.
+@param buffers Memory to work in.
+@param model Receives the model, zero if the matches do not tell.
+@return Whether the model is certain, and moves rows by enough to be applied. */
+CV_EXPORTS bool estimateRows(const std::vector<Mat>& left, const std::vector<Mat>& right, const RowSearch& search,
+                             int finestLayer, RowBuffers& buffers, RowModel& model);
+
+/** Moves the rows of the right image to those of the left one: aligned(x, y) = right(x, y + model(x, y)), by cubic
+interpolation. Beyond the image are its first and last rows.
+@param right CV_8U or CV_16U, any number of channels.
+@param model
+@param aligned Of the same size and type. */
+CV_EXPORTS void alignRows(const Mat& right, const RowModel& model, Mat& aligned);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif

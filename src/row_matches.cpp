@@ -1,0 +1,254 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "row_matches.hpp"
+#include "row_matches.simd.hpp"
+#include "row_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+
+#include <cmath>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+const double leastCorrelation = 0.8;  // of a match on the coarse layer
+const double rivalCorrelation = 0.1;  // a rival is at least so much farther from a correlation of 1, and
+const double rivalDistance = 0.01;    // this
+const double leastContrast = 6;       // standard deviation of a left window, in its values
+const double largestMove = 2;         // of a match that is tracked on a layer, in pixels
+const double largestResidual = 0.5;   // mean square difference of a tracked match, as a share of the left variance
+const double leastDeterminant = 1e-3; // of a structure tensor, as a share of the product of its diagonal
+const double wholeVariance = 0.1;     // of a match to whole pixels
+const int fractions = 32;             // of a pixel
+
+void dispatchCorrelate(const ushort* left, const ushort* right, size_t step, int count, int* columns, int* products,
+                       int* sums, int* squares)
+{
+    CV_CPU_DISPATCH(correlate, (left, right, step, count, columns, products, sums, squares), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchCut(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9])
+{
+    CV_CPU_DISPATCH(cutWindow, (left, step, values, gradientX, gradientY, sums), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchTracking(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
+                      const short* gradientY, int sums[5])
+{
+    CV_CPU_DISPATCH(trackingSums, (right, step, fx, fy, left, gradientX, gradientY, sums), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! The smaller eigenvalue of the structure tensor
+double cornerness(const Mat& image, Point p)
+{
+    const int radius = 3;
+    const size_t step = image.step1();
+    int64 xx = 0, yy = 0, xy = 0;
+    for (int y = p.y - radius; y <= p.y + radius; ++y)
+    {
+        const ushort* row = image.ptr<ushort>(y) + p.x;
+        for (int x = -radius; x <= radius; ++x)
+        {
+            const int gx = row[x + 1] - row[x - 1], gy = row[x + (ptrdiff_t)step] - row[x - (ptrdiff_t)step];
+            xx += gx * gx;
+            yy += gy * gy;
+            xy += gx * gy;
+        }
+    }
+    const double mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy);
+    return mean - std::sqrt(half * half + (double)xy * xy);
+}
+
+//! The best corner of every cell
+void findCorners(const Mat& image, std::vector<RowMatch>& matches)
+{
+    const int margin = RowMatching::searchSide / 2 + RowMatching::searchRadius;
+    const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
+    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / RowMatching::points)), 4);
+    const Size grid(inside.width / cell, inside.height / cell);
+    matches.assign(grid.area(), RowMatch());
+    parallel_for_(Range(0, grid.height), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+            for (int j = 0; j < grid.width; ++j)
+            {
+                RowMatch& match = matches[i * grid.width + j];
+                double best = -1;
+                for (int y = 0; y < cell; y += 2)
+                    for (int x = 0; x < cell; x += 2)
+                    {
+                        const Point p(inside.x + j * cell + x, inside.y + i * cell + y);
+                        const double value = cornerness(image, p);
+                        if (value > best)
+                        {
+                            best = value;
+                            match.left = p;
+                        }
+                    }
+            }
+    });
+}
+
+//! Memory of the search, per thread
+struct Correlations
+{
+    std::vector<int> columns, products, sums, squares;
+    std::vector<float> values; // of the candidates, by rows, then by columns
+};
+
+//! The variance of a window, times the square of its pixels
+double windowVariance(const ushort* window, size_t step, int64& sum)
+{
+    const int side = RowMatching::searchSide;
+    int64 square = 0;
+    sum = 0;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+        {
+            const int value = window[y * step + x];
+            sum += value;
+            square += value * value;
+        }
+    return (double)(square * side * side - sum * sum);
+}
+
+//! Whether no candidate that is not beside the best one is nearly as good
+bool isUnique(const std::vector<float>& values, int columns, int best)
+{
+    const double rival = 1 - (1 - values[best]) * (1 + rivalCorrelation) - rivalDistance;
+    const int beside = 2;
+    for (int i = 0; i < (int)values.size(); ++i)
+        if (values[i] > rival &&
+            std::max(std::abs(i / columns - best / columns), std::abs(i % columns - best % columns)) > beside)
+            return false;
+    return true;
+}
+
+void findMatch(const Mat& left, const Mat& right, int numDisparities, Correlations& c, RowMatch& match)
+{
+    match.isValid = false;
+    const int side = RowMatching::searchSide, pixels = side * side, rows = 2 * RowMatching::searchRadius + 1;
+    const Point first = match.left - Point(side / 2, side / 2);
+    const int x0 = std::max(first.x - numDisparities + 1, 0), count = first.x - x0 + 1;
+    const ushort* const window = left.ptr<ushort>(first.y) + first.x;
+    int64 sum;
+    const double variance = windowVariance(window, left.step1(), sum);
+    if (variance < leastContrast * leastContrast * pixels * pixels)
+        return;
+    c.columns.resize(2 * (count + side - 1));
+    c.products.resize(count);
+    c.sums.resize(count);
+    c.squares.resize(count);
+    c.values.resize(rows * count);
+    for (int i = 0; i < rows; ++i)
+    {
+        const int y = first.y + i - RowMatching::searchRadius;
+        dispatchCorrelate(window, right.ptr<ushort>(y) + x0, left.step1(), count, c.columns.data(), c.products.data(),
+                          c.sums.data(), c.squares.data());
+        for (int j = 0; j < count; ++j)
+        {
+            const double rightVariance = (double)((int64)c.squares[j] * pixels - (int64)c.sums[j] * c.sums[j]);
+            const double covariance = (double)((int64)c.products[j] * pixels - sum * c.sums[j]);
+            c.values[i * count + j] = rightVariance > 0 ? (float)(covariance / std::sqrt(variance * rightVariance)) : 0;
+        }
+    }
+    const int best = (int)(std::max_element(c.values.begin(), c.values.end()) - c.values.begin());
+    if (c.values[best] < leastCorrelation || !isUnique(c.values, count, best))
+        return;
+    match.x = x0 + best % count + side / 2;
+    match.y = match.left.y + best / count - RowMatching::searchRadius;
+    match.variance = wholeVariance;
+    match.isValid = true;
+}
+
+//! A window of the left image
+struct TrackedWindow
+{
+    short values[RowMatching::trackWidth * RowMatching::trackHeight];
+    short gradientX[RowMatching::trackWidth * RowMatching::trackHeight];
+    short gradientY[RowMatching::trackWidth * RowMatching::trackHeight];
+    int sums[9]; // of L, L * L, X, Y, X * X, X * Y, Y * Y, L * X and L * Y
+};
+
+void track(const Mat& left, const Mat& right, RowMatch& match)
+{
+    match.isValid = false;
+    const int width = RowMatching::trackWidth, height = RowMatching::trackHeight, n = width * height;
+    const Point first = match.left - Point(width / 2, height / 2);
+    const Rect inside(1, 1, left.cols - 2, left.rows - 2); // has gradients
+    if (!inside.contains(first) || !inside.contains(first + Point(width - 1, height - 1)))
+        return;
+    TrackedWindow w;
+    dispatchCut(left.ptr<ushort>(first.y) + first.x, left.step1(), w.values, w.gradientX, w.gradientY, w.sums);
+    const double sum = w.sums[0], sumX = w.sums[2], sumY = w.sums[3];
+    const double productX = w.sums[7] - sumX * sum / n, productY = w.sums[8] - sumY * sum / n;
+    const double variance = (double)w.sums[1] * n - sum * sum; // times n * n
+    if (variance < leastContrast * leastContrast * n * n)
+        return;
+    // Gradients are over two pixels.
+    const double xx = 0.25 * w.sums[4], xy = 0.25 * w.sums[5], yy = 0.25 * w.sums[6];
+    const double determinant = xx * yy - xy * xy;
+    if (determinant <= leastDeterminant * xx * yy)
+        return;
+
+    Point2d place(first.x + match.x - match.left.x, first.y + match.y - match.left.y);
+    const Point2d start = place;
+    double residual = 0;
+    for (int iteration = 0;; ++iteration)
+    {
+        const int x = cvRound(place.x * fractions), y = cvRound(place.y * fractions);
+        const Point whole(x >> 5, y >> 5);
+        if (whole.x < 0 || whole.y < 0 || whole.x + width >= right.cols || whole.y + height >= right.rows)
+            return;
+        int sums[5];
+        dispatchTracking(right.ptr<ushort>(whole.y) + whole.x, right.step1(), x & (fractions - 1), y & (fractions - 1),
+                         w.values, w.gradientX, w.gradientY, sums);
+        const double rightVariance = (double)sums[1] * n - (double)sums[0] * sums[0];
+        if (rightVariance <= 0)
+            return;
+        const double gain = std::sqrt(variance / rightVariance);
+        residual = 2 * (variance - gain * ((double)sums[2] * n - sum * sums[0])) / ((double)n * n);
+        if (iteration == RowMatching::iterations)
+            break;
+        // Sums of the gradient times (gain * R - L), both without their means
+        const double ex = 0.5 * (gain * (sums[3] - sumX * sums[0] / n) - productX);
+        const double ey = 0.5 * (gain * (sums[4] - sumY * sums[0] / n) - productY);
+        place.x = (double)x / fractions - (yy * ex - xy * ey) / determinant;
+        place.y = (double)y / fractions - (xx * ey - xy * ex) / determinant;
+        if (std::max(std::abs(place.x - start.x), std::abs(place.y - start.y)) > largestMove)
+            return;
+    }
+    if (residual * n * n > largestResidual * variance)
+        return;
+    match.x = match.left.x + place.x - first.x;
+    match.y = match.left.y + place.y - first.y;
+    match.variance = residual * xx / determinant;
+    match.isValid = true;
+}
+
+} // namespace
+
+void findRowMatches(const Mat& left, const Mat& right, int numDisparities, std::vector<RowMatch>& matches)
+{
+    findCorners(left, matches);
+    parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
+        Correlations correlations;
+        for (int i = range.start; i < range.end; ++i)
+            findMatch(left, right, numDisparities, correlations, matches[i]);
+    });
+}
+
+void trackRowMatches(const Mat& left, const Mat& right, std::vector<RowMatch>& matches)
+{
+    parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+            if (matches[i].isValid)
+                track(left, right, matches[i]);
+    });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

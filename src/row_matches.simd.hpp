@@ -1,0 +1,155 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "row_matches.hpp"
+#include "vectorized.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+/** The sums of the normalised cross-correlation of a window with those that begin at count columns of the right image.
+@param left First pixel of the window.
+@param right First pixel of the first window of the right image.
+@param step From a row to the next, of both, in pixels.
+@param columns Memory for 2 * (count + searchSide - 1) numbers.
+@param count Number of windows.
+@param products Receives the sums of left times right.
+@param sums Receives the sums of right.
+@param squares Receives the sums of right squared. */
+void correlate(const ushort* left, const ushort* right, size_t step, int count, int* columns, int* products, int* sums,
+               int* squares);
+
+/** The left window of trackRowMatches(), its gradients over two pixels, and its sums.
+@param left First pixel of the window.
+@param step From a row to the next, in pixels.
+@param values Receives the window without gaps.
+@param gradientX Receives its gradients.
+@param gradientY
+@param sums Receives the sums of L, L * L, X, Y, X * X, X * Y, Y * Y, L * X and L * Y. */
+void cutWindow(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9]);
+
+/** One window of the right image for trackRowMatches(): its sums with the left one.
+@param right The pixel above and left of the first one's place.
+@param step From a row to the next, in pixels.
+@param fx Fraction of the place in 1/32 of a pixel.
+@param fy
+@param left The left window, without gaps.
+@param gradientX Of the left window.
+@param gradientY
+@param sums Receives the sums of R, R * R, L * R, gradientX * R and gradientY * R. */
+void trackingSums(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
+                  const short* gradientY, int sums[5]);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+void correlate(const ushort* left, const ushort* right, size_t step, int count, int* columns, int* products, int* sums,
+               int* squares)
+{
+    const int side = RowMatching::searchSide, width = count + side - 1;
+    int *const columnSums = columns, *const columnSquares = columns + width;
+    HDP_VECTORIZED for (int i = 0; i < width; ++i)
+    {
+        int sum = 0, square = 0;
+        for (int y = 0; y < RowMatching::searchSide; ++y)
+        {
+            const int value = right[y * step + i];
+            sum += value;
+            square += value * value;
+        }
+        columnSums[i] = sum;
+        columnSquares[i] = square;
+    }
+    HDP_VECTORIZED for (int i = 0; i < count; ++i)
+    {
+        int sum = 0, square = 0;
+        for (int x = 0; x < RowMatching::searchSide; ++x)
+        {
+            sum += columnSums[i + x];
+            square += columnSquares[i + x];
+        }
+        sums[i] = sum;
+        squares[i] = square;
+        products[i] = 0;
+    }
+    for (int y = 0; y < side; ++y)
+    {
+        const ushort *const l = left + y * step, *const r = right + y * step;
+        HDP_VECTORIZED for (int i = 0; i < count; ++i)
+        {
+            int product = 0;
+            for (int x = 0; x < RowMatching::searchSide; ++x)
+                product += l[x] * r[i + x];
+            products[i] += product;
+        }
+    }
+}
+
+void cutWindow(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9])
+{
+    int sum = 0, square = 0, sumX = 0, sumY = 0, xx = 0, xy = 0, yy = 0, productX = 0, productY = 0;
+    for (int y = 0; y < RowMatching::trackHeight; ++y)
+    {
+        const ushort* const row = left + y * step;
+        const ushort *const above = row - step, *const below = row + step;
+        short* const l = values + y * RowMatching::trackWidth;
+        short* const gx = gradientX + y * RowMatching::trackWidth;
+        short* const gy = gradientY + y * RowMatching::trackWidth;
+        HDP_VECTORIZED for (int x = 0; x < RowMatching::trackWidth; ++x)
+        {
+            const int value = row[x], dx = row[x + 1] - row[x - 1], dy = below[x] - above[x];
+            l[x] = (short)value;
+            gx[x] = (short)dx;
+            gy[x] = (short)dy;
+            sum += value;
+            square += value * value;
+            sumX += dx;
+            sumY += dy;
+            xx += dx * dx;
+            xy += dx * dy;
+            yy += dy * dy;
+            productX += value * dx;
+            productY += value * dy;
+        }
+    }
+    const int all[9] = { sum, square, sumX, sumY, xx, xy, yy, productX, productY };
+    for (int i = 0; i < 9; ++i)
+        sums[i] = all[i];
+}
+
+void trackingSums(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
+                  const short* gradientY, int sums[5])
+{
+    const int width = RowMatching::trackWidth;
+    const int w11 = fx * fy, w10 = fy * 32 - w11, w01 = fx * 32 - w11, w00 = 1024 - w11 - w10 - w01;
+    int sum = 0, square = 0, product = 0, productX = 0, productY = 0;
+    for (int y = 0; y < RowMatching::trackHeight; ++y)
+    {
+        const ushort *const a = right + y * step, *const b = a + step;
+        const short *const l = left + y * width, *const gx = gradientX + y * width, *const gy = gradientY + y * width;
+        for (int x = 0; x < RowMatching::trackWidth; ++x)
+        {
+            const int value = (w00 * a[x] + w01 * a[x + 1] + w10 * b[x] + w11 * b[x + 1] + 512) >> 10;
+            sum += value;
+            square += value * value;
+            product += value * l[x];
+            productX += value * gx[x];
+            productY += value * gy[x];
+        }
+    }
+    sums[0] = sum;
+    sums[1] = square;
+    sums[2] = product;
+    sums[3] = productX;
+    sums[4] = productY;
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

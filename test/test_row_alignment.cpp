@@ -1,0 +1,396 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+
+#include "../src/image_levels.hpp"
+#include "../src/row_alignment.hpp"
+#include "../src/row_matches.hpp"
+#include "helpers.hpp"
+#include "synthetic_pair.hpp"
+
+namespace opencv_test {
+namespace {
+
+using hdp::RowModel;
+
+RowModel makeModel(double offset, double shear = 0, double stretch = 0, double keystone = 0, double bow = 0)
+{
+    RowModel model;
+    model.coefficients = RowModel::Coefficients(offset, shear, stretch, keystone, bow);
+    return model;
+}
+
+const RowModel models[] = { makeModel(0.5),
+                            makeModel(-3),
+                            makeModel(7),
+                            makeModel(0, 5.2e-3),
+                            makeModel(0.7, 3e-3, 4e-3),
+                            makeModel(-1.5, -1e-3, 2e-3, 4e-6, -5e-6) };
+
+Point2d fromCentre(int x, int y, Size size) { return Point2d(x + 0.5 - 0.5 * size.width, y + 0.5 - 0.5 * size.height); }
+
+//! The right image of a camera whose rows are off: bad(x, y + model(x, y)) = right(x, y)
+Mat misalign(const Mat& right, const RowModel& model)
+{
+    Mat rows(right.size(), CV_32F), columns(right.size(), CV_32F), bad;
+    for (int y = 0; y < right.rows; ++y)
+        for (int x = 0; x < right.cols; ++x)
+        {
+            double row = y;
+            for (int i = 0; i < 20; ++i)
+            {
+                const Point2d place = fromCentre(x, y, right.size());
+                row = y - model.at(Point2d(place.x, place.y + row - y));
+            }
+            rows.at<float>(y, x) = (float)row;
+            columns.at<float>(y, x) = (float)x;
+        }
+    remap(right, bad, columns, rows, INTER_CUBIC, BORDER_REPLICATE);
+    return bad;
+}
+
+//! Root of the mean square difference of two models over the image
+double distance(const RowModel& a, const RowModel& b, Size size)
+{
+    double sum = 0;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+        {
+            const double difference = a.at(fromCentre(x, y, size)) - b.at(fromCentre(x, y, size));
+            sum += difference * difference;
+        }
+    return std::sqrt(sum / size.area());
+}
+
+RowModel foundBy(const HDPTreeMatcher& matcher, bool isExpected = true)
+{
+    std::vector<double> found;
+    EXPECT_EQ(isExpected, matcher.getRowAlignment(found));
+    RowModel model;
+    EXPECT_EQ((size_t)RowModel::terms, found.size());
+    std::copy(found.begin(), found.end(), model.coefficients.val);
+    return model;
+}
+
+void addNoise(Mat& image, double deviation, RNG& rng)
+{
+    Mat noise(image.size(), CV_16SC3), sum;
+    rng.fill(noise, RNG::NORMAL, 0, deviation);
+    cv::add(image, noise, sum, cv::noArray(), CV_8U);
+    image = sum;
+}
+
+////////////////////////////////////////////// the stage //////////////////////////////////////////////
+
+//! Catmull and Rom's interpolation, from the formula
+double interpolate(const Mat& image, double row, int x, int channel)
+{
+    double sum = 0;
+    for (int y = cvFloor(row) - 1; y <= cvFloor(row) + 2; ++y)
+    {
+        const double t = std::abs(row - y);
+        const double weight = t <= 1 ? 1.5 * t * t * t - 2.5 * t * t + 1 : -0.5 * t * t * t + 2.5 * t * t - 4 * t + 2;
+        const int inside = std::min(std::max(y, 0), image.rows - 1), element = x * image.channels() + channel;
+        sum += weight * (image.depth() == CV_8U ? image.ptr(inside)[element] : image.ptr<ushort>(inside)[element]);
+    }
+    return std::min(std::max(sum, 0.), image.depth() == CV_8U ? 255. : 65535.);
+}
+
+TEST(HDPStereo_RowAlignment, rows_are_interpolated)
+{
+    RNG rng(1);
+    for (const int type : { CV_8UC1, CV_8UC3, CV_16UC1 })
+        for (const RowModel& model : models)
+        {
+            SCOPED_TRACE(format("%d, %f", type, model.coefficients[0]));
+            const Mat image = randomImage(rng, Size(171, 53), type, type == CV_16UC1 ? 1024 : 256);
+            Mat aligned;
+            hdp::alignRows(image, model, aligned);
+            ASSERT_EQ(image.size(), aligned.size());
+            ASSERT_EQ(image.type(), aligned.type());
+            const double tolerance = type == CV_16UC1 ? 20 : 6; // a row's place is one of 64
+            for (int y = 0; y < image.rows; ++y)
+                for (int x = 0; x < image.cols; ++x)
+                    for (int c = 0; c < image.channels(); ++c)
+                    {
+                        const double row = y + model.at(fromCentre(x, y, image.size()));
+                        const int i = x * image.channels() + c;
+                        const double value = type == CV_16UC1 ? aligned.ptr<ushort>(y)[i] : aligned.ptr(y)[i];
+                        ASSERT_NEAR(interpolate(image, row, x, c), value, tolerance) << x << ", " << y;
+                    }
+        }
+}
+
+TEST(HDPStereo_RowAlignment, whole_rows_are_copied)
+{
+    RNG rng(2);
+    const Mat image = randomImage(rng, Size(64, 40), CV_8UC3);
+    Mat aligned;
+    hdp::alignRows(image, makeModel(0), aligned);
+    expectIdentical(image, aligned);
+    hdp::alignRows(image, makeModel(-3), aligned);
+    expectIdentical(image.rowRange(0, 37), aligned.rowRange(3, 40));
+    for (int y = 0; y < 3; ++y)
+        expectIdentical(image.row(0), aligned.row(y));
+    hdp::alignRows(image, makeModel(1000), aligned);
+    for (int y = 0; y < image.rows; ++y)
+        expectIdentical(image.row(39), aligned.row(y));
+}
+
+//! On all layers, about another point
+TEST(HDPStereo_RowAlignment, model_of_a_layer)
+{
+    const RowModel model = makeModel(-1.5, -1e-3, 2e-3, 4e-6, -5e-6);
+    const Point2d place(120, -64);
+    EXPECT_NEAR(-1.5 - 0.12 - 0.128 - 0.03072 - 0.02048, model.at(place), 1e-9);
+    EXPECT_NEAR(model.at(place) / 4, model.ofLayer(2).at(Point2d(30, -16)), 1e-9);
+    EXPECT_NEAR(model.at(place), model.about(20).at(Point2d(100, -64)), 1e-9);
+}
+
+//! Normalised cross-correlation, from the formula
+double correlation(const Mat& left, const Mat& right, Point a, Point b)
+{
+    const int side = hdp::RowMatching::searchSide;
+    const Rect l(a.x - side / 2, a.y - side / 2, side, side), r(b.x - side / 2, b.y - side / 2, side, side);
+    Mat_<double> x, y;
+    left(l).convertTo(x, CV_64F);
+    right(r).convertTo(y, CV_64F);
+    x -= mean(x)[0];
+    y -= mean(y)[0];
+    return x.dot(y) / std::sqrt(x.dot(x) * y.dot(y));
+}
+
+TEST(HDPStereo_RowAlignment, matches_correlate_best)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(200, 150), 24, 3);
+    Mat left, right;
+    hdp::greyLevels(pair.left, 8, left);
+    hdp::greyLevels(misalign(pair.right, makeModel(1)), 8, right);
+    std::vector<hdp::RowMatch> matches;
+    hdp::findRowMatches(left, right, 25, matches);
+    int valid = 0, oneRow = 0;
+    for (const hdp::RowMatch& match : matches)
+    {
+        if (!match.isValid)
+            continue;
+        ++valid;
+        oneRow += match.y - match.left.y == 1;
+        const double best = correlation(left, right, match.left, Point((int)match.x, (int)match.y));
+        EXPECT_GE(best, 0.8 - 1e-6);
+        for (int y = match.left.y - hdp::RowMatching::searchRadius; y <= match.left.y + hdp::RowMatching::searchRadius;
+             ++y)
+            for (int x = std::max(match.left.x - 24, hdp::RowMatching::searchSide / 2); x <= match.left.x; ++x)
+                ASSERT_LE(correlation(left, right, match.left, Point(x, y)), best + 1e-6);
+    }
+    EXPECT_GE(valid, 100);
+    EXPECT_GE(oneRow, 0.9 * valid);
+}
+
+TEST(HDPStereo_RowAlignment, matches_are_tracked_to_a_fraction)
+{
+    const SyntheticPair pair = makeSlantedPlane(Size(320, 240), 32, 4);
+    const RowModel model = makeModel(0.4, 2e-3);
+    Mat left, right;
+    hdp::greyLevels(pair.left, 8, left);
+    hdp::greyLevels(misalign(pair.right, model) * 0.7 + Scalar::all(20), 8, right); // other light
+    std::vector<hdp::RowMatch> matches;
+    for (int y = 20; y < 220; y += 10)
+        for (int x = 60; x < 300; x += 10)
+        {
+            const double disparity = cvRound(pair.truth.at<float>(y, x));
+            const hdp::RowMatch match = { Point(x, y), x - disparity, (double)y, 0.1, true };
+            matches.push_back(match);
+        }
+    hdp::trackRowMatches(left, right, matches);
+    std::vector<double> errors;
+    for (const hdp::RowMatch& match : matches)
+        if (match.isValid)
+            errors.push_back(
+                std::abs(match.y - match.left.y - model.at(fromCentre((int)match.x, match.left.y, left.size()))));
+    ASSERT_GE(errors.size(), 0.8 * matches.size());
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LE(errors[errors.size() / 2], 0.05);
+    EXPECT_LE(errors[errors.size() * 9 / 10], 0.15);
+}
+
+////////////////////////////////////////////// of the matcher //////////////////////////////////////////////
+
+TEST(HDPStereo_RowAlignment, finds_what_was_done)
+{
+    const int presets[] = { HDPTreeMatcher::PRESET_FAST, HDPTreeMatcher::PRESET_ULTRAFAST,
+                            HDPTreeMatcher::PRESET_QUALITY, HDPTreeMatcher::PRESET_TREE };
+    const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 5);
+    for (size_t i = 0; i < sizeof models / sizeof *models; ++i)
+        for (const double noise : { 0., 8. })
+        {
+            SCOPED_TRACE(format("model %d, noise %.0f", (int)i, noise));
+            RNG rng(i);
+            Mat left = pair.left.clone(), right = misalign(pair.right, models[i]);
+            addNoise(left, noise, rng);
+            addNoise(right, noise, rng);
+            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, presets[i % 4]);
+            match(*matcher, left, right);
+            EXPECT_LE(distance(models[i], foundBy(*matcher), left.size()), noise > 0 ? 0.2 : 0.1);
+        }
+}
+
+TEST(HDPStereo_RowAlignment, errors_are_those_of_a_good_pair)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 6);
+    for (const int preset : { (int)HDPTreeMatcher::PRESET_FAST, (int)HDPTreeMatcher::PRESET_QUALITY })
+    {
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, preset);
+        const double clean = badPixels(match(*matcher, pair.left, pair.right), pair.truth, pair.visible, 1);
+        for (const RowModel& model : models)
+        {
+            // Rows that the right image does not have
+            Mat judged = pair.visible.clone();
+            judged.rowRange(0, 12) = 0;
+            judged.rowRange(468, 480) = 0;
+            const Mat disparity = match(*matcher, pair.left, misalign(pair.right, model));
+            EXPECT_LE(badPixels(disparity, pair.truth, judged, 1), 1.1 * clean + 0.5) << model.coefficients[0];
+        }
+    }
+}
+
+TEST(HDPStereo_RowAlignment, good_pairs_stay_as_they_are)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(500, 360), 48, 7);
+    for (const int preset : { (int)HDPTreeMatcher::PRESET_FAST, (int)HDPTreeMatcher::PRESET_ULTRAFAST })
+    {
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 48, preset);
+        const Mat disparity = match(*matcher, pair.left, pair.right);
+        EXPECT_LE(distance(makeModel(0), foundBy(*matcher, false), pair.left.size()), 0.1);
+        matcher->setMaxRowOffset(0);
+        expectIdentical(disparity, match(*matcher, pair.left, pair.right));
+        EXPECT_EQ(0, cv::norm(foundBy(*matcher, false).coefficients));
+    }
+}
+
+//! Nothing to match, or nothing but what is ambiguous
+TEST(HDPStereo_RowAlignment, no_evidence)
+{
+    RNG rng(8);
+    const Size size(400, 300);
+    Mat stripes(size, CV_8UC1), columns(size, CV_8UC1);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+        {
+            stripes.at<uchar>(y, x) = (uchar)(y / 4 % 2 * 100 + 50);
+            columns.at<uchar>(y, x) = (uchar)(x / 4 % 2 * 100 + 50);
+        }
+    const Mat left[] = { Mat(size, CV_8UC1, Scalar(128)),
+                         stripes,
+                         columns,
+                         randomImage(rng, size, CV_8UC1),
+                         randomImage(rng, Size(1, 1), CV_8UC1),
+                         randomImage(rng, Size(300, 3), CV_8UC1) };
+    const Mat right[] = { Mat(size, CV_8UC1, Scalar(128)),
+                          stripes,
+                          columns,
+                          randomImage(rng, size, CV_8UC1),
+                          randomImage(rng, Size(1, 1), CV_8UC1),
+                          randomImage(rng, Size(300, 3), CV_8UC1) };
+    for (size_t i = 0; i < sizeof left / sizeof *left; ++i)
+    {
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32);
+        match(*matcher, left[i], right[i]);
+        foundBy(*matcher, false);
+    }
+}
+
+//! A third of the image moves by itself.
+TEST(HDPStereo_RowAlignment, moving_things)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 9);
+    Mat right = misalign(pair.right, makeModel(1));
+    const Rect moving(200, 100, 320, 300);
+    misalign(pair.right, makeModel(4))(moving).copyTo(right(moving));
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64);
+    match(*matcher, pair.left, right);
+    EXPECT_LE(distance(makeModel(1), foundBy(*matcher), right.size()), 0.3);
+}
+
+TEST(HDPStereo_RowAlignment, limit)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(400, 300), 32, 10);
+    const Mat right = misalign(pair.right, makeModel(4));
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32);
+    matcher->setMaxRowOffset(3);
+    const Mat limited = match(*matcher, pair.left, right);
+    foundBy(*matcher, false);
+    matcher->setMaxRowOffset(0);
+    expectIdentical(limited, match(*matcher, pair.left, right));
+    matcher->setMaxRowOffset(5);
+    match(*matcher, pair.left, right);
+    EXPECT_LE(distance(makeModel(4), foundBy(*matcher), right.size()), 0.1);
+}
+
+//! The model is about the right image's centre, whatever columns are added.
+TEST(HDPStereo_RowAlignment, other_smallest_disparities)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(480, 360), 48, 11);
+    const RowModel model = makeModel(1, 4e-3, 2e-3);
+    const Mat right = misalign(pair.right, model);
+    for (const int minDisparity : { -20, -3, 3 })
+        for (const int preset : { (int)HDPTreeMatcher::PRESET_FAST, (int)HDPTreeMatcher::PRESET_ULTRAFAST })
+        {
+            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, 64, preset);
+            match(*matcher, pair.left, right);
+            EXPECT_LE(distance(model, foundBy(*matcher), right.size()), 0.12) << minDisparity;
+        }
+}
+
+//! The paper's cost takes the images themselves.
+TEST(HDPStereo_RowAlignment, color_gradient)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(400, 300), 32, 12);
+    const Mat right = misalign(pair.right, makeModel(2));
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32, HDPTreeMatcher::PRESET_PAPER);
+    const double clean = badPixels(match(*matcher, pair.left, pair.right), pair.truth, pair.visible, 1);
+    EXPECT_EQ(0, cv::norm(foundBy(*matcher, false).coefficients));
+    matcher->setMaxRowOffset(8);
+    EXPECT_LE(badPixels(match(*matcher, pair.left, right), pair.truth, pair.visible, 1), 1.1 * clean + 1);
+    EXPECT_LE(distance(makeModel(2), foundBy(*matcher), right.size()), 0.1);
+}
+
+TEST(HDPStereo_RowAlignment, threads)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(333, 257), 32, 13);
+    const Mat right = misalign(pair.right, models[4]);
+    const int before = getNumThreads();
+    Mat expected;
+    RowModel found;
+    for (const int threads : { 1, 2, 5 })
+    {
+        setNumThreads(threads);
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32);
+        const Mat disparity = match(*matcher, pair.left, right);
+        if (expected.empty())
+        {
+            expected = disparity;
+            found = foundBy(*matcher);
+        }
+        expectIdentical(expected, disparity);
+        EXPECT_EQ(found.coefficients, foundBy(*matcher).coefficients);
+    }
+    setNumThreads(before);
+}
+
+//! What an earlier pair left is gone.
+TEST(HDPStereo_RowAlignment, pair_by_pair)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(400, 300), 32, 14);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32);
+    const Mat good = match(*matcher, pair.left, pair.right);
+    match(*matcher, pair.left, misalign(pair.right, makeModel(2)));
+    foundBy(*matcher);
+    expectIdentical(good, match(*matcher, pair.left, pair.right));
+    foundBy(*matcher, false);
+    EXPECT_THROW(matcher->compute(Mat(), pair.right, Mat()), cv::Exception);
+    EXPECT_EQ(0, cv::norm(foundBy(*matcher, false).coefficients));
+}
+
+} // namespace
+} // namespace opencv_test

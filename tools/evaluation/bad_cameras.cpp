@@ -1,0 +1,162 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "bad_cameras.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
+
+#include "command_line.hpp"
+
+using namespace cv;
+
+namespace hdp_tools {
+
+namespace {
+
+Mat same(const Mat& image, RNG&) { return image; }
+
+ImageChange levels(const std::function<double(double)>& change)
+{
+    Mat table(1, 256, CV_8U);
+    for (int i = 0; i < 256; ++i)
+        table.at<uchar>(i) = saturate_cast<uchar>(change(i));
+    return [table](const Mat& image, RNG&) {
+        Mat changed;
+        LUT(image, table, changed);
+        return changed;
+    };
+}
+
+Mat addNoise(const Mat& image, double deviation, RNG& rng)
+{
+    Mat noise(image.size(), CV_32FC3), changed;
+    rng.fill(noise, RNG::NORMAL, 0, deviation);
+    add(image, noise, changed, noArray(), CV_8U);
+    return changed;
+}
+
+ImageChange noise(double deviation)
+{
+    return [deviation](const Mat& image, RNG& rng) { return addNoise(image, deviation, rng); };
+}
+
+Mat darken(const Mat& image, RNG& rng)
+{
+    Mat table(1, 256, CV_8U), changed;
+    for (int i = 0; i < 256; ++i)
+        table.at<uchar>(i) = (uchar)(i / 8);
+    LUT(image, table, changed);
+    return addNoise(changed, 2, rng);
+}
+
+ImageChange blur(double deviation)
+{
+    return [deviation](const Mat& image, RNG&) {
+        Mat changed;
+        GaussianBlur(image, changed, Size(), deviation);
+        return changed;
+    };
+}
+
+ImageChange compress(int quality)
+{
+    return [quality](const Mat& image, RNG&) {
+        std::vector<uchar> bytes;
+        imencode(".jpg", image, bytes, std::vector<int>{ IMWRITE_JPEG_QUALITY, quality });
+        return imdecode(bytes, IMREAD_COLOR);
+    };
+}
+
+Mat vignette(const Mat& image, RNG&)
+{
+    Mat changed = image.clone();
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+        {
+            const double u = 2. * x / std::max(image.cols - 1, 1) - 1, v = 2. * y / std::max(image.rows - 1, 1) - 1;
+            changed.at<Vec3b>(y, x) *= 1 - 0.35 * (u * u + v * v);
+        }
+    return changed;
+}
+
+//! Row y moves to y + offset + shear * x + stretch * y, from the centre.
+ImageChange rows(double offset, double shear, double stretch)
+{
+    return [=](const Mat& image, RNG&) {
+        const double x = image.cols / 2., y = image.rows / 2.;
+        const Matx23d move(1, 0, 0, shear, 1 + stretch, offset - shear * x - stretch * y);
+        Mat changed;
+        warpAffine(image, changed, move, image.size(), INTER_CUBIC, BORDER_REPLICATE);
+        return changed;
+    };
+}
+
+//! The case of a name, without it; the number is what follows the name's letters.
+bool makeCase(const String& letters, double number, CameraCase& made)
+{
+    made.left = made.right = same;
+    if (letters == "clean")
+        ;
+    else if (letters == "gain")
+        made.right = levels([=](double value) { return value * number; });
+    else if (letters == "gamma")
+        made.right = levels([=](double value) { return 255 * std::pow(value / 255, number); });
+    else if (letters == "offset")
+        made.right = levels([=](double value) { return value + number; });
+    else if (letters == "vignette")
+        made.right = vignette;
+    else if (letters == "noise")
+        made.left = made.right = noise(number);
+    else if (letters == "dark")
+        made.left = made.right = darken;
+    else if (letters == "blur")
+        made.right = blur(number);
+    else if (letters == "jpeg")
+        made.left = made.right = compress((int)number);
+    else if (letters == "dy")
+        made.right = rows(number, 0, 0);
+    else if (letters == "shear")
+        made.right = rows(0, 0.0052, 0);
+    else if (letters == "stretch")
+        made.right = rows(0.7, 0.003, 0.004);
+    else
+        return false;
+    return true;
+}
+
+} // namespace
+
+const char* const ALL_CASES =
+    "clean,gain.7,gain.5,gamma1.5,offset30,vignette,noise2,noise5,noise15,dark,blur1.5,jpeg30,"
+    "dy.5,dy1,dy2,dy-3,shear,stretch";
+
+std::vector<CameraCase> selectCases(const String& option, const String& list)
+{
+    std::vector<CameraCase> cases;
+    for (const String& name : splitList(list))
+    {
+        const size_t letters = std::min(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), name.size());
+        const String number = name.substr(letters);
+        const bool hasNumber =
+            String("gain,gamma,offset,noise,blur,jpeg,dy").find(name.substr(0, letters)) != String::npos;
+        char* end = nullptr;
+        const double value = std::strtod(number.c_str(), &end);
+        CameraCase made;
+        made.name = name;
+        if (*end != 0 || hasNumber == number.empty() || !makeCase(name.substr(0, letters), value, made))
+            fail("--" + option + " knows no case '" + name + "', only " + ALL_CASES + ", and these with other numbers");
+        bool isNew = true;
+        for (const CameraCase& other : cases)
+            isNew = isNew && other.name != name;
+        if (isNew)
+            cases.push_back(made);
+    }
+    return cases;
+}
+
+} // namespace hdp_tools
