@@ -87,6 +87,7 @@ static int run(const CommandLineParser& parser)
                 ++skipped;
                 continue;
             }
+            toColors(pair.left, pair.right);
             protocol = pair.protocol;
             ++pairs;
             if (numDisparities > 0)
@@ -98,8 +99,8 @@ static int run(const CommandLineParser& parser)
                 for (size_t m = 0; m < methods.size(); ++m)
                 {
                     const Ptr<StereoMatcher> matcher = methods[m].create(pair.disparities);
-                    const Mat disparity =
-                        matchDensely(methods[m], *matcher, imageFor(methods[m], left), imageFor(methods[m], right));
+                    const std::array<Mat, 2> images = imagesFor(methods[m], left, right);
+                    const Mat disparity = matchDensely(methods[m], *matcher, images[0], images[1]);
                     scores[i][m].push_back(mainScore(scoreMap(disparity, pair), protocol));
                 }
             }
