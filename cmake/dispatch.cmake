@@ -43,7 +43,7 @@ endif()
 
 # The stages of a target for each of dispatched_modes
 function(add_dispatched_stages target)
-  set(dispatch_generated "${CMAKE_BINARY_DIR}/dispatch")
+  set(dispatch_generated "${PROJECT_BINARY_DIR}/dispatch")
   file(GENERATE OUTPUT "${dispatch_generated}/cvconfig.h" CONTENT "#define CV_ENABLE_INTRINSICS\n")
   file(GENERATE OUTPUT "${dispatch_generated}/cv_cpu_config.h" CONTENT "${cpu_config}")
   foreach(stage IN LISTS dispatched_stages)

@@ -7,7 +7,7 @@ find_package(Threads REQUIRED)
 
 # It reads three headers that OpenCV's build generates; empty ones will do, and leave out what is optional in it
 # (file(GENERATE) touches a file only if it changes).
-set(ts_generated "${CMAKE_BINARY_DIR}/opencv_ts")
+set(ts_generated "${PROJECT_BINARY_DIR}/opencv_ts")
 foreach(header cvconfig.h cv_cpu_config.h opencv_tests_config.hpp)
   file(GENERATE OUTPUT "${ts_generated}/${header}" CONTENT "")
 endforeach()

@@ -4,6 +4,7 @@
 #   instruction-sets  unit tests, and the maps to the bit, without the wider instruction sets; the objects for those
 #   preload           programs under hdpstereo-run, and what it puts in the place of StereoSGBM
 #   samples, python   programs of samples/ and of OpenCV's own samples; the Python module
+#   packages          projects that build with the module, in all of the ways that README names
 #   performance       one round of the performance tests: that they run, not how fast
 #   documentation     the reference and the tutorials, without a warning
 # What cannot run for want of something is shown as skipped.
@@ -87,8 +88,10 @@ endfunction()
 
 file(GLOB test_sources CONFIGURE_DEPENDS test/test_*.cpp)
 add_suites(opencv_test_hdpstereo unit ${test_sources})
-file(GLOB tools_test_sources CONFIGURE_DEPENDS tools/test/test_*.cpp)
-add_suites(opencv_test_hdpstereo_tools tools ${tools_test_sources})
+if(HDPSTEREO_TOOLS)
+  file(GLOB tools_test_sources CONFIGURE_DEPENDS tools/test/test_*.cpp)
+  add_suites(opencv_test_hdpstereo_tools tools ${tools_test_sources})
+endif()
 if(HDPSTEREO_PRELOAD)
   file(GLOB preload_test_sources CONFIGURE_DEPENDS preload/test/test_*.cpp)
   add_suites(opencv_test_hdpstereo_preload preload ${preload_test_sources})
@@ -96,16 +99,20 @@ endif()
 
 # Samples. These figures are checked elsewhere; this is the only place where the programs see a pair of full size.
 set(aloe "${samples_data}/aloeL.jpg" "${samples_data}/aloeR.jpg" "--truth=${samples_data}/aloeGT.png" --num-disparities=256)
-add_check(sample_stereo_match samples example_hdpstereo_hdp_stereo_match ${aloe} --output=aloe.png --picture=aloe_picture.png
-  --point-cloud=aloe.ply --focal=1000 --baseline=1)
-add_check(sample_own_tree samples example_hdpstereo_hdp_own_tree ${aloe})
-set(missing "")
-if(NOT TARGET example_hdpstereo_hdp_live)
-  set(missing "opencv_videoio")
+if(HDPSTEREO_SAMPLES)
+  add_check(sample_stereo_match samples example_hdpstereo_hdp_stereo_match ${aloe} --output=aloe.png
+    --picture=aloe_picture.png --point-cloud=aloe.ply --focal=1000 --baseline=1)
+  add_check(sample_own_tree samples example_hdpstereo_hdp_own_tree ${aloe})
+  set(missing "")
+  if(NOT TARGET example_hdpstereo_hdp_live)
+    set(missing "opencv_videoio")
+  endif()
+  add_optional_check(sample_live samples "${missing}" example_hdpstereo_hdp_live
+    "${samples_data}/left%02d.jpg" "${samples_data}/right%02d.jpg" --frames=3 --no-gui --output=live.avi)
 endif()
-add_optional_check(sample_live samples "${missing}" example_hdpstereo_hdp_live
-  "${samples_data}/left%02d.jpg" "${samples_data}/right%02d.jpg" --frames=3 --no-gui --output=live.avi)
-add_check(benchmark_small tools hdp_benchmark ${aloe} --resize=160x136 --num-disparities=32 --runs=2 --stages)
+if(HDPSTEREO_TOOLS)
+  add_check(benchmark_small tools hdp_benchmark ${aloe} --resize=160x136 --num-disparities=32 --runs=2 --stages)
+endif()
 
 if(HDPSTEREO_SANITIZE)
   return() # the rest is not built with sanitizers, or would test the same
@@ -149,6 +156,8 @@ if(NOT missing)
     "PYTHONPATH=${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/python3")
   set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "OK \\(skipped=")
 endif()
+
+add_check(other_projects packages "${PROJECT_SOURCE_DIR}/scripts/check_other_projects.sh" "${CMAKE_BINARY_DIR}")
 
 set(missing "")
 if(NOT HDPSTEREO_PRELOAD)

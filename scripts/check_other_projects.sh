@@ -1,0 +1,96 @@
+#!/bin/bash
+# Builds a program of ten lines with the module in all ways that there are, and checks that each gives the same map:
+# find_package(hdpstereo) from an installation and from this build, pkg-config, and FetchContent with a static library.
+#   scripts/check_other_projects.sh BUILD
+# shellcheck source-path=SCRIPTDIR source=common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+module_build=$1
+directory=$module_build/other_projects
+rm -rf "$directory"
+mkdir -p "$directory/project"
+cd "$directory"
+
+cat >project/program.cpp <<'CPP'
+#include <opencv2/hdpstereo.hpp>
+#include <iostream>
+int main()
+{
+    cv::Mat scene(60, 200, CV_8UC3), disparity;
+    cv::randu(scene, 0, 256);
+    cv::stereo::HDPTreeMatcher::create(0, 16)->compute(scene.colRange(0, 190), scene.colRange(5, 195), disparity);
+    std::cout << cv::mean(disparity)[0] << " " << cv::norm(disparity) << std::endl;
+    return disparity.at<short>(30, 100) == 5 * cv::StereoMatcher::DISP_SCALE ? 0 : 1;
+}
+CPP
+cat >project/CMakeLists.txt <<'CMAKE'
+cmake_minimum_required(VERSION 3.16)
+project(other CXX)
+if(HDPSTEREO_CHECKOUT)
+  include(FetchContent)
+  FetchContent_Declare(hdpstereo SOURCE_DIR "${HDPSTEREO_CHECKOUT}")
+  FetchContent_MakeAvailable(hdpstereo)
+else()
+  find_package(hdpstereo 1.0 REQUIRED)
+endif()
+add_executable(program program.cpp)
+target_link_libraries(program opencv_hdpstereo)
+install(TARGETS program)
+CMAKE
+
+# run NAME COMMAND...: messages go to NAME.log.
+run()
+{
+    local name=$1
+    shift
+    "$@" >>"$name.log" 2>&1 || { tail -n 20 "$name.log" >&2; fail "$* (all of the messages: $directory/$name.log)"; }
+}
+
+# check NAME PROGRAM: it runs, and prints what the first one has.
+check()
+{
+    local output
+    output=$("$2") || fail "$1: status $?, $output"
+    printf '%-24s %s\n' "$1" "$output"
+    [ "$output" = "${first:=$output}" ] || fail "$1 has another map than the first program"
+}
+
+# build NAME OPTION...: the project, with these options of CMake.
+build()
+{
+    local name=$1
+    shift
+    run "$name" cmake -S project -B "$name" "$@"
+    run "$name" cmake --build "$name" --parallel "$jobs"
+}
+
+run install cmake --install "$module_build" --prefix "$directory/installed"
+build find_package "-DCMAKE_PREFIX_PATH=$directory/installed"
+check "find_package" find_package/program
+build build_tree "-Dhdpstereo_DIR=$module_build"
+check "find_package, not installed" build_tree/program
+for wrong in 0.9 1.999 2.0; do
+    sed "s/hdpstereo 1.0/hdpstereo $wrong/" project/CMakeLists.txt >CMakeLists.txt
+    cp project/program.cpp .
+    ! cmake -S . -B wrong "-DCMAKE_PREFIX_PATH=$directory/installed" >wrong.log 2>&1 || fail "it is taken for version $wrong"
+done
+
+if command -v pkg-config >/dev/null; then
+    PKG_CONFIG_PATH=$(dirname "$(find installed -name hdpstereo.pc)")
+    export PKG_CONFIG_PATH
+    pkg-config --exists 'hdpstereo >= 1.0' || fail "pkg-config finds version $(pkg-config --modversion hdpstereo)"
+    # shellcheck disable=SC2046  # a list of words
+    run pkg-config "${CXX:-c++}" -std=c++11 project/program.cpp -o pkg-config $(pkg-config --cflags --libs hdpstereo) \
+        "-Wl,-rpath,$(pkg-config --variable=libdir hdpstereo)"
+    check "pkg-config" ./pkg-config
+fi
+
+# This one builds the module as well: with as little as possible.
+build fetch_content "-DHDPSTEREO_CHECKOUT=$checkout" -DBUILD_SHARED_LIBS=OFF -DCMAKE_BUILD_TYPE=Debug -DHDPSTEREO_CPU_DISPATCH=
+check "FetchContent, static" fetch_content/program
+[ -z "$(find fetch_content -name 'example_*' -o -name 'hdp_*' -executable -o -name 'hdpstereo-run')" ] ||
+    fail "FetchContent builds samples or tools"
+run fetch_content cmake --install fetch_content --prefix "$directory/installed_program"
+[ "$(find installed_program -type f)" = installed_program/bin/program ] ||
+    fail "FetchContent installs more than the project: $(find installed_program -type f | paste -sd ' ')"
+say "Done"
