@@ -397,7 +397,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         return input.ConsumeBool() && input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-1, last + 1);
     };
     change(m, [&] {
-        switch (input.ConsumeIntegralInRange(0, 37))
+        switch (input.ConsumeIntegralInRange(0, 38))
         {
         case 0:
             return m.setMinDisparity(input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-200, 200));
@@ -471,6 +471,8 @@ void setParameter(Input& input, HDPTreeMatcher& m)
             return m.setTopAggregation(upTo(1));
         case 36:
             return m.setMaxRowOffset(upTo(100));
+        case 37:
+            return m.setUseLightAlignment(input.ConsumeBool());
         default:
             return m.setUseNonLocalRefinement(input.ConsumeBool());
         }

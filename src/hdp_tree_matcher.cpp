@@ -9,6 +9,7 @@
 #include "image_pyramid.hpp"
 #include "layer_matching.hpp"
 #include "matcher_parameters.hpp"
+#include "pair_alignment.hpp"
 #include "pair_pyramids.hpp"
 #include "stage_clock.hpp"
 
@@ -45,10 +46,11 @@ public:
                               p_.matchingCost == COST_CENSUS, pyramids_, images);
         });
 
-        if (p_.maxRowOffset > 0)
-            clock_.run("row alignment", [&] {
-                const RowSearch search = { p_.numDisparities, p_.maxRowOffset };
-                result_.hasAlignedRows = alignPair(search, settings.finestLayer, pyramids_, images, result_.rows);
+        if (p_.maxRowOffset > 0 || p_.useLightAlignment)
+            clock_.run("alignment", [&] {
+                const AlignmentSearch search = { p_.numDisparities, p_.maxRowOffset, p_.useLightAlignment,
+                                                 settings.finestLayer };
+                alignPair(search, alignmentBuffers_, images, result_.alignment);
             });
 
         layers_.resize(settings.layers);
@@ -65,7 +67,7 @@ public:
             const Mat& finest = layers_[settings.finestLayer].disparity;
             result_.isFiltered = outputDisparity(finest, p_, settings, output_, disparity);
         });
-        result_.rows = result_.rows.about(0.5 * settings.extension + p_.minDisparity);
+        result_.shift = 0.5 * settings.extension + p_.minDisparity;
         result_.size = left.size();
         result_.settings = settings;
         result_.numDisparities = p_.numDisparities;
@@ -110,6 +112,7 @@ public:
     HDP_PARAMETER(int, DisparityDepth, disparityDepth)
     HDP_PARAMETER(bool, UseNonLocalRefinement, useNonLocalRefinement)
     HDP_PARAMETER(int, MaxRowOffset, maxRowOffset)
+    HDP_PARAMETER(bool, UseLightAlignment, useLightAlignment)
 
     void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE
     {
@@ -176,10 +179,16 @@ public:
 
     bool getRowAlignment(std::vector<double>& model) const CV_OVERRIDE
     {
-        model.assign(RowModel::terms, 0);
-        if (isMatched())
-            std::copy(result_.rows.coefficients.val, result_.rows.coefficients.val + RowModel::terms, model.begin());
-        return isMatched() && result_.hasAlignedRows;
+        const RowModel rows = isMatched() ? result_.alignment.rows.about(result_.shift) : RowModel();
+        model.assign(rows.coefficients.val, rows.coefficients.val + RowModel::terms);
+        return isMatched() && result_.alignment.hasRows;
+    }
+
+    bool getLightAlignment(std::vector<double>& model) const CV_OVERRIDE
+    {
+        const LightModel light = isMatched() ? result_.alignment.light : LightModel();
+        model.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
+        return isMatched() && result_.alignment.hasLight;
     }
 
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
@@ -211,8 +220,8 @@ private:
         Size size; // of the image; empty: no pair is matched
         PairSettings settings;
         int numDisparities = 0;
-        RowModel rows; // about the right image's centre
-        bool hasAlignedRows = false;
+        PairAlignment alignment;
+        double shift = 0;        // of the centre of the right image
         bool isFiltered = false; // OutputBuffers::rejected has a meaning
     };
 
@@ -251,6 +260,7 @@ private:
 
     // Buffers that are kept between calls
     PairPyramids pyramids_;
+    AlignmentBuffers alignmentBuffers_;
     std::vector<MatchedLayer> layers_;
     LayerBuffers buffers_;
     OutputBuffers output_;

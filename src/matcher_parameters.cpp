@@ -52,6 +52,7 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
     visit("speckleRange", &P::speckleRange, ">= 0", [](int v) { return v >= 0; });
     visit("disp12MaxDiff", &P::disp12MaxDiff);
     visit("maxRowOffset", &P::maxRowOffset, ">= 0", [](int v) { return v >= 0; });
+    visit("useLightAlignment", &P::useLightAlignment);
     visit("usePrediction", &P::usePrediction);
     visit("useMedianPrefilter", &P::useMedianPrefilter);
     visit("numLayers", &P::numLayers, "in 1..16", [](int v) { return isIn(v, 1, 16); });
@@ -214,6 +215,7 @@ MatcherParameters presetParameters(int preset)
         return p;
 
     p.maxRowOffset = 64;
+    p.useLightAlignment = true;
     p.matchingCost = M::COST_CENSUS;
     p.blockSize = 7;
     p.gamma = 20;

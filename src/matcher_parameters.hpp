@@ -21,6 +21,7 @@ struct MatcherParameters
     int speckleRange = 0;
     int disp12MaxDiff = -1;
     int maxRowOffset = 0;
+    bool useLightAlignment = false;
 
     Ptr<TreeStrategy> treeStrategy = createMinimumSpanningTree();
     Ptr<DisparityPredictionModel> predictionModel; // empty: the published one

@@ -77,32 +77,6 @@ void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int 
     pyramids.right[0].release();
 }
 
-bool alignPair(const RowSearch& search, int finestLayer, PairPyramids& pyramids, std::vector<LayerImages>& images,
-               RowModel& model)
-{
-    std::vector<Mat> left, right; // grey
-    if (images[0].right.depth() == CV_16U)
-        for (const LayerImages& layer : images)
-        {
-            left.push_back(layer.left);
-            right.push_back(layer.right);
-        }
-    else
-    {
-        greyLevels(images[0].left, 8, pyramids.leftLevels);
-        greyLevels(images[0].right, 8, pyramids.rightLevels);
-        left.push_back(pyramids.leftLevels);
-        right.push_back(pyramids.rightLevels);
-    }
-    if (!estimateRows(left, right, search, finestLayer, pyramids.rows, model))
-        return false;
-    alignRows(images[finestLayer].right, model.ofLayer(finestLayer), pyramids.alignedRight);
-    images[finestLayer].right = pyramids.alignedRight;
-    for (size_t layer = finestLayer + 1; layer < images.size(); ++layer)
-        halveImage(images[layer - 1].right, images[layer].right); // into the memory of pyramids
-    return true;
-}
-
 void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted)
 {
     const int width = right.cols + extension;

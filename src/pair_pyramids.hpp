@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
 #define OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
 
-#include "row_alignment.hpp"
+#include "opencv2/core.hpp"
 
 namespace cv {
 namespace stereo {
@@ -29,8 +29,7 @@ struct LayerImages
 struct PairPyramids
 {
     std::vector<Mat> left, leftGrey, right;
-    Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels, alignedRight;
-    RowBuffers rows;
+    Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels;
 };
 
 /** The pyramids of a pair (section 2.1), for candidates that count from 0.
@@ -45,17 +44,6 @@ disparities are negative; a multiple of 2^(layers - 1).
 @param images Receives the images of each layer. */
 void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int extension, int layers, bool census,
                        PairPyramids& pyramids, std::vector<LayerImages>& images);
-
-/** Finds how the rows of the right image lie, see estimateRows(), and moves them to those of the left one, from the
-finest layer on, if that is worth it.
-@param search What is searched.
-@param finestLayer The layer that matching ends at.
-@param pyramids
-@param images Those of buildPairPyramids(); their right images may be replaced.
-@param model Receives what was found, about the centre of the images.
-@return Whether rows were moved. */
-bool alignPair(const RowSearch& search, int finestLayer, PairPyramids& pyramids, std::vector<LayerImages>& images,
-               RowModel& model);
 
 //! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:
 //! shifted(x + extension) = right(x - minDisparity), the nearest column where there is none.

@@ -6,8 +6,7 @@
 #include "row_alignment.simd.hpp"
 #include "row_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
-#include "image_pyramid.hpp"
-#include "row_matches.hpp"
+#include "corner_matches.hpp"
 
 #include <cfloat>
 #include <cmath>
@@ -18,7 +17,6 @@ namespace hdp {
 
 namespace {
 
-const int coarseArea = 45000; // of the layer that the search begins on, at most, in pixels
 const int leastMatches = 24;
 const double ownVariance = 0.02 * 0.02; // of a match's row, beside what its window says, in pixels of its layer
 const int fitIterations = 12;
@@ -58,11 +56,11 @@ Point2d fromCentre(double x, double y, int layer, Size size)
     return Point2d((x + 0.5) * scale - 0.5 * size.width, (y + 0.5) * scale - 0.5 * size.height);
 }
 
-std::vector<RowMove> toMoves(const std::vector<RowMatch>& matches, int layer, Size size)
+std::vector<RowMove> toMoves(const std::vector<CornerMatch>& matches, int layer, Size size)
 {
     const double scale = 1 << layer;
     std::vector<RowMove> moves;
-    for (const RowMatch& match : matches)
+    for (const CornerMatch& match : matches)
         if (match.isValid)
         {
             const Point2d place = fromCentre(match.x, match.left.y, layer, size);
@@ -152,32 +150,15 @@ double largestMove(const RowModel& model, Size size)
 }
 
 //! The matches of a layer where they are to be tracked in the next finer one: rows are those of the model.
-void enterFinerLayer(const RowModel& model, int layer, Size size, std::vector<RowMatch>& matches)
+void enterFinerLayer(const RowModel& model, int layer, Size size, std::vector<CornerMatch>& matches)
 {
-    for (RowMatch& match : matches)
+    for (CornerMatch& match : matches)
     {
         const double move = model.at(fromCentre(match.x, match.left.y, layer, size)) / (1 << (layer - 1));
         match.left *= 2;
         match.x *= 2;
         match.y = match.left.y + move;
     }
-}
-
-//! The pyramid down to coarseArea; returns its last layer.
-int buildCoarse(const std::vector<Mat>& layers, std::vector<Mat>& pyramid)
-{
-    if (pyramid.size() < layers.size())
-        pyramid.resize(layers.size());
-    std::copy(layers.begin(), layers.end(), pyramid.begin());
-    int layer = 0;
-    for (; pyramid[layer].total() > (size_t)coarseArea; ++layer)
-        if (layer + 1 >= (int)layers.size())
-        {
-            if (layer + 1 == (int)pyramid.size())
-                pyramid.push_back(Mat());
-            halveImage(pyramid[layer], pyramid[layer + 1]);
-        }
-    return layer;
 }
 
 const int fractions = 64; // of a row
@@ -222,25 +203,17 @@ template <typename T> void alignRow(const Mat& right, const RowModel& model, int
 
 } // namespace
 
-bool estimateRows(const std::vector<Mat>& left, const std::vector<Mat>& right, const RowSearch& search, int finestLayer,
-                  RowBuffers& buffers, RowModel& model)
+bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model)
 {
     model = RowModel();
-    const Size size = left[0].size();
-    const int top = buildCoarse(left, buffers.left);
-    finestLayer = std::min(finestLayer, top);
-    buildCoarse(right, buffers.right);
-    if (std::min(buffers.left[top].rows, buffers.left[top].cols) < RowMatching::leastSide)
-        return false;
+    const Size size = coarse.left[0].size();
 
     // Noise and other light may leave more to be seen on a coarse layer than on the image: the most certain fit counts.
-    std::vector<RowMatch> matches;
-    findRowMatches(buffers.left[top], buffers.right[top], layerDisparities(search.numDisparities, top, true), matches);
+    std::vector<CornerMatch> matches = coarse.matches;
     RowFit best;
     double leastDeviation = DBL_MAX;
-    for (int layer = top; layer >= finestLayer; --layer)
+    for (int layer = coarse.layer;; --layer)
     {
-        trackRowMatches(buffers.left[layer], buffers.right[layer], matches);
         const std::vector<RowMove> moves = toMoves(matches, layer, size);
         if ((int)moves.size() < leastMatches)
             break;
@@ -251,10 +224,12 @@ bool estimateRows(const std::vector<Mat>& left, const std::vector<Mat>& right, c
             leastDeviation = deviation;
             best = fit;
         }
-        if (layer > finestLayer)
-            enterFinerLayer(fit.model, layer, size, matches);
+        if (layer <= finestLayer)
+            break;
+        enterFinerLayer(fit.model, layer, size, matches);
+        trackCornerMatches(coarse.left[layer - 1], coarse.right[layer - 1], matches);
     }
-    if (leastDeviation == DBL_MAX || largestMove(best.model, size) > search.maxOffset)
+    if (leastDeviation == DBL_MAX || largestMove(best.model, size) > maxOffset)
         return false;
     model = best.model;
     return MeanSquares(best, size).move - certainty * certainty * leastDeviation > leastMove * leastMove;

@@ -4,9 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_ROW_ALIGNMENT_HPP
 #define OPENCV_HDPSTEREO_ROW_ALIGNMENT_HPP
 
-#include "opencv2/core.hpp"
-
-#include <vector>
+#include "corner_matches.hpp"
 
 namespace cv {
 namespace stereo {
@@ -49,31 +47,14 @@ struct RowModel
     }
 };
 
-//! What estimateRows() searches, in pixels of the image
-struct RowSearch
-{
-    int numDisparities;
-    int maxOffset; // of a pixel's row
-};
-
-//! Memory of estimateRows(), kept from pair to pair
-struct RowBuffers
-{
-    std::vector<Mat> left, right;
-};
-
-/** Finds how the rows of the right image lie against those of the left one, from matches of corners on a coarse layer,
-which are followed to the image itself.
-
-@param left The left pyramid, CV_16UC1 with values up to 1023.
-@param right The right one.
-@param search What is searched.
+/** Finds how the rows of the right image lie against those of the left one, from matches that are followed from the
+coarse layer to the finest one.
+@param coarse What matchCoarsely() found.
 @param finestLayer The last layer that matches are followed to.
-@param buffers Memory to work in.
+@param maxOffset Largest difference of a pixel's rows that is believed, in pixels of the image.
 @param model Receives the model, zero if the matches do not tell.
 @return Whether the model is certain, and moves rows by enough to be applied. */
-CV_EXPORTS bool estimateRows(const std::vector<Mat>& left, const std::vector<Mat>& right, const RowSearch& search,
-                             int finestLayer, RowBuffers& buffers, RowModel& model);
+CV_EXPORTS bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model);
 
 /** Moves the rows of the right image to those of the left one: aligned(x, y) = right(x, y + model(x, y)), by cubic
 interpolation. Beyond the image are its first and last rows.

@@ -5,7 +5,7 @@
 
 #include "../src/image_levels.hpp"
 #include "../src/row_alignment.hpp"
-#include "../src/row_matches.hpp"
+#include "../src/corner_matches.hpp"
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 
@@ -151,7 +151,7 @@ TEST(HDPStereo_RowAlignment, model_of_a_layer)
 //! Normalised cross-correlation, from the formula
 double correlation(const Mat& left, const Mat& right, Point a, Point b)
 {
-    const int side = hdp::RowMatching::searchSide;
+    const int side = hdp::CornerMatching::searchSide;
     const Rect l(a.x - side / 2, a.y - side / 2, side, side), r(b.x - side / 2, b.y - side / 2, side, side);
     Mat_<double> x, y;
     left(l).convertTo(x, CV_64F);
@@ -167,10 +167,10 @@ TEST(HDPStereo_RowAlignment, matches_correlate_best)
     Mat left, right;
     hdp::greyLevels(pair.left, 8, left);
     hdp::greyLevels(misalign(pair.right, makeModel(1)), 8, right);
-    std::vector<hdp::RowMatch> matches;
-    hdp::findRowMatches(left, right, 25, matches);
+    std::vector<hdp::CornerMatch> matches;
+    hdp::findCornerMatches(left, right, 25, matches);
     int valid = 0, oneRow = 0;
-    for (const hdp::RowMatch& match : matches)
+    for (const hdp::CornerMatch& match : matches)
     {
         if (!match.isValid)
             continue;
@@ -178,9 +178,9 @@ TEST(HDPStereo_RowAlignment, matches_correlate_best)
         oneRow += match.y - match.left.y == 1;
         const double best = correlation(left, right, match.left, Point((int)match.x, (int)match.y));
         EXPECT_GE(best, 0.8 - 1e-6);
-        for (int y = match.left.y - hdp::RowMatching::searchRadius; y <= match.left.y + hdp::RowMatching::searchRadius;
+        for (int y = match.left.y - hdp::CornerMatching::searchRadius; y <= match.left.y + hdp::CornerMatching::searchRadius;
              ++y)
-            for (int x = std::max(match.left.x - 24, hdp::RowMatching::searchSide / 2); x <= match.left.x; ++x)
+            for (int x = std::max(match.left.x - 24, hdp::CornerMatching::searchSide / 2); x <= match.left.x; ++x)
                 ASSERT_LE(correlation(left, right, match.left, Point(x, y)), best + 1e-6);
     }
     EXPECT_GE(valid, 100);
@@ -194,17 +194,17 @@ TEST(HDPStereo_RowAlignment, matches_are_tracked_to_a_fraction)
     Mat left, right;
     hdp::greyLevels(pair.left, 8, left);
     hdp::greyLevels(misalign(pair.right, model) * 0.7 + Scalar::all(20), 8, right); // other light
-    std::vector<hdp::RowMatch> matches;
+    std::vector<hdp::CornerMatch> matches;
     for (int y = 20; y < 220; y += 10)
         for (int x = 60; x < 300; x += 10)
         {
             const double disparity = cvRound(pair.truth.at<float>(y, x));
-            const hdp::RowMatch match = { Point(x, y), x - disparity, (double)y, 0.1, true };
+            const hdp::CornerMatch match = { Point(x, y), x - disparity, (double)y, 0.1, true };
             matches.push_back(match);
         }
-    hdp::trackRowMatches(left, right, matches);
+    hdp::trackCornerMatches(left, right, matches);
     std::vector<double> errors;
-    for (const hdp::RowMatch& match : matches)
+    for (const hdp::CornerMatch& match : matches)
         if (match.isValid)
             errors.push_back(
                 std::abs(match.y - match.left.y - model.at(fromCentre((int)match.x, match.left.y, left.size()))));

@@ -65,6 +65,7 @@ Where the presets differ:
 |---|---|---|---|---|---|
 | blockSize | 1 | 7 | 7 | 7 | 7 |
 | maxRowOffset | 0 | 64 | 64 | 64 | 64 |
+| useLightAlignment | false | true | true | true | true |
 | treeStrategy | MST | MST | ST | ST | ST |
 | numLayers | 3 | 3 | 3 | 3 | 2 |
 | maxTopDisparities | 0 | 0 | 64 | 64 | 64 |
@@ -387,6 +388,18 @@ public:
     /** @copybrief setMaxRowOffset @sa setMaxRowOffset */
     CV_WRAP virtual int getMaxRowOffset() const = 0;
 
+    /** @brief Whether the right image gets the light of the left one before they are matched.
+
+    Cameras differ in exposure, gamma and vignetting, some pairs on purpose. compute() compares the mean levels around
+    some hundred matched corners. If a model of gain, offset, curve and vignetting explains what differs, by a level of
+    255 and more, the grey levels of the right image are changed by it. Other lamps, or reflections, are not explained by
+    it; such pairs are matched as they are.
+    @param useLightAlignment false (PRESET_PAPER), true in the others. Without effect with
+    HDPTreeMatcher::COST_COLOR_GRADIENT. */
+    CV_WRAP virtual void setUseLightAlignment(bool useLightAlignment) = 0;
+    /** @copybrief setUseLightAlignment @sa setUseLightAlignment */
+    CV_WRAP virtual bool getUseLightAlignment() const = 0;
+
     /** @brief Type of the map that compute() returns.
     @param depth CV_16S (default): 16 times the disparity. CV_32F: in pixels, with minDisparity - 1 where a filter
     rejects a pixel. The type of an output array of fixed type, such as cv::Mat_<float>, takes precedence. */
@@ -452,6 +465,17 @@ public:
     @return Whether the rows were moved before matching.
      */
     CV_WRAP virtual bool getRowAlignment(CV_OUT std::vector<double>& model) const = 0;
+
+    /** @brief Returns how the light of the right image differed from that of the left one in the last compute().
+
+    With levels from 0 to 1, a level r of the right image at (x, y), from its centre in units of its width and height,
+    is \f$r (m_0 + m_1 x + m_2 y + m_3 x^2 + m_4 x y + m_5 y^2 + m_6 (x^2 + y^2)^2) + m_7 + m_8 r^2 + m_9 r^3\f$ in the
+    left one. The width is that of the image with the columns that a negative minDisparity adds.
+    @param model Receives \f$m_0, \ldots, m_9\f$, whether the light was changed or not; 1 and zeros if too few matches
+    were found, if it was not looked for, before the first compute() and after one that threw an exception.
+    @return Whether the right image was changed before matching.
+     */
+    CV_WRAP virtual bool getLightAlignment(CV_OUT std::vector<double>& model) const = 0;
 
     /** @brief Returns the wall time of each stage in the last compute(), summed over the layers.
     @param stages Receives the names of the stages in the order in which they first ran; empty before the first

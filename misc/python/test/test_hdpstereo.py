@@ -41,6 +41,7 @@ PARAMETERS = {
     'NumLayers': (3, 2),
     'MaxTopDisparities': (0, 64),
     'MaxRowOffset': (0, 16),
+    'UseLightAlignment': (False, True),
     'Delta0': (-1, 0.125),
     'Beta': (-1, 0.5),
     'Gamma': (25.5, 12.75),
@@ -347,6 +348,17 @@ class hdpstereo_test(TestCase):
         self.assertAlmostEqual(2, model[0], delta=0.1)
         matcher.compute(self.left, self.right)
         self.assertFalse(matcher.getRowAlignment()[0])
+
+    def test_light_alignment(self):
+        matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
+        matcher.compute(self.left, self.right // 2)
+        aligned, model = matcher.getLightAlignment()
+        self.assertTrue(aligned)
+        self.assertEqual(10, len(model))
+        level = 0.25  # of the darker image
+        self.assertAlmostEqual(0.5, level * model[0] + model[7] + level**2 * model[8] + level**3 * model[9], delta=0.03)
+        matcher.compute(self.left, self.right)
+        self.assertFalse(matcher.getLightAlignment()[0])
 
     def test_what_the_last_compute_did(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32, PRESETS['PAPER'])

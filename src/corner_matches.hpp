@@ -1,8 +1,8 @@
 // This file is part of OpenCV project.
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
-#ifndef OPENCV_HDPSTEREO_ROW_MATCHES_HPP
-#define OPENCV_HDPSTEREO_ROW_MATCHES_HPP
+#ifndef OPENCV_HDPSTEREO_CORNER_MATCHES_HPP
+#define OPENCV_HDPSTEREO_CORNER_MATCHES_HPP
 
 #include "opencv2/core.hpp"
 
@@ -10,8 +10,8 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
-//! The constants of findRowMatches() and trackRowMatches()
-struct RowMatching
+//! The constants of findCornerMatches() and trackCornerMatches()
+struct CornerMatching
 {
     enum
     {
@@ -21,12 +21,13 @@ struct RowMatching
         trackWidth = 16,  // of the window on the finer layers
         trackHeight = 13,
         iterations = 3,
-        leastSide = 2 * (searchSide + searchRadius) // of an image
+        leastSide = 2 * (searchSide + searchRadius), // of the coarse layer
+        coarseArea = 45000                           // of that layer, at most, in pixels
     };
 };
 
 //! A point of the left image and what it matches in the right one, in pixels of a layer
-struct RowMatch
+struct CornerMatch
 {
     Point left;
     double x, y;     // in the right image
@@ -39,13 +40,30 @@ struct RowMatch
 @param right Of the same size and type.
 @param numDisparities Of the layer.
 @param matches Receives one match per corner, to whole pixels. */
-CV_EXPORTS void findRowMatches(const Mat& left, const Mat& right, int numDisparities, std::vector<RowMatch>& matches);
+CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, int numDisparities,
+                                  std::vector<CornerMatch>& matches);
 
 /** Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.
 @param left CV_16UC1, values up to 1023.
 @param right Of the same size and type.
 @param matches Where the points are by what is known so far. What is lost becomes invalid. */
-CV_EXPORTS void trackRowMatches(const Mat& left, const Mat& right, std::vector<RowMatch>& matches);
+CV_EXPORTS void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMatch>& matches);
+
+//! Matches of a pair's corners on a coarse layer, and its pyramids down to it
+struct CoarseMatches
+{
+    std::vector<Mat> left, right; // grey, layer by layer; memory that is kept from pair to pair
+    int layer = 0;
+    std::vector<CornerMatch> matches; // tracked on this layer; empty if it is too small
+};
+
+/** The matches that row and light alignment have in common.
+@param left The left pyramid, CV_16UC1, values up to 1023; its layers may end anywhere.
+@param right The right one.
+@param numDisparities Of the images.
+@param coarse Receives the result. */
+CV_EXPORTS void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, int numDisparities,
+                              CoarseMatches& coarse);
 
 } // namespace hdp
 } // namespace stereo

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
-#include "row_matches.hpp"
+#include "corner_matches.hpp"
 #include "vectorized.hpp"
 
 namespace cv {
@@ -23,7 +23,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 void correlate(const ushort* left, const ushort* right, size_t step, int count, int* columns, int* products, int* sums,
                int* squares);
 
-/** The left window of trackRowMatches(), its gradients over two pixels, and its sums.
+/** The left window of trackCornerMatches(), its gradients over two pixels, and its sums.
 @param left First pixel of the window.
 @param step From a row to the next, in pixels.
 @param values Receives the window without gaps.
@@ -32,7 +32,7 @@ void correlate(const ushort* left, const ushort* right, size_t step, int count, 
 @param sums Receives the sums of L, L * L, X, Y, X * X, X * Y, Y * Y, L * X and L * Y. */
 void cutWindow(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9]);
 
-/** One window of the right image for trackRowMatches(): its sums with the left one.
+/** One window of the right image for trackCornerMatches(): its sums with the left one.
 @param right The pixel above and left of the first one's place.
 @param step From a row to the next, in pixels.
 @param fx Fraction of the place in 1/32 of a pixel.
@@ -49,12 +49,12 @@ void trackingSums(const ushort* right, size_t step, int fx, int fy, const short*
 void correlate(const ushort* left, const ushort* right, size_t step, int count, int* columns, int* products, int* sums,
                int* squares)
 {
-    const int side = RowMatching::searchSide, width = count + side - 1;
+    const int side = CornerMatching::searchSide, width = count + side - 1;
     int *const columnSums = columns, *const columnSquares = columns + width;
     HDP_VECTORIZED for (int i = 0; i < width; ++i)
     {
         int sum = 0, square = 0;
-        for (int y = 0; y < RowMatching::searchSide; ++y)
+        for (int y = 0; y < CornerMatching::searchSide; ++y)
         {
             const int value = right[y * step + i];
             sum += value;
@@ -66,7 +66,7 @@ void correlate(const ushort* left, const ushort* right, size_t step, int count, 
     HDP_VECTORIZED for (int i = 0; i < count; ++i)
     {
         int sum = 0, square = 0;
-        for (int x = 0; x < RowMatching::searchSide; ++x)
+        for (int x = 0; x < CornerMatching::searchSide; ++x)
         {
             sum += columnSums[i + x];
             square += columnSquares[i + x];
@@ -81,7 +81,7 @@ void correlate(const ushort* left, const ushort* right, size_t step, int count, 
         HDP_VECTORIZED for (int i = 0; i < count; ++i)
         {
             int product = 0;
-            for (int x = 0; x < RowMatching::searchSide; ++x)
+            for (int x = 0; x < CornerMatching::searchSide; ++x)
                 product += l[x] * r[i + x];
             products[i] += product;
         }
@@ -91,14 +91,14 @@ void correlate(const ushort* left, const ushort* right, size_t step, int count, 
 void cutWindow(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9])
 {
     int sum = 0, square = 0, sumX = 0, sumY = 0, xx = 0, xy = 0, yy = 0, productX = 0, productY = 0;
-    for (int y = 0; y < RowMatching::trackHeight; ++y)
+    for (int y = 0; y < CornerMatching::trackHeight; ++y)
     {
         const ushort* const row = left + y * step;
         const ushort *const above = row - step, *const below = row + step;
-        short* const l = values + y * RowMatching::trackWidth;
-        short* const gx = gradientX + y * RowMatching::trackWidth;
-        short* const gy = gradientY + y * RowMatching::trackWidth;
-        HDP_VECTORIZED for (int x = 0; x < RowMatching::trackWidth; ++x)
+        short* const l = values + y * CornerMatching::trackWidth;
+        short* const gx = gradientX + y * CornerMatching::trackWidth;
+        short* const gy = gradientY + y * CornerMatching::trackWidth;
+        HDP_VECTORIZED for (int x = 0; x < CornerMatching::trackWidth; ++x)
         {
             const int value = row[x], dx = row[x + 1] - row[x - 1], dy = below[x] - above[x];
             l[x] = (short)value;
@@ -123,14 +123,14 @@ void cutWindow(const ushort* left, size_t step, short* values, short* gradientX,
 void trackingSums(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
                   const short* gradientY, int sums[5])
 {
-    const int width = RowMatching::trackWidth;
+    const int width = CornerMatching::trackWidth;
     const int w11 = fx * fy, w10 = fy * 32 - w11, w01 = fx * 32 - w11, w00 = 1024 - w11 - w10 - w01;
     int sum = 0, square = 0, product = 0, productX = 0, productY = 0;
-    for (int y = 0; y < RowMatching::trackHeight; ++y)
+    for (int y = 0; y < CornerMatching::trackHeight; ++y)
     {
         const ushort *const a = right + y * step, *const b = a + step;
         const short *const l = left + y * width, *const gx = gradientX + y * width, *const gy = gradientY + y * width;
-        for (int x = 0; x < RowMatching::trackWidth; ++x)
+        for (int x = 0; x < CornerMatching::trackWidth; ++x)
         {
             const int value = (w00 * a[x] + w01 * a[x + 1] + w10 * b[x] + w11 * b[x + 1] + 512) >> 10;
             sum += value;

@@ -2,9 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
-#include "row_matches.hpp"
-#include "row_matches.simd.hpp"
-#include "row_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "corner_matches.hpp"
+#include "corner_matches.simd.hpp"
+#include "corner_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "image_pyramid.hpp"
 
 #include <cmath>
 
@@ -63,18 +64,18 @@ double cornerness(const Mat& image, Point p)
 }
 
 //! The best corner of every cell
-void findCorners(const Mat& image, std::vector<RowMatch>& matches)
+void findCorners(const Mat& image, std::vector<CornerMatch>& matches)
 {
-    const int margin = RowMatching::searchSide / 2 + RowMatching::searchRadius;
+    const int margin = CornerMatching::searchSide / 2 + CornerMatching::searchRadius;
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
-    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / RowMatching::points)), 4);
+    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / CornerMatching::points)), 4);
     const Size grid(inside.width / cell, inside.height / cell);
-    matches.assign(grid.area(), RowMatch());
+    matches.assign(grid.area(), CornerMatch());
     parallel_for_(Range(0, grid.height), [&](const Range& range) {
         for (int i = range.start; i < range.end; ++i)
             for (int j = 0; j < grid.width; ++j)
             {
-                RowMatch& match = matches[i * grid.width + j];
+                CornerMatch& match = matches[i * grid.width + j];
                 double best = -1;
                 for (int y = 0; y < cell; y += 2)
                     for (int x = 0; x < cell; x += 2)
@@ -101,7 +102,7 @@ struct Correlations
 //! The variance of a window, times the square of its pixels
 double windowVariance(const ushort* window, size_t step, int64& sum)
 {
-    const int side = RowMatching::searchSide;
+    const int side = CornerMatching::searchSide;
     int64 square = 0;
     sum = 0;
     for (int y = 0; y < side; ++y)
@@ -126,10 +127,10 @@ bool isUnique(const std::vector<float>& values, int columns, int best)
     return true;
 }
 
-void findMatch(const Mat& left, const Mat& right, int numDisparities, Correlations& c, RowMatch& match)
+void findMatch(const Mat& left, const Mat& right, int numDisparities, Correlations& c, CornerMatch& match)
 {
     match.isValid = false;
-    const int side = RowMatching::searchSide, pixels = side * side, rows = 2 * RowMatching::searchRadius + 1;
+    const int side = CornerMatching::searchSide, pixels = side * side, rows = 2 * CornerMatching::searchRadius + 1;
     const Point first = match.left - Point(side / 2, side / 2);
     const int x0 = std::max(first.x - numDisparities + 1, 0), count = first.x - x0 + 1;
     const ushort* const window = left.ptr<ushort>(first.y) + first.x;
@@ -144,7 +145,7 @@ void findMatch(const Mat& left, const Mat& right, int numDisparities, Correlatio
     c.values.resize(rows * count);
     for (int i = 0; i < rows; ++i)
     {
-        const int y = first.y + i - RowMatching::searchRadius;
+        const int y = first.y + i - CornerMatching::searchRadius;
         dispatchCorrelate(window, right.ptr<ushort>(y) + x0, left.step1(), count, c.columns.data(), c.products.data(),
                           c.sums.data(), c.squares.data());
         for (int j = 0; j < count; ++j)
@@ -158,7 +159,7 @@ void findMatch(const Mat& left, const Mat& right, int numDisparities, Correlatio
     if (c.values[best] < leastCorrelation || !isUnique(c.values, count, best))
         return;
     match.x = x0 + best % count + side / 2;
-    match.y = match.left.y + best / count - RowMatching::searchRadius;
+    match.y = match.left.y + best / count - CornerMatching::searchRadius;
     match.variance = wholeVariance;
     match.isValid = true;
 }
@@ -166,16 +167,16 @@ void findMatch(const Mat& left, const Mat& right, int numDisparities, Correlatio
 //! A window of the left image
 struct TrackedWindow
 {
-    short values[RowMatching::trackWidth * RowMatching::trackHeight];
-    short gradientX[RowMatching::trackWidth * RowMatching::trackHeight];
-    short gradientY[RowMatching::trackWidth * RowMatching::trackHeight];
+    short values[CornerMatching::trackWidth * CornerMatching::trackHeight];
+    short gradientX[CornerMatching::trackWidth * CornerMatching::trackHeight];
+    short gradientY[CornerMatching::trackWidth * CornerMatching::trackHeight];
     int sums[9]; // of L, L * L, X, Y, X * X, X * Y, Y * Y, L * X and L * Y
 };
 
-void track(const Mat& left, const Mat& right, RowMatch& match)
+void track(const Mat& left, const Mat& right, CornerMatch& match)
 {
     match.isValid = false;
-    const int width = RowMatching::trackWidth, height = RowMatching::trackHeight, n = width * height;
+    const int width = CornerMatching::trackWidth, height = CornerMatching::trackHeight, n = width * height;
     const Point first = match.left - Point(width / 2, height / 2);
     const Rect inside(1, 1, left.cols - 2, left.rows - 2); // has gradients
     if (!inside.contains(first) || !inside.contains(first + Point(width - 1, height - 1)))
@@ -210,7 +211,7 @@ void track(const Mat& left, const Mat& right, RowMatch& match)
             return;
         const double gain = std::sqrt(variance / rightVariance);
         residual = 2 * (variance - gain * ((double)sums[2] * n - sum * sums[0])) / ((double)n * n);
-        if (iteration == RowMatching::iterations)
+        if (iteration == CornerMatching::iterations)
             break;
         // Sums of the gradient times (gain * R - L), both without their means
         const double ex = 0.5 * (gain * (sums[3] - sumX * sums[0] / n) - productX);
@@ -228,9 +229,26 @@ void track(const Mat& left, const Mat& right, RowMatch& match)
     match.isValid = true;
 }
 
+//! The pyramid down to CornerMatching::coarseArea; returns its last layer.
+int buildCoarse(const std::vector<Mat>& layers, std::vector<Mat>& pyramid)
+{
+    if (pyramid.size() < layers.size())
+        pyramid.resize(layers.size());
+    std::copy(layers.begin(), layers.end(), pyramid.begin());
+    int layer = 0;
+    for (; pyramid[layer].total() > (size_t)CornerMatching::coarseArea; ++layer)
+        if (layer + 1 >= (int)layers.size())
+        {
+            if (layer + 1 == (int)pyramid.size())
+                pyramid.push_back(Mat());
+            halveImage(pyramid[layer], pyramid[layer + 1]);
+        }
+    return layer;
+}
+
 } // namespace
 
-void findRowMatches(const Mat& left, const Mat& right, int numDisparities, std::vector<RowMatch>& matches)
+void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, std::vector<CornerMatch>& matches)
 {
     findCorners(left, matches);
     parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
@@ -240,13 +258,26 @@ void findRowMatches(const Mat& left, const Mat& right, int numDisparities, std::
     });
 }
 
-void trackRowMatches(const Mat& left, const Mat& right, std::vector<RowMatch>& matches)
+void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMatch>& matches)
 {
     parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
         for (int i = range.start; i < range.end; ++i)
             if (matches[i].isValid)
                 track(left, right, matches[i]);
     });
+}
+
+void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, int numDisparities,
+                   CoarseMatches& coarse)
+{
+    coarse.matches.clear();
+    coarse.layer = buildCoarse(left, coarse.left);
+    buildCoarse(right, coarse.right);
+    const Mat &coarseLeft = coarse.left[coarse.layer], &coarseRight = coarse.right[coarse.layer];
+    if (std::min(coarseLeft.rows, coarseLeft.cols) < CornerMatching::leastSide)
+        return;
+    findCornerMatches(coarseLeft, coarseRight, layerDisparities(numDisparities, coarse.layer, true), coarse.matches);
+    trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
 }
 
 } // namespace hdp

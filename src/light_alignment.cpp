@@ -1,0 +1,157 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "light_alignment.hpp"
+#include "light_alignment.simd.hpp"
+#include "light_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+
+#include "image_levels.hpp"
+
+#include <cmath>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+const double white = 255 * greyScale;
+const int meanRadius = 3; // of the square around a corner
+const int leastMatches = 24;
+const int fitIterations = 15;
+const double outlier = 2;                // deviation in standard deviations at which the weight of a match is a half
+const double leastDeviation = 0.5 / 255; // of the levels that matches see
+const double leastChange = 1. / 255;     // root of the mean square at the matches that is worth a change
+const double largestRest = 4. / 255;     // median difference of the levels that a model may leave, and
+const double largestShare = 0.7;         // as a share of what it was
+
+typedef LightModel::Coefficients Coefficients;
+typedef Matx<double, LightModel::terms, LightModel::terms> Covariance;
+
+// Expected deviation of the coefficients from those of the same light. What vignetting and gamma do is within them; what
+// few matches cannot tell stays as it is.
+const Coefficients expected(0.3, 0.1, 0.1, 0.15, 0.15, 0.15, 1, 0.1, 0.15, 0.15);
+
+void dispatchRow(ushort* levels, int cols, float first, float step, const float gain[4], const float curve[3],
+                 float largest)
+{
+    CV_CPU_DISPATCH(alignLightRow, (levels, cols, first, step, gain, curve, largest), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! A match: the basis of the right level, the left level
+struct LevelPair
+{
+    Coefficients basis;
+    double left;
+};
+
+double meanLevel(const Mat& image, Point centre)
+{
+    int sum = 0;
+    for (int y = centre.y - meanRadius; y <= centre.y + meanRadius; ++y)
+        for (int x = centre.x - meanRadius; x <= centre.x + meanRadius; ++x)
+            sum += image.at<ushort>(y, x);
+    return sum / ((2 * meanRadius + 1) * (2 * meanRadius + 1) * white);
+}
+
+std::vector<LevelPair> toLevels(const CoarseMatches& coarse)
+{
+    const Mat &left = coarse.left[coarse.layer], &right = coarse.right[coarse.layer];
+    const Rect inside(meanRadius, meanRadius, left.cols - 2 * meanRadius, left.rows - 2 * meanRadius);
+    std::vector<LevelPair> pairs;
+    for (const CornerMatch& match : coarse.matches)
+    {
+        const Point matched(cvRound(match.x), cvRound(match.y));
+        if (!match.isValid || !inside.contains(match.left) || !inside.contains(matched))
+            continue;
+        const double x = (match.x + 0.5) / right.cols - 0.5, y = (match.y + 0.5) / right.rows - 0.5;
+        const LevelPair pair = { LightModel::basis(meanLevel(right, matched), x, y), meanLevel(left, match.left) };
+        pairs.push_back(pair);
+    }
+    return pairs;
+}
+
+std::vector<double> differences(const std::vector<LevelPair>& pairs, const Coefficients& coefficients)
+{
+    std::vector<double> values;
+    for (const LevelPair& pair : pairs)
+        values.push_back(std::abs(pair.left - coefficients.dot(pair.basis)));
+    return values;
+}
+
+double medianOf(std::vector<double> values)
+{
+    const size_t middle = values.size() / 2;
+    std::nth_element(values.begin(), values.begin() + middle, values.end());
+    return values[middle];
+}
+
+//! Least squares around the identity, reweighted for Cauchy's distribution of the differences
+Coefficients fitLight(const std::vector<LevelPair>& pairs)
+{
+    Coefficients fit = LightModel::identity();
+    for (int iteration = 0; iteration < fitIterations; ++iteration)
+    {
+        const std::vector<double> values = differences(pairs, fit);
+        const double deviation = std::max(1.4826 * medianOf(values), leastDeviation);
+        Covariance information;
+        Coefficients sum;
+        for (int i = 0; i < LightModel::terms; ++i)
+        {
+            information(i, i) = 1 / (expected[i] * expected[i]);
+            sum[i] = LightModel::identity()[i] * information(i, i);
+        }
+        for (size_t i = 0; i < pairs.size(); ++i)
+        {
+            const double relative = values[i] / (outlier * deviation);
+            const double weight = 1 / ((1 + relative * relative) * deviation * deviation);
+            information += weight * pairs[i].basis * pairs[i].basis.t();
+            sum += weight * pairs[i].left * pairs[i].basis;
+        }
+        fit = information.inv(DECOMP_CHOLESKY) * sum;
+    }
+    return fit;
+}
+
+} // namespace
+
+bool estimateLight(const CoarseMatches& coarse, LightModel& model)
+{
+    model = LightModel();
+    if (coarse.matches.empty())
+        return false;
+    const std::vector<LevelPair> pairs = toLevels(coarse);
+    if ((int)pairs.size() < leastMatches)
+        return false;
+    model.coefficients = fitLight(pairs);
+    double change = 0;
+    for (const LevelPair& pair : pairs)
+    {
+        const double difference = model.coefficients.dot(pair.basis) - pair.basis[0];
+        change += difference * difference / pairs.size();
+    }
+    const double before = medianOf(differences(pairs, LightModel::identity()));
+    const double rest = medianOf(differences(pairs, model.coefficients));
+    return change > leastChange * leastChange && rest < largestRest && rest < largestShare * before;
+}
+
+void alignLight(Mat& levels, const LightModel& model)
+{
+    const Coefficients& c = model.coefficients;
+    const float curve[3] = { (float)(c[7] * white), (float)(c[8] / white), (float)(c[9] / (white * white)) };
+    const float step = 1.f / levels.cols, first = 0.5f * step - 0.5f;
+    parallel_for_(Range(0, levels.rows), [&](const Range& rows) {
+        for (int row = rows.start; row < rows.end; ++row)
+        {
+            const double y = (row + 0.5) / levels.rows - 0.5, y2 = y * y;
+            const float gain[4] = { (float)(c[0] + c[2] * y + c[5] * y2 + c[6] * y2 * y2), (float)(c[1] + c[4] * y),
+                                    (float)(c[3] + 2 * c[6] * y2), (float)c[6] };
+            dispatchRow(levels.ptr<ushort>(row), levels.cols, first, step, gain, curve, (float)white);
+        }
+    });
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
