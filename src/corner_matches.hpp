@@ -15,7 +15,7 @@ struct CornerMatching
 {
     enum
     {
-        points = 600,     // at most so many, one per cell of a grid
+        points = 500,     // at most so many, one per cell of a grid
         searchRadius = 2, // rows above and below that are searched on the coarse layer
         searchSide = 9,   // of the window there
         trackWidth = 16,  // of the window on the finer layers

@@ -98,9 +98,16 @@ void restoreThinStructures(const Mat& unfiltered, Mat& disparity)
         {
             const ushort* before = unfiltered.ptr<ushort>(y);
             ushort* row = disparity.ptr<ushort>(y);
-            for (int x = 0; x < disparity.cols; ++x)
-                if (before[x] - row[x] >= minDistance && isInStructure(unfiltered, y, x))
-                    row[x] = before[x];
+            for (int begin = 0; begin < disparity.cols; begin += ThinStructures::columns)
+            {
+                // Hardly a group of columns has any.
+                const int end = std::min(begin + ThinStructures::columns, disparity.cols);
+                int any = 0;
+                HDP_VECTORIZED for (int x = begin; x < end; ++x) any |= before[x] - row[x] >= minDistance;
+                for (int x = begin; any && x < end; ++x)
+                    if (before[x] - row[x] >= minDistance && isInStructure(unfiltered, y, x))
+                        row[x] = before[x];
+            }
         }
     });
 }

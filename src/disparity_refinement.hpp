@@ -19,10 +19,11 @@ struct ThinStructures
 {
     enum
     {
-        window = 7,       // side of the square, in pixels
-        minShare = 30,    // percent of its pixels that are of the structure
-        minDistance = 5,  // in front of what the median left, in pixels
-        maxDifference = 1 // inside the structure, in pixels
+        window = 7,        // side of the square, in pixels
+        minShare = 30,     // percent of its pixels that are of the structure
+        minDistance = 5,   // in front of what the median left, in pixels
+        maxDifference = 1, // inside the structure, in pixels
+        columns = 64       // that are looked at together
     };
 };
 

@@ -7,6 +7,7 @@
 #include "light_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "image_levels.hpp"
+#include "robust_fit.hpp"
 
 #include <cmath>
 
@@ -19,15 +20,13 @@ namespace {
 const double white = 255 * greyScale;
 const int meanRadius = 3; // of the square around a corner
 const int leastMatches = 24;
-const int fitIterations = 15;
-const double outlier = 2;                // deviation in standard deviations at which the weight of a match is a half
 const double leastDeviation = 0.5 / 255; // of the levels that matches see
 const double leastChange = 1. / 255;     // root of the mean square at the matches that is worth a change
 const double largestRest = 4. / 255;     // median difference of the levels that a model may leave, and
 const double largestShare = 0.7;         // as a share of what it was
 
 typedef LightModel::Coefficients Coefficients;
-typedef Matx<double, LightModel::terms, LightModel::terms> Covariance;
+typedef FitSample<LightModel::terms> LevelPair; // a match: the basis of the right level, the left level
 
 // Expected deviation of the coefficients from those of the same light. What vignetting and gamma do is within them; what
 // few matches cannot tell stays as it is.
@@ -38,13 +37,6 @@ void dispatchRow(ushort* levels, int cols, float first, float step, const float 
 {
     CV_CPU_DISPATCH(alignLightRow, (levels, cols, first, step, gain, curve, largest), CV_CPU_DISPATCH_MODES_ALL);
 }
-
-//! A match: the basis of the right level, the left level
-struct LevelPair
-{
-    Coefficients basis;
-    double left;
-};
 
 double meanLevel(const Mat& image, Point centre)
 {
@@ -66,52 +58,11 @@ std::vector<LevelPair> toLevels(const CoarseMatches& coarse)
         if (!match.isValid || !inside.contains(match.left) || !inside.contains(matched))
             continue;
         const double x = (match.x + 0.5) / right.cols - 0.5, y = (match.y + 0.5) / right.rows - 0.5;
-        const LevelPair pair = { LightModel::basis(meanLevel(right, matched), x, y), meanLevel(left, match.left) };
+        const LevelPair pair = { LightModel::basis(meanLevel(right, matched), x, y), meanLevel(left, match.left),
+                                 leastDeviation };
         pairs.push_back(pair);
     }
     return pairs;
-}
-
-std::vector<double> differences(const std::vector<LevelPair>& pairs, const Coefficients& coefficients)
-{
-    std::vector<double> values;
-    for (const LevelPair& pair : pairs)
-        values.push_back(std::abs(pair.left - coefficients.dot(pair.basis)));
-    return values;
-}
-
-double medianOf(std::vector<double> values)
-{
-    const size_t middle = values.size() / 2;
-    std::nth_element(values.begin(), values.begin() + middle, values.end());
-    return values[middle];
-}
-
-//! Least squares around the identity, reweighted for Cauchy's distribution of the differences
-Coefficients fitLight(const std::vector<LevelPair>& pairs)
-{
-    Coefficients fit = LightModel::identity();
-    for (int iteration = 0; iteration < fitIterations; ++iteration)
-    {
-        const std::vector<double> values = differences(pairs, fit);
-        const double deviation = std::max(1.4826 * medianOf(values), leastDeviation);
-        Covariance information;
-        Coefficients sum;
-        for (int i = 0; i < LightModel::terms; ++i)
-        {
-            information(i, i) = 1 / (expected[i] * expected[i]);
-            sum[i] = LightModel::identity()[i] * information(i, i);
-        }
-        for (size_t i = 0; i < pairs.size(); ++i)
-        {
-            const double relative = values[i] / (outlier * deviation);
-            const double weight = 1 / ((1 + relative * relative) * deviation * deviation);
-            information += weight * pairs[i].basis * pairs[i].basis.t();
-            sum += weight * pairs[i].left * pairs[i].basis;
-        }
-        fit = information.inv(DECOMP_CHOLESKY) * sum;
-    }
-    return fit;
 }
 
 } // namespace
@@ -124,15 +75,16 @@ bool estimateLight(const CoarseMatches& coarse, LightModel& model)
     const std::vector<LevelPair> pairs = toLevels(coarse);
     if ((int)pairs.size() < leastMatches)
         return false;
-    model.coefficients = fitLight(pairs);
+    const FitPrior<LightModel::terms> same = { LightModel::identity(), expected };
+    model.coefficients = fitRobustly(pairs, same, same.coefficients).coefficients;
     double change = 0;
     for (const LevelPair& pair : pairs)
     {
         const double difference = model.coefficients.dot(pair.basis) - pair.basis[0];
         change += difference * difference / pairs.size();
     }
-    const double before = medianOf(differences(pairs, LightModel::identity()));
-    const double rest = medianOf(differences(pairs, model.coefficients));
+    const double before = leastDeviation * medianOf(fitResiduals(pairs, same.coefficients));
+    const double rest = leastDeviation * medianOf(fitResiduals(pairs, model.coefficients));
     return change > leastChange * leastChange && rest < largestRest && rest < largestShare * before;
 }
 

@@ -7,6 +7,7 @@
 #include "row_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "corner_matches.hpp"
+#include "robust_fit.hpp"
 
 #include <cfloat>
 #include <cmath>
@@ -18,9 +19,8 @@ namespace hdp {
 namespace {
 
 const int leastMatches = 24;
+const int trackedArea = 600000;         // of the finest layer that tells enough, in pixels
 const double ownVariance = 0.02 * 0.02; // of a match's row, beside what its window says, in pixels of its layer
-const int fitIterations = 12;
-const double outlier = 2; // deviation in standard deviations at which the weight of a match is a half
 
 // What is expected of a model: standard deviations of a slope, and of its change over the width of the image
 const double slopeDeviation = 2e-3, slopeChange = 1e-3;
@@ -30,7 +30,6 @@ const double slopeDeviation = 2e-3, slopeChange = 1e-3;
 const double leastMove = 0.12, certainty = 2;
 
 typedef RowModel::Coefficients Coefficients;
-typedef Matx<double, RowModel::terms, RowModel::terms> Covariance;
 
 void dispatchMix(const uchar* const rows[4], const int weights[4], int begin, int end, uchar* mixed)
 {
@@ -42,12 +41,8 @@ void dispatchMix(const ushort* const rows[4], const int weights[4], int begin, i
     CV_CPU_DISPATCH(mixRows, (rows, weights, begin, end, mixed), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-//! A match in pixels of the image
-struct RowMove
-{
-    Coefficients basis; // of its place
-    double move, deviation;
-};
+typedef FitSample<RowModel::terms> RowMove; // of a match, in pixels of the image
+typedef RobustFit<RowModel::terms> RowFit;
 
 //! Places are in pixels of a layer.
 Point2d fromCentre(double x, double y, int layer, Size size)
@@ -71,52 +66,15 @@ std::vector<RowMove> toMoves(const std::vector<CornerMatch>& matches, int layer,
     return moves;
 }
 
-double medianOf(std::vector<double>& values)
-{
-    const size_t middle = values.size() / 2;
-    std::nth_element(values.begin(), values.begin() + middle, values.end());
-    return values[middle];
-}
-
-struct RowFit
-{
-    RowModel model;
-    Covariance covariance;
-};
-
-//! Least squares, reweighted for Cauchy's distribution of the deviations
 RowFit fitRows(const std::vector<RowMove>& moves, Size size)
 {
     const double curve = slopeChange / size.width;
-    const Coefficients expected(size.height, slopeDeviation, slopeDeviation, curve, curve);
-    RowFit fit;
+    FitPrior<RowModel::terms> prior;
+    prior.deviations = Coefficients(size.height, slopeDeviation, slopeDeviation, curve, curve);
     std::vector<double> values;
     for (const RowMove& move : moves)
-        values.push_back(move.move);
-    fit.model.coefficients[0] = medianOf(values);
-    for (int iteration = 0; iteration < fitIterations; ++iteration)
-    {
-        values.clear();
-        for (const RowMove& move : moves)
-            values.push_back(std::abs(move.move - fit.model.coefficients.dot(move.basis)) / move.deviation);
-        std::vector<double> sorted = values;
-        const double scale = std::max(1.4826 * medianOf(sorted), 1.); // of the deviations, at least as they claim
-        Covariance information;
-        Coefficients sum;
-        for (int i = 0; i < RowModel::terms; ++i)
-            information(i, i) = 1 / (expected[i] * expected[i]);
-        for (size_t m = 0; m < moves.size(); ++m)
-        {
-            const RowMove& move = moves[m];
-            const double relative = values[m] / (scale * outlier), deviation = scale * move.deviation;
-            const double weight = 1 / ((1 + relative * relative) * deviation * deviation);
-            information += weight * move.basis * move.basis.t();
-            sum += weight * move.move * move.basis;
-        }
-        fit.covariance = information.inv(DECOMP_CHOLESKY);
-        fit.model.coefficients = fit.covariance * sum;
-    }
-    return fit;
+        values.push_back(move.value);
+    return fitRobustly(moves, prior, Coefficients(medianOf(values)));
 }
 
 //! Means over the image
@@ -132,7 +90,7 @@ struct MeanSquares
             {
                 const Point2d place(((j + 0.5) / side - 0.5) * size.width, ((i + 0.5) / side - 0.5) * size.height);
                 const Coefficients basis = RowModel::basis(place);
-                const double value = fit.model.coefficients.dot(basis);
+                const double value = fit.coefficients.dot(basis);
                 move += value * value / (side * side);
                 deviation += basis.dot(fit.covariance * basis) / (side * side);
             }
@@ -207,6 +165,8 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
 {
     model = RowModel();
     const Size size = coarse.left[0].size();
+    while (finestLayer < coarse.layer && coarse.left[finestLayer].total() > (size_t)trackedArea)
+        ++finestLayer;
 
     // Noise and other light may leave more to be seen on a coarse layer than on the image: the most certain fit counts.
     std::vector<CornerMatch> matches = coarse.matches;
@@ -226,12 +186,16 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         }
         if (layer <= finestLayer)
             break;
-        enterFinerLayer(fit.model, layer, size, matches);
+        model.coefficients = fit.coefficients;
+        enterFinerLayer(model, layer, size, matches);
         trackCornerMatches(coarse.left[layer - 1], coarse.right[layer - 1], matches);
     }
-    if (leastDeviation == DBL_MAX || largestMove(best.model, size) > maxOffset)
+    model.coefficients = best.coefficients;
+    if (leastDeviation == DBL_MAX || largestMove(model, size) > maxOffset)
+    {
+        model = RowModel();
         return false;
-    model = best.model;
+    }
     return MeanSquares(best, size).move - certainty * certainty * leastDeviation > leastMove * leastMove;
 }
 

@@ -50,7 +50,7 @@ struct RowModel
 /** Finds how the rows of the right image lie against those of the left one, from matches that are followed from the
 coarse layer to the finest one.
 @param coarse What matchCoarsely() found.
-@param finestLayer The last layer that matches are followed to.
+@param finestLayer The last layer that matches are followed to; one of 600000 pixels is fine enough.
 @param maxOffset Largest difference of a pixel's rows that is believed, in pixels of the image.
 @param model Receives the model, zero if the matches do not tell.
 @return Whether the model is certain, and moves rows by enough to be applied. */

@@ -31,19 +31,22 @@ bool hasTexture(const uchar* left, int planes)
     return darker * SparseMatches::texture >= comparisons * (2 * SparseMatches::radius + 1);
 }
 
+uchar dispatchLowest(const uchar* costs, int count)
+{
+    CV_CPU_DISPATCH(lowestCost, (costs, count), CV_CPU_DISPATCH_MODES_ALL);
+}
+
 //! The disparity of a unique minimum
 ushort uniqueMatch(const uchar* costs, int count)
 {
-    const int best = (int)(std::min_element(costs, costs + count) - costs);
+    const int lowest = dispatchLowest(costs, count);
+    const int best = (int)(std::find(costs, costs + count, (uchar)lowest) - costs);
     const int before = std::max(best - SparseMatches::tolerance, 0);
     const int after = std::min(best + SparseMatches::tolerance + 1, count);
-    int rival = UCHAR_MAX + 1;
-    if (before > 0)
-        rival = *std::min_element(costs, costs + before);
-    if (after < count)
-        rival = std::min<int>(rival, *std::min_element(costs + after, costs + count));
-    const bool isUnique = rival <= UCHAR_MAX && costs[best] * SparseMatches::uniqueness < rival;
-    return (ushort)(isUnique ? best * subpixelScale : SparseMatches::noMatch);
+    if (before == 0 && after == count) // no rivals
+        return (ushort)SparseMatches::noMatch;
+    const int rival = std::min(dispatchLowest(costs, before), dispatchLowest(costs + after, count - after));
+    return (ushort)(lowest * SparseMatches::uniqueness < rival ? best * subpixelScale : SparseMatches::noMatch);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "sparse_matches.hpp"
+#include "vectorized.hpp"
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "byte_lanes.simd.hpp"
 #endif
@@ -23,7 +24,17 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 void sumWindowCosts(const uchar* left, const uchar* right, size_t planeStride, int planes, int numDisparities,
                     uchar* costs);
 
+//! The lowest of count costs, 255 if there are none
+uchar lowestCost(const uchar* costs, int count);
+
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+uchar lowestCost(const uchar* costs, int count)
+{
+    uchar lowest = UCHAR_MAX;
+    HDP_VECTORIZED for (int i = 0; i < count; ++i) lowest = costs[i] < lowest ? costs[i] : lowest;
+    return lowest;
+}
 
 void sumWindowCosts(const uchar* left, const uchar* right, size_t planeStride, int planes, int numDisparities,
                     uchar* costs)
