@@ -3,7 +3,7 @@
 #   slow, threads     unit tests that take minutes under a sanitizer; those for ThreadSanitizer
 #   instruction-sets  unit tests, and the maps to the bit, without the wider instruction sets; the objects for those
 #   preload           programs under hdpstereo-run, and what it puts in the place of StereoSGBM
-#   samples, python   programs of samples/ and of OpenCV's own samples; the Python module
+#   samples, python   programs of samples/ and of OpenCV's own samples; both Python modules
 #   packages          projects that build with the module, in all of the ways that README names
 #   performance       one round of the performance tests: that they run, not how fast
 #   documentation     the reference and the tutorials, without a warning
@@ -137,6 +137,16 @@ add_optional_check(dispatched_objects instruction-sets "${missing}"
 add_check(performance_tests performance opencv_perf_hdpstereo
   "--gtest_param_filter=*640x480*" --perf_min_samples=1 --perf_force_samples=1)
 set_tests_properties(performance_tests PROPERTIES FAIL_REGULAR_EXPRESSION "Running 0 tests")
+
+set(missing "")
+if(NOT HDPSTEREO_PYTHON_PACKAGE)
+  set(missing "HDPSTEREO_PYTHON_PACKAGE in this build")
+endif()
+add_optional_check(python_package python "${missing}"
+  "${Python_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/python/test/test_hdpstereo.py" --verbose)
+if(NOT missing)
+  set_property(TEST python_package APPEND PROPERTY ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
+endif()
 
 set(missing "")
 if(NOT HDPSTEREO_PYTHON)

@@ -15,7 +15,7 @@ if [ "${1:-}" = --sanitize ]; then
     preset=sanitize
     shift
 else
-    packages+=(python3-dev python3-numpy doxygen texlive-binaries libjs-mathjax
+    packages+=(python3-dev python3-numpy pybind11-dev mypy doxygen texlive-binaries libjs-mathjax
         # programs for hdpstereo-run
         python3-opencv gstreamer1.0-opencv gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good)
 fi
@@ -26,6 +26,7 @@ if find_opencv_source; then
     if [ "$preset" = release ] &&
         "$python" -c 'import numpy, os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null; then
         options+=(-DHDPSTEREO_PYTHON=ON "-DPython3_EXECUTABLE=$python")
+        [ ! -e /usr/lib/cmake/pybind11 ] || options+=(-DHDPSTEREO_PYTHON_PACKAGE=ON)
     fi
 fi
 

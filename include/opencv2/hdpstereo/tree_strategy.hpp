@@ -44,7 +44,7 @@ Derive from this class for a custom strategy:
 @endcode
 
 Both rules must be pure functions of their arguments, or the results of the matcher are not reproducible. An exception
-thrown by a rule leaves compute(); the matcher stays usable. Custom strategies are for C++ only.
+thrown by a rule leaves compute(); the matcher stays usable. In Python, the package hdpstereo has the same class.
 
 cv::Algorithm::write() of a matcher stores the strategy's getDefaultName() and what its write() adds. Only the
 strategies of this module can be created from a file, see HDPTreeMatcher. @ref tutorial_hdpstereo_own_tree has a

@@ -1,0 +1,37 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "bindings.hpp"
+
+// Python opens the files: its errors say what is wrong with a name.
+
+std::string toText(const cv::Algorithm& algorithm, const std::string& filename)
+{
+    cv::FileStorage storage(filename, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    storage << algorithm.getDefaultName() << "{";
+    algorithm.write(storage);
+    storage << "}";
+    return storage.releaseAndGetString();
+}
+
+void fromText(cv::Algorithm& algorithm, const std::string& text)
+{
+    const cv::FileStorage storage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    algorithm.read(storage.getFirstTopLevelNode());
+}
+
+void writeFile(const py::object& filename, const cv::Algorithm& algorithm)
+{
+    const std::string name = py::module_::import("os").attr("fspath")(filename).cast<std::string>();
+    const py::object file = py::module_::import("io").attr("open")(filename, "w", py::arg("encoding") = "utf-8");
+    file.attr("write")(toText(algorithm, name));
+    file.attr("close")();
+}
+
+std::string readFile(const py::object& filename)
+{
+    const py::object file = py::module_::import("io").attr("open")(filename, "r", py::arg("encoding") = "utf-8");
+    const std::string text = file.attr("read")().cast<std::string>();
+    file.attr("close")();
+    return text;
+}

@@ -1,0 +1,204 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "bindings.hpp"
+
+#include <mutex>
+
+using cv::stereo::DisparityPredictionModel;
+using cv::stereo::HDPTreeMatcher;
+
+namespace {
+
+//! A matcher for any number of threads: one after the other uses it.
+class Matcher
+{
+public:
+    explicit Matcher(const cv::Ptr<HDPTreeMatcher>& matcher) : matcher_(matcher) {}
+
+    //! Calls function(matcher), without the interpreter's lock.
+    template <typename Function> void run(const Function& function)
+    {
+        if (isInRule()) // it would wait for itself
+            throw std::runtime_error("a tree strategy must not use a matcher");
+        const py::gil_scoped_release release;
+        const std::lock_guard<std::mutex> lock(mutex_);
+        function(*matcher_);
+    }
+
+private:
+    cv::Ptr<HDPTreeMatcher> matcher_;
+    std::mutex mutex_;
+};
+
+std::unique_ptr<Matcher> create(int minDisparity, int numDisparities, int preset)
+{
+    return std::unique_ptr<Matcher>(new Matcher(HDPTreeMatcher::create(minDisparity, numDisparities, preset)));
+}
+
+void addEnumeration(py::object& matcher, const char* name, const char* documentation,
+                    const std::vector<std::pair<std::string, int>>& values)
+{
+    const py::object enumeration = py::module_::import("enum").attr("IntEnum")(
+        name, values, py::arg("module") = "hdpstereo", py::arg("qualname") = std::string("HDPTreeMatcher.") + name);
+    enumeration.attr("__doc__") = documentation;
+    matcher.attr(name) = enumeration;
+    for (const auto& value : values)
+        matcher.attr(value.first.c_str()) = enumeration.attr(value.first.c_str());
+}
+
+py::object enumerator(const char* name, int value) { return py::type::of<Matcher>().attr(name)(value); }
+
+py::object compute(Matcher& self, const py::array& leftArray, const py::array& rightArray, const py::object& output)
+{
+    std::vector<py::array> kept;
+    const cv::Mat left = toMat(leftArray, "left", kept), right = toMat(rightArray, "right", kept);
+    cv::Mat disparity;
+    if (output.is_none())
+    {
+        self.run([&](HDPTreeMatcher& m) { m.compute(left, right, disparity); });
+        return toPython(disparity);
+    }
+
+    if (!py::isinstance<py::array>(output))
+        throw py::type_error("disparity must be a numpy array");
+    const py::array array = py::reinterpret_borrow<py::array>(output);
+    disparity = toMat(array, "disparity", kept);
+    if ((disparity.type() != CV_16SC1 && disparity.type() != CV_32FC1) || disparity.size() != left.size())
+        throw py::value_error("disparity must be int16 or float32, of the size of left");
+    if (disparity.data != array.data() || !array.writeable())
+        throw py::value_error("disparity must be writeable, with the pixels of a row next to each other");
+    // An array of fixed type has the type of the result.
+    cv::Mat_<short> fixedPoint;
+    cv::Mat_<float> pixels;
+    const bool isFloat = disparity.depth() == CV_32F;
+    (isFloat ? (cv::Mat&)pixels : (cv::Mat&)fixedPoint) = disparity;
+    self.run([&](HDPTreeMatcher& m) {
+        if (isFloat)
+            m.compute(left, right, pixels);
+        else
+            m.compute(left, right, fixedPoint);
+    });
+    return output;
+}
+
+std::string toText(Matcher& self, const std::string& filename)
+{
+    std::string text;
+    self.run([&](HDPTreeMatcher& m) { text = ::toText(m, filename); });
+    return text;
+}
+
+cv::Ptr<cv::stereo::TreeStrategy> strategyOf(Matcher& self)
+{
+    cv::Ptr<cv::stereo::TreeStrategy> strategy;
+    self.run([&](HDPTreeMatcher& m) { strategy = m.getTreeStrategy(); });
+    return strategy;
+}
+
+} // namespace
+
+void addMatcher(py::module_& module)
+{
+    py::class_<Matcher> matcher(module, "HDPTreeMatcher", R"doc(
+Stereo matching over disparity trees with hierarchical disparity prediction.
+
+compute() takes a rectified pair, and returns the disparity of every pixel of the left image: a pixel (x, y) shows the
+same point as (x - disparity, y) of the right one. Methods, parameters and constants are those of C++ and of cv2.stereo.
+
+Where C++ throws an exception, ValueError is raised, with the same text. Threads may share a matcher: they wait for each
+other. Each one is faster with its own.)doc");
+    setPackage(matcher);
+    const int defaultPreset = HDPTreeMatcher::PRESET_FAST;
+    const char* const creation = R"doc(
+Creates a matcher.
+
+minDisparity: smallest disparity in pixels, of any sign.
+numDisparities: number of candidates, > 0.
+preset: HDPTreeMatcher.PRESET_FAST, PRESET_ULTRAFAST, PRESET_QUALITY, PRESET_TREE or PRESET_PAPER.)doc";
+    matcher.def(py::init(&create), py::arg("minDisparity") = 0, py::arg("numDisparities") = 64,
+                py::arg("preset") = defaultPreset, creation);
+    matcher.def_static("create", &create, py::arg("minDisparity") = 0, py::arg("numDisparities") = 64,
+                       py::arg("preset") = defaultPreset, creation);
+
+    matcher.def("compute", &compute, py::arg("left").noconvert(), py::arg("right").noconvert(),
+                py::arg("disparity") = py::none(), R"doc(
+Matches a rectified pair.
+
+left, right: images of one size and type: uint8 with one channel (grey), three (BGR) or four (BGR and alpha, which is
+ignored), or uint16 with one channel, of a camera of 10 to 16 bits. They are not copied if the pixels of a row are next
+to each other.
+disparity: an array for the result, if given: int16 or float32, of the images' size.
+
+Returns the disparities of the left image: int16, times 16, or float32 in pixels, see setDisparityDepth(). What a filter
+rejects is (minDisparity - 1) * 16, or minDisparity - 1. Raises ValueError if images or parameters do not fit.)doc");
+    matcher.def(
+        "setTreeStrategy",
+        [](Matcher& self, const py::object& strategy) {
+        const cv::Ptr<cv::stereo::TreeStrategy> kept = keptStrategy(strategy);
+        self.run([&](HDPTreeMatcher& m) { m.setTreeStrategy(kept); });
+        },
+        py::arg("strategy"), "Rule 1 and Rule 2 of the spanning trees, section 3.2 of the paper, see TreeStrategy.");
+    matcher.def("getTreeStrategy", &strategyOf, "See setTreeStrategy().");
+    matcher.def(
+        "setPredictionModel",
+        [](Matcher& self, const cv::Ptr<DisparityPredictionModel>& model) {
+        self.run([&](HDPTreeMatcher& m) { m.setPredictionModel(model); });
+        },
+        py::arg("model"), R"doc(
+Model behind the predicted intervals, section 2.2 of the paper.
+
+model: of at least one layer less than the pyramid, or compute() raises ValueError. None (default): a published model,
+by the width of the image. Without effect with AGGREGATION_SCANLINES.)doc");
+    matcher.def(
+        "getPredictionModel",
+        [](Matcher& self) {
+        cv::Ptr<DisparityPredictionModel> model;
+        self.run([&](HDPTreeMatcher& m) { model = m.getPredictionModel(); });
+        return model;
+        },
+        "See setPredictionModel().");
+
+    matcher.attr("AUTO") = (int)HDPTreeMatcher::AUTO;
+    using cv::String;
+#include "matcher_methods.inc"
+
+    matcher.def(
+        "save",
+        [](Matcher& self, const py::object& filename) {
+        self.run([&](HDPTreeMatcher& m) {
+            const py::gil_scoped_acquire acquire;
+            writeFile(filename, m);
+        });
+        },
+        py::arg("filename"),
+        "Writes all parameters, the prediction model and the name of the tree strategy to an XML, YAML or JSON file.");
+    const auto read = [](Matcher& self, const py::object& filename) {
+        const std::string text = readFile(filename);
+        self.run([&](HDPTreeMatcher& m) { fromText(m, text); });
+    };
+    matcher.def("read", read, py::arg("filename"), R"doc(
+Reads what save() has written.
+
+A file that names a strategy of your own can be read if a strategy of this name is set; it is kept. Raises ValueError if
+a value is missing or not valid; the matcher is unchanged then.)doc");
+    matcher.def_static(
+        "load",
+        [read](const py::object& filename) {
+        std::unique_ptr<Matcher> loaded = create(0, 64, HDPTreeMatcher::PRESET_FAST);
+        read(*loaded, filename);
+        return loaded;
+        },
+        py::arg("filename"), "Creates a matcher from what save() has written, see read().");
+    matcher.def(py::pickle(
+        [](Matcher& self) {
+        if (isPythonStrategy(strategyOf(self)))
+            throw py::type_error("a matcher with a tree strategy that is written in Python cannot be pickled");
+        return py::make_tuple(toText(self, ".yml"));
+        },
+        [](const py::tuple& state) {
+        std::unique_ptr<Matcher> copy = create(0, 64, HDPTreeMatcher::PRESET_FAST);
+        copy->run([&](HDPTreeMatcher& m) { fromText(m, state[0].cast<std::string>()); });
+        return copy;
+    }));
+}

@@ -1,0 +1,562 @@
+#!/usr/bin/env python3
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
+'''
+The package hdpstereo. Run by CTest, or alone:
+    PYTHONPATH=<build>/python python3 test_hdpstereo.py
+'''
+
+import copy
+import gc
+import inspect
+import os
+import pathlib
+import pickle
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+import weakref
+
+import numpy as np
+
+import hdpstereo
+from hdpstereo import DisparityPredictionModel, HDPTreeMatcher, TreeStrategy
+
+HEADERS = pathlib.Path(__file__).resolve().parents[2] / 'include' / 'opencv2' / 'hdpstereo'
+OTHERS = {'minDisparity': 3, 'numDisparities': 17, 'blockSize': 5, 'speckleWindowSize': 100, 'speckleRange': 2,
+          'disp12MaxDiff': 1, 'disparityDepth': hdpstereo.CV_32F, 'delta0': 0.125, 'beta': 0.5}
+CLASSES = (hdpstereo.TreeState, TreeStrategy, DisparityPredictionModel, HDPTreeMatcher)
+
+
+def create_pair(shape=(120, 160), background=4, foreground=11):
+    '''A textured square in front of a textured wall: left and right image (BGR), and the left disparities.'''
+    rng = np.random.RandomState(7)
+    noise = rng.randint(0, 256, shape + (3,)).astype(float)
+    for axis in (0, 1):
+        for _ in range(3):
+            noise = (np.roll(noise, -1, axis) + 2 * noise + np.roll(noise, 1, axis)) / 4
+    right = ((noise - noise.min()) / np.ptp(noise) * 255).astype(np.uint8)
+    truth = np.full(shape, background)
+    truth[shape[0] // 4:-shape[0] // 4, shape[1] // 3:-shape[1] // 4] = foreground
+    y, x = np.mgrid[:shape[0], :shape[1]]
+    left = right[y, np.maximum(x - truth, 0)]
+    return left, right, np.where(x < truth, 0, truth)
+
+
+LEFT, RIGHT, TRUTH = create_pair()
+
+
+def wrong(disparity):
+    '''Share of the pixels of known truth that are wrong.'''
+    known = TRUTH > 0
+    return np.mean(np.abs(disparity[known] / 16.0 - TRUTH[known]) >= 1)
+
+
+def parameters(matcher):
+    '''Of a matcher, all that have a setter, but objects.'''
+    names = [name[3:] for name in dir(matcher) if name.startswith('set')]
+    return {name: getattr(matcher, 'get' + name)() for name in names if name not in ('TreeStrategy', 'PredictionModel')}
+
+
+class MinimumSpanningTree(TreeStrategy):
+    def mayJoin(self, weight, a, b):
+        return True
+
+
+class SegmentTree(TreeStrategy):
+    def __init__(self, k):
+        super().__init__()
+        self.k = k
+
+    def mayJoin(self, weight, a, b):
+        return weight <= a.maxWeight + self.k / a.size and weight <= b.maxWeight + self.k / b.size
+
+    def unitesIntervals(self):
+        return False
+
+
+class Test(unittest.TestCase):
+    def assertSame(self, expected, actual):
+        self.assertEqual(expected.dtype, actual.dtype)
+        np.testing.assert_array_equal(expected, actual)
+
+    def assertRaisesText(self, kind, text, function, *arguments):
+        with self.assertRaises(kind) as context:
+            function(*arguments)
+        self.assertEqual(text, str(context.exception))
+
+
+class Interface(Test):
+    def declared(self, header, pattern):
+        names = re.findall(pattern, (HEADERS / header).read_text(encoding='utf-8'))
+        self.assertGreater(len(names), 1)
+        return set(names)
+
+    @unittest.skipUnless(HEADERS.is_dir(), 'there are no headers')
+    def test_everything_is_wrapped(self):
+        method = r'CV_WRAP (?:static |virtual )*[\w:<>]+ (\w+)\('
+        for name in self.declared('hdp_tree_matcher.hpp', method):
+            self.assertTrue(callable(getattr(HDPTreeMatcher, name, None)), name)
+        for name in self.declared('disparity_prediction.hpp', method):
+            self.assertTrue(callable(getattr(DisparityPredictionModel, name, None)), name)
+        for name in self.declared('tree_strategy.hpp', r'CV_EXPORTS_W \S+ (\w+)\('):
+            self.assertTrue(callable(getattr(hdpstereo, name, None)), name)
+        for name in self.declared('tree_strategy.hpp', r'    virtual [\w:<>]+ (\w+)\('):
+            self.assertTrue(callable(getattr(TreeStrategy, name, None)), name)
+        for header, wrapped in (('hdp_tree_matcher.hpp', HDPTreeMatcher),
+                                ('disparity_prediction.hpp', DisparityPredictionModel)):
+            for name, value in self.declared(header, r'\n +([A-Z][A-Z_0-9]+) = (-?\d+)'):
+                self.assertEqual(int(value), getattr(wrapped, name), name)
+
+    def test_enumerations(self):
+        self.assertIs(HDPTreeMatcher.Preset.PRESET_FAST, HDPTreeMatcher.PRESET_FAST)
+        self.assertIs(HDPTreeMatcher.COST_CENSUS, HDPTreeMatcher().getMatchingCost())
+        self.assertIs(HDPTreeMatcher.AGGREGATION_TREES, HDPTreeMatcher().getTopAggregation())
+        for enumeration in (HDPTreeMatcher.Preset, HDPTreeMatcher.MatchingCost, DisparityPredictionModel.Published):
+            for value in enumeration:
+                self.assertIs(value, pickle.loads(pickle.dumps(value)))
+
+    def test_documentation(self):
+        documented = [(hdpstereo.__name__, hdpstereo)]
+        for cls in CLASSES:
+            self.assertEqual('hdpstereo', cls.__module__)
+            documented += [(cls.__name__ + '.' + name, getattr(cls, name)) for name, value in vars(cls).items()
+                           if not name.startswith('_') and not isinstance(value, int)] + [(cls.__name__, cls)]
+        for name, value in documented:
+            text = inspect.getdoc(value) or ''
+            self.assertGreater(len(text.split()), 3, name)
+            self.assertIsNone(re.search(r'@|\\|::|CV_8U|\btrue\b|cv2\.Mat|Exception', text), name + ': ' + text)
+
+    def test_types(self):
+        '''The stub is that of the module, and a program with types passes.'''
+        if subprocess.run([sys.executable, '-c', 'import mypy'], stderr=subprocess.DEVNULL, check=False).returncode:
+            self.skipTest('there is no mypy')
+        program = pathlib.Path(__file__).with_name('typed_program.py')
+        folder = str(pathlib.Path(hdpstereo.__file__).resolve().parents[1])
+        environment = dict(os.environ, PYTHONPATH=folder)
+        if not folder.endswith('-packages'):  # where mypy looks by itself
+            environment['MYPYPATH'] = folder
+        with tempfile.TemporaryDirectory() as cache:
+            allowed = pathlib.Path(cache) / 'allowed'  # pybind11's own metaclass
+            allowed.write_text('\n'.join(['hdpstereo.' + cls.__name__ for cls in CLASSES] +
+                                         ['hdpstereo.TreeState.__init__']))
+            for command in (['mypy.stubtest', 'hdpstereo', '--ignore-unused-allowlist', '--allowlist', str(allowed)],
+                            ['mypy', '--strict', '--cache-dir', cache, str(program)]):
+                done = subprocess.run([sys.executable, '-m'] + command, env=environment, cwd=cache, text=True,
+                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+                self.assertEqual(0, done.returncode, done.stdout)
+
+    def test_beside_cv2(self):
+        try:
+            import cv2
+        except ImportError:
+            self.skipTest('there is no cv2')
+        matcher = HDPTreeMatcher(0, 32)
+        disparity = matcher.compute(LEFT, RIGHT)
+        matcher.setDisp12MaxDiff(1)
+        validated = cv2.validateDisparity(disparity.copy(), np.zeros(disparity.shape, np.int16), 0, 32, 1)
+        self.assertGreater(np.mean((matcher.compute(LEFT, RIGHT) == -16) == (validated == -16)), 0.9)
+        if hasattr(cv2, 'stereo') and hasattr(cv2.stereo, 'HDPTreeMatcher'):
+            self.assertSame(cv2.stereo.HDPTreeMatcher.create(0, 32).compute(LEFT, RIGHT), disparity)
+
+
+class Parameters(Test):
+    def test_creation(self):
+        self.assertEqual(parameters(HDPTreeMatcher()), parameters(HDPTreeMatcher.create()))
+        matcher = HDPTreeMatcher(-3, 40, HDPTreeMatcher.PRESET_QUALITY)
+        self.assertEqual((-3, 40), (matcher.getMinDisparity(), matcher.getNumDisparities()))
+        matcher = HDPTreeMatcher.create(preset=4, numDisparities=17, minDisparity=1)
+        self.assertEqual((1, 17), (matcher.getMinDisparity(), matcher.getNumDisparities()))
+        seen = [parameters(HDPTreeMatcher(preset=preset)) for preset in HDPTreeMatcher.Preset]
+        for i, values in enumerate(seen):
+            self.assertNotIn(values, seen[:i])
+
+    def test_setters(self):
+        matcher = HDPTreeMatcher(0, 40, HDPTreeMatcher.PRESET_PAPER)
+        self.assertGreater(len(parameters(matcher)), 25)
+        for name, value in parameters(matcher).items():
+            before = parameters(matcher)
+            other = OTHERS.get(name[0].lower() + name[1:], not value if isinstance(value, bool) else
+                               value / 2 if isinstance(value, float) else 1 if value != 1 else 2)
+            if isinstance(value, HDPTreeMatcher.MatchingCost):
+                other = HDPTreeMatcher.COST_CENSUS
+            if name == 'DisparityMedianSize':
+                other = 3
+            getattr(matcher, 'set' + name)(other)
+            after = parameters(matcher)
+            self.assertEqual(type(value), type(after[name]), name)
+            self.assertEqual(dict(before, **{name: other}), after, name)
+
+    def test_bad_values(self):
+        matcher = HDPTreeMatcher()
+        before = parameters(matcher)
+        for text, function, *arguments in (
+                ('numDisparities must be > 0, not 0', matcher.setNumDisparities, 0),
+                ('gamma must be finite and > 0, not nan', matcher.setGamma, float('nan')),
+                ('delta0 must be in [0, 1) or AUTO, not 1', matcher.setDelta0, 1),
+                ('matchingCost must be COST_COLOR_GRADIENT or COST_CENSUS, not 2', matcher.setMatchingCost, 2),
+                ('disparityDepth must be CV_16S or CV_32F, not 0', matcher.setDisparityDepth, 0),
+                ('treeStrategy must not be empty', matcher.setTreeStrategy, None),
+                ('layer must be >= 0, not -1', matcher.getLayerPrior, -1),
+                ('preset must be one of HDPTreeMatcher::PRESET_*, not 9', HDPTreeMatcher, 0, 16, 9),
+                ('numDisparities must be > 0, not -16', HDPTreeMatcher.create, 0, -16),
+                ('k must be finite and >= 0', hdpstereo.createSegmentTree, -1),
+                ('seed must be >= 0', hdpstereo.createRandomTree, -1),
+                ('which must be PUBLISHED_LARGE or PUBLISHED_SMALL', DisparityPredictionModel.createPublished, 9),
+                ('sigmas must be finite and > 0', DisparityPredictionModel().addLayer, [0], [0], [1])):
+            self.assertRaisesText(ValueError, text, function, *arguments)
+        for bad in ('wide', [1], None, 1.5, 1 << 40):
+            self.assertRaises(TypeError, matcher.setNumLayers, bad)
+            self.assertRaises(TypeError, matcher.setPredictionModel, bad or object())
+        self.assertRaisesText(TypeError, 'strategy must be a TreeStrategy', matcher.setTreeStrategy, 'MST')
+        self.assertEqual(before, parameters(matcher))
+
+
+class Matching(Test):
+    def test_presets(self):
+        limits = {'PAPER': 0.3, 'FAST': 0.03, 'ULTRAFAST': 0.1, 'QUALITY': 0.03, 'TREE': 0.1}
+        for preset in HDPTreeMatcher.Preset:
+            for pair in ((LEFT, RIGHT), (LEFT[:, :, 1], RIGHT[:, :, 1])):
+                disparity = HDPTreeMatcher(0, 32, preset).compute(*pair)
+                self.assertEqual((np.int16, TRUTH.shape), (disparity.dtype, disparity.shape))
+                self.assertLess(wrong(disparity), limits[preset.name[7:]], preset.name)
+
+    def test_types(self):
+        matcher = HDPTreeMatcher(0, 32)
+        expected = matcher.compute(LEFT, RIGHT)
+        self.assertSame(expected, matcher.compute(*(np.dstack((image, image[:, :, 0])) for image in (LEFT, RIGHT))))
+        left, right = LEFT[:, :, 1], RIGHT[:, :, 1]
+        expected = matcher.compute(left, right)
+        self.assertSame(expected, matcher.compute(left[:, :, None], right[:, :, None]))
+        self.assertSame(expected, matcher.compute(left.astype(np.uint16) * 16, right.astype(np.uint16) * 16))
+        matcher.setDisparityDepth(hdpstereo.CV_32F)
+        self.assertSame(expected.astype(np.float32) / 16, matcher.compute(left, right))
+
+    def test_layouts(self):
+        matcher = HDPTreeMatcher(0, 32)
+        views = (lambda image: image[10:-7, 20:-3], lambda image: image[::2], lambda image: image[:, ::2],
+                 lambda image: image[::-1], lambda image: image[:, ::-1], lambda image: image[:, :, ::-1],
+                 lambda image: image.swapaxes(0, 1), lambda image: image[:, :, 1], np.asfortranarray,
+                 lambda image: image[5:6], lambda image: image[:, 5:6], lambda image: image[5:6, 5:6, 1],
+                 lambda image: np.broadcast_to(image[:1], image.shape))
+        for view in views:
+            left, right = view(LEFT), view(RIGHT)
+            left.flags.writeable = right.flags.writeable = False
+            self.assertSame(matcher.compute(left.copy(order='C'), right.copy(order='C')), matcher.compute(left, right))
+
+    def test_given_output(self):
+        matcher = HDPTreeMatcher(0, 32)
+        expected = matcher.compute(LEFT, RIGHT)
+        output = np.zeros_like(expected)
+        self.assertIs(output, matcher.compute(LEFT, RIGHT, output))
+        self.assertSame(expected, output)
+        canvas = np.zeros((130, 180), np.float32)
+        matcher.compute(LEFT, RIGHT, disparity=canvas[5:125, 10:170])
+        self.assertSame(expected.astype(np.float32) / 16, canvas[5:125, 10:170])
+        self.assertFalse(canvas[:5].any() or canvas[125:].any() or canvas[:, :10].any() or canvas[:, 170:].any())
+        size = 'disparity must be int16 or float32, of the size of left'
+        memory = 'disparity must be writeable, with the pixels of a row next to each other'
+        locked = output.copy()
+        locked.flags.writeable = False
+        for text, bad in ((size, output[1:]), (size, output.astype(np.int32)), (memory, output.T.copy().T),
+                          (memory, locked)):
+            self.assertRaisesText(ValueError, text, matcher.compute, LEFT, RIGHT, bad)
+
+    def test_bad_images(self):
+        matcher = HDPTreeMatcher(0, 32)
+        expected = matcher.compute(LEFT, RIGHT)
+        grey = LEFT[:, :, 0]
+        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1'
+        for text, left, right in (
+                ('left must not be empty', LEFT[:0], RIGHT[:0]),
+                ('right must have the size of left', LEFT, RIGHT[:-1]),
+                ('right must have the type of left', LEFT, grey),
+                (types, LEFT.astype(np.uint16), RIGHT.astype(np.uint16)),
+                (types, grey / 255.0, grey / 255.0),
+                (types, LEFT[:, :, :2], RIGHT[:, :, :2]),
+                ('left must be an image, not an array of int64 with shape (120, 160)', grey.astype(np.int64), grey),
+                ('right must be an image, not an array of bool with shape (120, 160)', grey, grey > 7),
+                ('left must be an image, not an array of >u2 with shape (120, 160)', grey.astype('>u2'), grey),
+                ('left must be an image, not an array of uint8 with shape (160,)', grey[0], grey[0]),
+                ('left must be an image, not an array of uint8 with shape (4, 4, 3, 2)',
+                 np.zeros((4, 4, 3, 2), np.uint8), grey)):
+            self.assertRaisesText(ValueError, text, matcher.compute, left, right)
+        for bad in (None, LEFT.tolist(), 'left', 7):
+            self.assertRaises(TypeError, matcher.compute, bad, RIGHT)
+            self.assertRaises(TypeError, matcher.compute, LEFT, bad)
+        self.assertSame(expected, matcher.compute(LEFT, RIGHT))
+
+    def test_what_the_last_compute_did(self):
+        matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_PAPER)
+        self.assertIsNone(matcher.getConfidence())
+        self.assertEqual((None, None), matcher.getForest())
+        self.assertIsNone(matcher.getLayerDisparity(0))
+        self.assertEqual(([], 0), (matcher.getStageTimes()[0], len(matcher.getSearchRatios())))
+        disparity = matcher.compute(LEFT, RIGHT)
+        confidence = matcher.getConfidence()
+        self.assertEqual((np.uint8, disparity.shape), (confidence.dtype, confidence.shape))
+        self.assertEqual([32, 16, 0], [len(matcher.getLayerPrior(layer)) for layer in range(3)])
+        self.assertEqual(3, len(matcher.getSearchRatios()))
+        trees, intervals = matcher.getForest()
+        self.assertEqual((np.int32, disparity.shape), (trees.dtype, trees.shape))
+        self.assertEqual((np.uint16, disparity.shape + (2,)), (intervals.dtype, intervals.shape))
+        self.assertSame((disparity / 16.0).astype(np.float32), matcher.getLayerDisparity(0))
+        stages, milliseconds = matcher.getStageTimes()
+        self.assertIn('cost aggregation', stages)
+        self.assertEqual(len(stages), len(milliseconds))
+        # What is returned stays as it is, and needs no matcher.
+        before = trees.copy()
+        matcher.compute(RIGHT, LEFT)
+        del matcher
+        self.assertSame(before, trees)
+
+    def test_other_threads_run_meanwhile(self):
+        matcher = HDPTreeMatcher(0, 64, HDPTreeMatcher.PRESET_TREE)
+        large = [np.tile(image, (4, 4, 1)) for image in (LEFT, RIGHT)]
+        thread = threading.Thread(target=matcher.compute, args=large)
+        thread.start()
+        count = 0
+        while thread.is_alive():
+            count += 1
+        thread.join()
+        self.assertGreater(count, 1000)
+
+    def test_threads_share_a_matcher(self):
+        matcher = HDPTreeMatcher(0, 32)
+        expected = matcher.compute(LEFT, RIGHT), matcher.compute(RIGHT, LEFT)
+        differences = []
+
+        def match(which):
+            for _ in range(10):
+                result = matcher.compute(LEFT, RIGHT) if which == 0 else matcher.compute(RIGHT, LEFT)
+                matcher.getConfidence()
+                differences.append(np.count_nonzero(result != expected[which]))
+
+        threads = [threading.Thread(target=match, args=(i % 2,)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual([0] * 40, differences)
+
+
+class Strategies(Test):
+    def match(self, strategy, prediction=True):
+        matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_TREE)
+        matcher.setUsePrediction(prediction)
+        matcher.setTreeStrategy(strategy)
+        return matcher.compute(LEFT, RIGHT)
+
+    def test_same_as_those_of_the_library(self):
+        class Parallel(SegmentTree):
+            def ordersByWeight(self):
+                return True
+
+        class Ordered(MinimumSpanningTree):
+            def orderEdges(self, weights, edges):
+                return edges[np.argsort(weights.ravel()[edges], kind='stable')]
+
+        class Inherited(MinimumSpanningTree):
+            def orderEdges(self, weights, edges):
+                return super().orderEdges(weights, edges)
+
+        for prediction in (True, False):
+            spanning = self.match(hdpstereo.createMinimumSpanningTree(), prediction)
+            segments = self.match(hdpstereo.createSegmentTree(300), prediction)
+            self.assertTrue((spanning != segments).any())
+            for strategy in (MinimumSpanningTree(), Ordered(), Inherited()):
+                self.assertSame(spanning, self.match(strategy, prediction))
+            for strategy in (SegmentTree(300), Parallel(300)):
+                self.assertSame(segments, self.match(strategy, prediction))
+
+    def test_arguments(self):
+        asked = []
+
+        class Asked(TreeStrategy):
+            def orderEdges(self, weights, edges):
+                asked.append((weights, edges))
+                return edges[::-1].astype(np.int64)
+
+            def mayJoin(self, weight, a, b):
+                asked.append((weight, a.size, b.size, a.maxWeight, b.maxWeight))
+                return np.bool_(a.size + b.size < 9)
+
+        self.match(Asked(), False)
+        weights, edges = asked[0]
+        self.assertEqual((np.uint8, TRUTH.shape + (2,)), (weights.dtype, weights.shape))
+        difference = np.abs(np.diff(LEFT.astype(int), axis=1)).max(axis=2)
+        np.testing.assert_array_equal(difference, weights[:, :-1, 0])
+        self.assertEqual((np.int32, (2 * TRUTH.size - sum(TRUTH.shape),)), (edges.dtype, edges.shape))
+        self.assertEqual((weights.ravel()[edges[-1]], 1, 1, 0, 0), asked[1])
+        self.assertEqual(set(range(1, 9)), {size for state in asked[1:] for size in state[1:3]})
+
+    def test_rules_of_the_library(self):
+        weights = np.array([[[5, 9], [7, 1]], [[3, 0], [0, 0]]], np.uint8)
+        strategy = hdpstereo.createMinimumSpanningTree()
+        self.assertEqual([3, 4, 0, 1], strategy.orderEdges(weights, np.array([0, 1, 3, 4])).tolist())
+        self.assertEqual((True, True), (strategy.ordersByWeight(), strategy.unitesIntervals()))
+        self.assertEqual('hdpstereo_MinimumSpanningTree', strategy.getDefaultName())
+        self.assertRaisesText(ValueError, 'edges must be in 0 .. 2 * height * width - 1, not 8', strategy.orderEdges,
+                              weights, np.array([8]))
+        self.assertRaises(ValueError, strategy.orderEdges, weights[:, :, 0], np.array([1]))
+        self.assertRaises(TypeError, strategy.orderEdges, weights, np.array([1.5]))
+
+    def test_errors(self):
+        class Failing(TreeStrategy):
+            calls = 0
+
+            def mayJoin(self, weight, a, b):
+                self.calls += 1
+                if self.calls > 500:
+                    raise KeyError('a tree')
+                return True
+
+        class FailingInParallel(Failing):
+            def ordersByWeight(self):
+                return True
+
+        def ordering(order):
+            return type('Ordering', (MinimumSpanningTree,), {'orderEdges': lambda self, weights, edges: order(edges)})()
+
+        matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_TREE)
+        uses_matcher = type('Uses', (TreeStrategy,), {'mayJoin': lambda *arguments: matcher.getGamma()})()
+        expected = matcher.compute(LEFT, RIGHT)
+        permutation = 'treeStrategy: orderEdges must leave a permutation of the edges'
+        for kind, text, strategy in (
+                (KeyError, "'a tree'", Failing()),
+                (KeyError, "'a tree'", FailingInParallel()),
+                (NotImplementedError, 'a TreeStrategy must define mayJoin()', TreeStrategy()),
+                (RuntimeError, 'a tree strategy must not use a matcher', uses_matcher),
+                (ValueError, permutation, ordering(lambda edges: edges[1:])),
+                (ValueError, permutation, ordering(lambda edges: np.where(edges == edges[3], edges[4], edges))),
+                (ValueError, permutation, ordering(lambda edges: edges.astype(np.int64) + (1 << 40))),
+                (ValueError, permutation, ordering(lambda edges: edges * -1)),
+                (TypeError, 'orderEdges() must return integers in one dimension', ordering(lambda edges: None)),
+                (TypeError, 'orderEdges() must return integers in one dimension', ordering(lambda edges: edges * 1.0)),
+                (TypeError, 'orderEdges() must return integers in one dimension', ordering(lambda edges: edges[None]))):
+            matcher.setTreeStrategy(strategy)
+            self.assertRaisesText(kind, text, matcher.compute, LEFT, RIGHT)
+            matcher.setTreeStrategy(hdpstereo.createMinimumSpanningTree())
+            self.assertSame(expected, matcher.compute(LEFT, RIGHT))
+
+    def test_lifetime(self):
+        matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_TREE)
+        strategy = SegmentTree(300)
+        reference = weakref.ref(strategy)
+        matcher.setTreeStrategy(strategy)
+        self.assertIs(strategy, matcher.getTreeStrategy())
+        expected = matcher.compute(LEFT, RIGHT)
+        del strategy
+        gc.collect()
+        self.assertEqual(300, matcher.getTreeStrategy().k)
+        self.assertSame(expected, matcher.compute(LEFT, RIGHT))
+        matcher.setTreeStrategy(hdpstereo.createRandomTree())
+        gc.collect()
+        self.assertIsNone(reference())
+
+
+class Storage(Test):
+    def setUp(self):
+        self.directory = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.directory.name)
+
+    def tearDown(self):
+        self.directory.cleanup()
+
+    def test_matcher(self):
+        matcher = HDPTreeMatcher(-3, 40, HDPTreeMatcher.PRESET_PAPER)
+        matcher.setTreeStrategy(hdpstereo.createSegmentTree(77))
+        matcher.setPredictionModel(DisparityPredictionModel.createPublished(DisparityPredictionModel.PUBLISHED_SMALL))
+        expected = matcher.compute(LEFT, RIGHT)
+        copies = [pickle.loads(pickle.dumps(matcher)), copy.deepcopy(matcher)]
+        for name in ('matcher.yml', 'matcher.xml', 'matcher.json'):
+            matcher.save(self.path / name)
+            copies.append(HDPTreeMatcher.load(str(self.path / name)))
+        for other in copies:
+            self.assertEqual(parameters(matcher), parameters(other))
+            self.assertSame(expected, other.compute(LEFT, RIGHT))
+
+    def test_strategy_of_ones_own(self):
+        matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_TREE)
+        matcher.setTreeStrategy(SegmentTree(300))
+        matcher.setGamma(7)
+        matcher.save(self.path / 'own.yml')
+        text = 'treeStrategy: set a strategy named SegmentTree before reading'
+        self.assertRaisesText(ValueError, text, HDPTreeMatcher.load, self.path / 'own.yml')
+        other = HDPTreeMatcher(0, 32)
+        other.setTreeStrategy(SegmentTree(300))
+        other.read(self.path / 'own.yml')
+        self.assertEqual(7, other.getGamma())
+        self.assertRaises(TypeError, pickle.dumps, matcher)
+
+    def test_bad_files(self):
+        matcher = HDPTreeMatcher()
+        before = parameters(matcher)
+        self.assertRaises(FileNotFoundError, matcher.read, self.path / 'none.yml')
+        self.assertRaises(FileNotFoundError, matcher.save, self.path / 'none' / 'matcher.yml')
+        self.assertRaises(FileNotFoundError, DisparityPredictionModel.load, self.path / 'none.yml')
+        matcher.save(self.path / 'good.yml')
+        good = (self.path / 'good.yml').read_text()
+        for bad in ('', 'no file of this kind', good[:len(good) // 2], good.replace('gamma: 20', 'gamma: -20')):
+            (self.path / 'bad.yml').write_text(bad)
+            self.assertRaises(ValueError, matcher.read, self.path / 'bad.yml')
+            self.assertRaises(ValueError, DisparityPredictionModel.load, self.path / 'bad.yml')
+        self.assertEqual(before, parameters(matcher))
+
+    def test_model(self):
+        model = DisparityPredictionModel.createPublished(DisparityPredictionModel.PUBLISHED_LARGE)
+        model.save(self.path / 'model.json')
+        for other in (DisparityPredictionModel.load(self.path / 'model.json'), pickle.loads(pickle.dumps(model))):
+            self.assertEqual(3, other.getNumLayers())
+            for layer in range(3):
+                np.testing.assert_array_equal(model.getLayer(layer), other.getLayer(layer))
+
+
+class Models(Test):
+    def test_own(self):
+        matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_PAPER)
+        self.assertIsNone(matcher.getPredictionModel())
+        expected = matcher.compute(LEFT, RIGHT)
+        model = DisparityPredictionModel()
+        model.addLayer([0, 1.5], np.array([0.75, 4]), (0.25, 0.75))
+        matcher.setPredictionModel(model)
+        self.assertRaisesText(ValueError, 'predictionModel must have numLayers - 1 = 2 layers, not 1', matcher.compute,
+                              LEFT, RIGHT)
+        model.addLayer([0.5], [6], [1])
+        self.assertEqual(2, matcher.getPredictionModel().getNumLayers())
+        self.assertTrue((expected != matcher.compute(LEFT, RIGHT)).any())
+        matcher.setPredictionModel(None)
+        self.assertSame(expected, matcher.compute(LEFT, RIGHT))
+        means, sigmas, weights = model.getLayer(0)
+        density = np.dot(weights, np.exp(-0.5 * ((2 - means) / sigmas) ** 2) / (np.sqrt(2 * np.pi) * sigmas))
+        self.assertAlmostEqual(density, model.density(0, 2), places=9)
+        model.clear()
+        self.assertEqual(0, model.getNumLayers())
+
+    def test_training(self):
+        rng = np.random.RandomState(3)
+        halves = [rng.randint(8, 20, (30, 40)) for _ in range(4)]
+        upper = [np.rint(half + rng.normal(1, 1.5, half.shape)).clip(0).astype(np.float32) for half in halves]
+        maps = [np.kron(2 * half, np.ones((2, 2))).astype(np.float32) for half in halves]
+        offsets, counts = DisparityPredictionModel.countOffsets(maps, upper)
+        self.assertEqual(sum(d.size for d in maps), counts.sum())
+        self.assertTrue((np.diff(offsets) > 0).all())
+        model = DisparityPredictionModel()
+        self.assertRaises(ValueError, model.train, maps[:1], upper)
+        self.assertRaises(TypeError, model.train, [LEFT.tolist()], upper)
+        try:
+            likelihood = model.train(maps, upper, maxComponents=2, seed=1)
+        except NotImplementedError as e:
+            self.skipTest(str(e))
+        self.assertAlmostEqual(-0.5 * np.log(2 * np.pi * np.e * (1.5 ** 2 + 1 / 12.0)), likelihood, delta=0.1)
+        means, _, weights = model.getLayer(0)
+        self.assertAlmostEqual(1, np.dot(means, weights), delta=0.1)
+
+
+if __name__ == '__main__':
+    unittest.main()
