@@ -397,7 +397,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         return input.ConsumeBool() && input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-1, last + 1);
     };
     change(m, [&] {
-        switch (input.ConsumeIntegralInRange(0, 38))
+        switch (input.ConsumeIntegralInRange(0, 39))
         {
         case 0:
             return m.setMinDisparity(input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-200, 200));
@@ -473,6 +473,8 @@ void setParameter(Input& input, HDPTreeMatcher& m)
             return m.setMaxRowOffset(upTo(100));
         case 37:
             return m.setUseLightAlignment(input.ConsumeBool());
+        case 38:
+            return m.setNoiseThreshold(anyDouble(input));
         default:
             return m.setUseNonLocalRefinement(input.ConsumeBool());
         }

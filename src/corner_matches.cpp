@@ -226,6 +226,7 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     match.x = match.left.x + place.x - first.x;
     match.y = match.left.y + place.y - first.y;
     match.variance = residual * xx / determinant;
+    match.residual = residual;
     match.isValid = true;
 }
 

@@ -32,6 +32,7 @@ struct CornerMatch
     Point left;
     double x, y;     // in the right image
     double variance; // of y
+    double residual; // mean square difference of the tracked windows
     bool isValid;
 };
 

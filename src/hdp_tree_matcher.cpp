@@ -46,10 +46,10 @@ public:
                               p_.matchingCost == COST_CENSUS, pyramids_, images);
         });
 
-        if (p_.maxRowOffset > 0 || p_.useLightAlignment)
+        if (p_.maxRowOffset > 0 || p_.useLightAlignment || p_.noiseThreshold > 0)
             clock_.run("alignment", [&] {
                 const AlignmentSearch search = { p_.numDisparities, p_.maxRowOffset, p_.useLightAlignment,
-                                                 settings.finestLayer };
+                                                 p_.noiseThreshold, settings.finestLayer };
                 alignPair(search, alignmentBuffers_, images, result_.alignment);
             });
 
@@ -113,6 +113,7 @@ public:
     HDP_PARAMETER(bool, UseNonLocalRefinement, useNonLocalRefinement)
     HDP_PARAMETER(int, MaxRowOffset, maxRowOffset)
     HDP_PARAMETER(bool, UseLightAlignment, useLightAlignment)
+    HDP_PARAMETER(double, NoiseThreshold, noiseThreshold)
 
     void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE
     {
@@ -190,6 +191,8 @@ public:
         model.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
         return isMatched() && result_.alignment.hasLight;
     }
+
+    double getNoiseLevel() const CV_OVERRIDE { return isMatched() ? result_.alignment.noise : 0; }
 
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
     {

@@ -53,6 +53,7 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
     visit("disp12MaxDiff", &P::disp12MaxDiff);
     visit("maxRowOffset", &P::maxRowOffset, ">= 0", [](int v) { return v >= 0; });
     visit("useLightAlignment", &P::useLightAlignment);
+    visit("noiseThreshold", &P::noiseThreshold, "finite and >= 0", isNotNegative);
     visit("usePrediction", &P::usePrediction);
     visit("useMedianPrefilter", &P::useMedianPrefilter);
     visit("numLayers", &P::numLayers, "in 1..16", [](int v) { return isIn(v, 1, 16); });
@@ -216,6 +217,7 @@ MatcherParameters presetParameters(int preset)
 
     p.maxRowOffset = 64;
     p.useLightAlignment = true;
+    p.noiseThreshold = 3;
     p.matchingCost = M::COST_CENSUS;
     p.blockSize = 7;
     p.gamma = 20;

@@ -22,6 +22,7 @@ struct MatcherParameters
     int disp12MaxDiff = -1;
     int maxRowOffset = 0;
     bool useLightAlignment = false;
+    double noiseThreshold = 0;
 
     Ptr<TreeStrategy> treeStrategy = createMinimumSpanningTree();
     Ptr<DisparityPredictionModel> predictionModel; // empty: the published one

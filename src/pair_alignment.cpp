@@ -7,9 +7,29 @@
 #include "image_levels.hpp"
 #include "image_pyramid.hpp"
 
+#include "opencv2/imgproc.hpp"
+
 namespace cv {
 namespace stereo {
 namespace hdp {
+
+namespace {
+
+//! Both images by a small Gaussian, the guide by a median
+void smooth(LayerImages& images, bool isGrey, LayerImages& smoothed)
+{
+    const double deviation = 0.5; // of the Gaussian, in pixels
+    medianBlur(images.guide, smoothed.guide, 3);
+    images.guide = smoothed.guide;
+    if (!isGrey)
+        return;
+    GaussianBlur(images.left, smoothed.left, Size(3, 3), deviation, deviation, BORDER_REPLICATE);
+    GaussianBlur(images.right, smoothed.right, Size(3, 3), deviation, deviation, BORDER_REPLICATE);
+    images.left = smoothed.left;
+    images.right = smoothed.right;
+}
+
+} // namespace
 
 void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
                PairAlignment& alignment)
@@ -31,8 +51,12 @@ void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::ve
         right.push_back(buffers.rightLevels);
     }
     matchCoarsely(left, right, search.numDisparities, buffers.coarse);
-    if (search.maxRowOffset > 0)
-        alignment.hasRows = estimateRows(buffers.coarse, search.finestLayer, search.maxRowOffset, alignment.rows);
+    alignment.hasRows =
+        estimateRows(buffers.coarse, search.finestLayer, search.maxRowOffset, alignment.rows, alignment.noise) &&
+        search.maxRowOffset > 0;
+    if (search.maxRowOffset == 0)
+        alignment.rows = RowModel();
+    alignment.noise /= greyScale;
     if (search.hasLight && isGrey)
         alignment.hasLight = estimateLight(buffers.coarse, alignment.light);
 
@@ -47,6 +71,13 @@ void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::ve
     if (alignment.hasRows || alignment.hasLight)
         for (size_t layer = search.finestLayer + 1; layer < images.size(); ++layer)
             halveImage(images[layer - 1].right, images[layer].right); // into the memory of the pyramid
+
+    if (search.noiseThreshold > 0 && alignment.noise >= search.noiseThreshold)
+    {
+        buffers.smoothed.resize(images.size());
+        for (size_t layer = search.finestLayer; layer < images.size(); ++layer)
+            smooth(images[layer], isGrey, buffers.smoothed[layer]);
+    }
 }
 
 } // namespace hdp

@@ -15,10 +15,11 @@ namespace hdp {
 //! What alignPair() looks for
 struct AlignmentSearch
 {
-    int numDisparities; // of the images
-    int maxRowOffset;   // 0: rows stay
-    bool hasLight;      // of grey levels alone
-    int finestLayer;    // where matching ends
+    int numDisparities;    // of the images
+    int maxRowOffset;      // 0: rows stay
+    bool hasLight;         // of grey levels alone
+    double noiseThreshold; // levels of 255 from which noisy images are smoothed; 0: never
+    int finestLayer;       // where matching ends
 };
 
 //! What was found, about the right image's centre, and what of it was applied
@@ -27,6 +28,7 @@ struct PairAlignment
     RowModel rows;
     LightModel light;
     bool hasRows = false, hasLight = false;
+    double noise = 0; // standard deviation in levels of 255
 };
 
 //! Memory of alignPair(), kept from pair to pair
@@ -34,12 +36,14 @@ struct AlignmentBuffers
 {
     CoarseMatches coarse;
     Mat leftLevels, rightLevels, right;
+    std::vector<LayerImages> smoothed;
 };
 
-/** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it.
+/** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it, and
+smooths both images of noisy pairs.
 @param search What is looked for.
 @param buffers Memory to work in.
-@param images Those of buildPairPyramids(); their right images may change.
+@param images Those of buildPairPyramids(); they may change.
 @param alignment Receives what was found. */
 void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
                PairAlignment& alignment);

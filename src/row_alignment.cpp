@@ -77,6 +77,19 @@ RowFit fitRows(const std::vector<RowMove>& moves, Size size)
     return fitRobustly(moves, prior, Coefficients(medianOf(values)));
 }
 
+//! Standard deviation of the noise of a layer. White noise is assumed; half of it is left between pixels of the right
+//! window, where interpolation averages it.
+double noiseOf(const std::vector<CornerMatch>& matches)
+{
+    std::vector<double> residuals;
+    for (const CornerMatch& match : matches)
+        if (match.isValid)
+            residuals.push_back(match.residual);
+    const size_t tenth = residuals.size() / 10;
+    std::nth_element(residuals.begin(), residuals.begin() + tenth, residuals.end());
+    return std::sqrt(residuals[tenth] / 1.5);
+}
+
 //! Means over the image
 struct MeanSquares
 {
@@ -161,9 +174,10 @@ template <typename T> void alignRow(const Mat& right, const RowModel& model, int
 
 } // namespace
 
-bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model)
+bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model, double& noise)
 {
     model = RowModel();
+    noise = 0;
     const Size size = coarse.left[0].size();
     while (finestLayer < coarse.layer && coarse.left[finestLayer].total() > (size_t)trackedArea)
         ++finestLayer;
@@ -179,6 +193,7 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
             break;
         const RowFit fit = fitRows(moves, size);
         const double deviation = MeanSquares(fit, size).deviation;
+        noise = noiseOf(matches);
         if (deviation < leastDeviation)
         {
             leastDeviation = deviation;

@@ -83,6 +83,7 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setMaxTopDisparities(hasScanlines ? 64 : 0);
     matcher.setMaxRowOffset(isPaper ? 0 : 64);
     matcher.setUseLightAlignment(!isPaper);
+    matcher.setNoiseThreshold(isPaper ? 0 : 3);
     matcher.setFinestLayer(preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 1 : 0);
     matcher.setDisparityPrior(isTree ? HDPTreeMatcher::PRIOR_UPPER_LAYER : HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
     matcher.setIntervalMargin(isTree ? 1 : 0);

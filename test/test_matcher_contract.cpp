@@ -62,6 +62,7 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_EQ(0, matcher->getMaxTopDisparities());
     EXPECT_EQ(0, matcher->getMaxRowOffset());
     EXPECT_FALSE(matcher->getUseLightAlignment());
+    EXPECT_EQ(0, matcher->getNoiseThreshold());
     EXPECT_TRUE(matcher->getPredictionModel().empty());
     EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getDelta0());
     EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getBeta());
@@ -127,6 +128,7 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS(matcher, MaxTopDisparities, 1, 64, INT_MAX, 0);
     EXPECT_KEEPS(matcher, MaxRowOffset, 1, 64, INT_MAX, 0);
     EXPECT_KEEPS(matcher, UseLightAlignment, true, false);
+    EXPECT_KEEPS(matcher, NoiseThreshold, 0., 1e-3, 2.5, 300.);
     EXPECT_KEEPS(matcher, Delta0, 0., 0.064, 0.999, (double)HDPTreeMatcher::AUTO);
     EXPECT_KEEPS(matcher, Beta, 0., 0.6, 1., (double)HDPTreeMatcher::AUTO);
     EXPECT_KEEPS(matcher, Gamma, 1e-3, 25.5, 1e6);

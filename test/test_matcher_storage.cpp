@@ -24,6 +24,7 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setMaxTopDisparities(48);
     matcher->setMaxRowOffset(7);
     matcher->setUseLightAlignment(true);
+    matcher->setNoiseThreshold(4.5);
     const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
     model->addLayer(std::vector<double>(1, 0.375), std::vector<double>(1, 1.25), std::vector<double>(1, 1.));
     matcher->setPredictionModel(model);
@@ -80,6 +81,7 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(48, read->getMaxTopDisparities());
             EXPECT_EQ(7, read->getMaxRowOffset());
             EXPECT_TRUE(read->getUseLightAlignment());
+            EXPECT_EQ(4.5, read->getNoiseThreshold());
             ASSERT_FALSE(read->getPredictionModel().empty());
             EXPECT_EQ(1, read->getPredictionModel()->getNumLayers());
             EXPECT_EQ(0.03125, read->getDelta0());
@@ -240,6 +242,7 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "numLayers", { "0", "-1", "17", "2147483647", "1.5", 0 } },
         { "maxTopDisparities", { "-1", "-2147483648", "1.5", 0 } },
         { "maxRowOffset", { "-1", "-2147483648", "1.5", 0 } },
+        { "noiseThreshold", { "-1.", "-1e-3", ".Nan", ".Inf", 0 } },
         { "disparityMedianSize", { "1", "2", "-2", "4", "9", "2147483647", 0 } },
         { "disparityMedianPasses", { "0", "-1", "9", "2147483647", "1.5", 0 } },
         { "matchingCost", { "-1", "2", "2147483647", "0.5", 0 } },
@@ -312,6 +315,7 @@ TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
                                   "maxTopDisparities",
                                   "maxRowOffset",
                                   "useLightAlignment",
+                                  "noiseThreshold",
                                   "scanlinePasses",
                                   "finestLayer",
                                   "useNonLocalRefinement",

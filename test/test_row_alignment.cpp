@@ -178,8 +178,8 @@ TEST(HDPStereo_RowAlignment, matches_correlate_best)
         oneRow += match.y - match.left.y == 1;
         const double best = correlation(left, right, match.left, Point((int)match.x, (int)match.y));
         EXPECT_GE(best, 0.8 - 1e-6);
-        for (int y = match.left.y - hdp::CornerMatching::searchRadius; y <= match.left.y + hdp::CornerMatching::searchRadius;
-             ++y)
+        for (int y = match.left.y - hdp::CornerMatching::searchRadius;
+             y <= match.left.y + hdp::CornerMatching::searchRadius; ++y)
             for (int x = std::max(match.left.x - 24, hdp::CornerMatching::searchSide / 2); x <= match.left.x; ++x)
                 ASSERT_LE(correlation(left, right, match.left, Point(x, y)), best + 1e-6);
     }
@@ -199,7 +199,7 @@ TEST(HDPStereo_RowAlignment, matches_are_tracked_to_a_fraction)
         for (int x = 60; x < 300; x += 10)
         {
             const double disparity = cvRound(pair.truth.at<float>(y, x));
-            const hdp::CornerMatch match = { Point(x, y), x - disparity, (double)y, 0.1, true };
+            const hdp::CornerMatch match = { Point(x, y), x - disparity, (double)y, 0.1, 0, true };
             matches.push_back(match);
         }
     hdp::trackCornerMatches(left, right, matches);
@@ -212,6 +212,47 @@ TEST(HDPStereo_RowAlignment, matches_are_tracked_to_a_fraction)
     std::sort(errors.begin(), errors.end());
     EXPECT_LE(errors[errors.size() / 2], 0.05);
     EXPECT_LE(errors[errors.size() * 9 / 10], 0.15);
+}
+
+TEST(HDPStereo_RowAlignment, noise_level)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 15);
+    for (const double noise : { 3., 6. }) // more leaves too few matches on the image itself
+        for (const int preset : { (int)HDPTreeMatcher::PRESET_FAST, (int)HDPTreeMatcher::PRESET_ULTRAFAST })
+        {
+            RNG rng(16);
+            Mat left = pair.left.clone(), right = pair.right.clone();
+            addNoise(left, noise, rng);
+            addNoise(right, noise, rng);
+            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, preset);
+            match(*matcher, left, right);
+            const double grey = noise * std::sqrt(0.299 * 0.299 + 0.587 * 0.587 + 0.114 * 0.114); // of three channels
+            const double ofLayer = preset == HDPTreeMatcher::PRESET_ULTRAFAST ? grey / 2 : grey;
+            EXPECT_GE(matcher->getNoiseLevel(), 0.85 * ofLayer);
+            EXPECT_LE(matcher->getNoiseLevel(), 1.15 * ofLayer + 1.5); // the pair has noise and texture of its own
+        }
+}
+
+//! Noisy pairs are smoothed: fewer errors. Others are not.
+TEST(HDPStereo_RowAlignment, noise_threshold)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 17);
+    RNG rng(18);
+    Mat left = pair.left.clone(), right = pair.right.clone();
+    addNoise(left, 14, rng);
+    addNoise(right, 14, rng);
+    for (const int preset :
+         { (int)HDPTreeMatcher::PRESET_FAST, (int)HDPTreeMatcher::PRESET_QUALITY, (int)HDPTreeMatcher::PRESET_TREE })
+    {
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, preset);
+        const Mat smoothed = match(*matcher, left, right), clean = match(*matcher, pair.left, pair.right);
+        matcher->setNoiseThreshold(0);
+        expectIdentical(clean, match(*matcher, pair.left, pair.right));
+        const Mat noisy = match(*matcher, left, right);
+        EXPECT_LT(badPixels(smoothed, pair.truth, pair.visible, 2), badPixels(noisy, pair.truth, pair.visible, 2));
+        matcher->setNoiseThreshold(100);
+        expectIdentical(noisy, match(*matcher, left, right));
+    }
 }
 
 ////////////////////////////////////////////// of the matcher //////////////////////////////////////////////

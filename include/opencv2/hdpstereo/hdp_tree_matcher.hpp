@@ -66,6 +66,7 @@ Where the presets differ:
 | blockSize | 1 | 7 | 7 | 7 | 7 |
 | maxRowOffset | 0 | 64 | 64 | 64 | 64 |
 | useLightAlignment | false | true | true | true | true |
+| noiseThreshold | 0 | 3 | 3 | 3 | 3 |
 | treeStrategy | MST | MST | ST | ST | ST |
 | numLayers | 3 | 3 | 3 | 3 | 2 |
 | maxTopDisparities | 0 | 0 | 64 | 64 | 64 |
@@ -400,6 +401,16 @@ public:
     /** @copybrief setUseLightAlignment @sa setUseLightAlignment */
     CV_WRAP virtual bool getUseLightAlignment() const = 0;
 
+    /** @brief Noise from which both images are smoothed before they are matched, see getNoiseLevel().
+
+    A Gaussian of 3 x 3 pixels takes noise from the matching cost, and a median of as many from the edge weights, in each
+    layer. Without noise both would cost details.
+    @param noiseThreshold Standard deviation of the grey levels, 255 being white, finite, >= 0. 0 (PRESET_PAPER): never
+    smoothed. 3 in the others. */
+    CV_WRAP virtual void setNoiseThreshold(double noiseThreshold) = 0;
+    /** @copybrief setNoiseThreshold @sa setNoiseThreshold */
+    CV_WRAP virtual double getNoiseThreshold() const = 0;
+
     /** @brief Type of the map that compute() returns.
     @param depth CV_16S (default): 16 times the disparity. CV_32F: in pixels, with minDisparity - 1 where a filter
     rejects a pixel. The type of an output array of fixed type, such as cv::Mat_<float>, takes precedence. */
@@ -476,6 +487,15 @@ public:
     @return Whether the right image was changed before matching.
      */
     CV_WRAP virtual bool getLightAlignment(CV_OUT std::vector<double>& model) const = 0;
+
+    /** @brief Returns the noise of the last compute()'s pair: what differs between matched corners.
+    @return Standard deviation of the grey levels, 255 being white, of the finest layer that matches are followed to. This
+    is the image itself if it has at most 600000 pixels and finestLayer is 0; each layer above has half the noise. 0 if
+    too few matches were found or nothing asked for them (maxRowOffset 0, no light alignment, and a noise threshold of
+    0), before the first compute() and after one that threw an exception. Texture that is finer than pixels counts as
+    noise, too.
+     */
+    CV_WRAP virtual double getNoiseLevel() const = 0;
 
     /** @brief Returns the wall time of each stage in the last compute(), summed over the layers.
     @param stages Receives the names of the stages in the order in which they first ran; empty before the first

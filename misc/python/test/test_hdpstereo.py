@@ -42,6 +42,7 @@ PARAMETERS = {
     'MaxTopDisparities': (0, 64),
     'MaxRowOffset': (0, 16),
     'UseLightAlignment': (False, True),
+    'NoiseThreshold': (0, 2.5),
     'Delta0': (-1, 0.125),
     'Beta': (-1, 0.5),
     'Gamma': (25.5, 12.75),
@@ -348,6 +349,15 @@ class hdpstereo_test(TestCase):
         self.assertAlmostEqual(2, model[0], delta=0.1)
         matcher.compute(self.left, self.right)
         self.assertFalse(matcher.getRowAlignment()[0])
+
+    def test_noise_level(self):
+        matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
+        self.assertEqual(0, matcher.getNoiseLevel())
+        rng = np.random.default_rng(1)
+        noisy = [np.clip(np.rint(image + rng.normal(0, 8, image.shape)), 0, 255).astype(np.uint8)
+                 for image in (self.left, self.right)]
+        matcher.compute(*noisy)
+        self.assertGreater(matcher.getNoiseLevel(), 3)
 
     def test_light_alignment(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
