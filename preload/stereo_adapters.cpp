@@ -41,7 +41,6 @@ protected:
     {
         matcher_->setMinDisparity(kept_->getMinDisparity());
         matcher_->setNumDisparities(kept_->getNumDisparities());
-        matcher_->setBlockSize(kept_->getBlockSize());
         matcher_->setSpeckleWindowSize(kept_->getSpeckleWindowSize());
     }
 

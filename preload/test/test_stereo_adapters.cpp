@@ -165,7 +165,6 @@ TEST(HDPStereo_StereoAdapters, maps_are_those_of_the_preset)
         {
             SCOPED_TRACE(testing::Message() << system.name << ", " << left.channels() << " channels");
             const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(2, 33, system.preset);
-            matcher->setBlockSize(5);
             const Mat dense = match(*matcher, left, right);
             matcher->setDisp12MaxDiff(1);
             matcher->setSpeckleWindowSize(60);
@@ -178,7 +177,7 @@ TEST(HDPStereo_StereoAdapters, maps_are_those_of_the_preset)
             adapter->setDisp12MaxDiff(1);
             adapter->setSpeckleWindowSize(60);
             adapter->setSpeckleRange(2);
-            // Without effect
+            // Without effect, as the size of the block
             adapter->setP1(1);
             adapter->setP2(2000);
             adapter->setUniquenessRatio(50);
@@ -239,7 +238,6 @@ TEST(HDPStereo_StereoAdapters, bm_has_units_of_its_own)
 {
     const Mat left = grey(testPair().left), right = grey(testPair().right);
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 48);
-    matcher->setBlockSize(15);
     const Ptr<StereoBM> adapter = adapted(StereoBM::create(48, 15));
     const Mat dense = match(*matcher, left, right);
     expectIdentical(dense, match(*adapter, left, right)); // disp12MaxDiff -1: no check
