@@ -64,6 +64,9 @@ static std::vector<Variant> variantsOf(int preset)
     add<double>(variants, "gamma", &M::setGamma, { 10, 40 });
     add<bool>(variants, "fillOcclusions", &M::setFillOcclusions, { false });
     add<bool>(variants, "useSubpixel", &M::setUseSubpixel, { false });
+    add<int>(variants, "maxRowOffset", &M::setMaxRowOffset, { 0 });
+    add<bool>(variants, "useLightAlignment", &M::setUseLightAlignment, { false });
+    add<double>(variants, "noiseThreshold", &M::setNoiseThreshold, { 0, 1 });
     add<bool>(variants, "useNonLocalRefinement", &M::setUseNonLocalRefinement, { true });
     variants.push_back(
         { "numDisparities twice as large", [](M& m) { m.setNumDisparities(2 * m.getNumDisparities()); }, 0, 0, 0 });

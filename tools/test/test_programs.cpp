@@ -64,8 +64,9 @@ String firstLine(const String& text) { return text.substr(0, text.find('\n')); }
 TEST(HDPStereo_Programs, help_and_wrong_arguments)
 {
     const DatasetFolder folder;
-    for (const char* program : { "hdp_evaluate", "hdp_benchmark", "hdp_train", "hdp_parameters", "hdp_pictures",
-                                 "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
+    for (const char* program :
+         { "hdp_evaluate", "hdp_benchmark", "hdp_train", "hdp_parameters", "hdp_pictures", "hdp_robustness",
+           "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
     {
         SCOPED_TRACE(program);
         const Execution help = run(folder, String(program) + " --help");
@@ -94,14 +95,35 @@ TEST(HDPStereo_Programs, full_disk)
          { "hdp_evaluate --help" + String(), "hdp_evaluate --methods=fast,bm" + dataset,
            "hdp_benchmark --methods=fast --runs=1" + pair, "hdp_benchmark --memory-of=fast" + pair,
            "hdp_train --layers=2 --max-components=1" + dataset + " -o " + folder.path("model.yml"),
-           "hdp_parameters --presets=fast --runs=1" + dataset, "hdp_pictures --output=" + folder.root + pair + truth,
-           "example_hdpstereo_hdp_stereo_match" + pair, "example_hdpstereo_hdp_own_tree" + pair })
+           "hdp_robustness --methods=fast --cases=clean" + dataset, "hdp_parameters --presets=fast --runs=1" + dataset,
+           "hdp_pictures --output=" + folder.root + pair + truth, "example_hdpstereo_hdp_stereo_match" + pair,
+           "example_hdpstereo_hdp_own_tree" + pair })
     {
         SCOPED_TRACE(command);
         EXPECT_EQ(1, run(folder, command, "/dev/full").status);
     }
 }
 #endif
+
+TEST(HDPStereo_Programs, robustness)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String common = "hdp_robustness --num-disparities=32 " + folder.path("dataset") + " --methods=fast,sgbm-hh4";
+    const Execution good = run(folder, common + " --cases=clean,dy3,gain.5,noise4,jpeg40,shear");
+    EXPECT_EQ(0, good.status) << good.errors;
+    for (const char* row : { "means of 3 pairs", "| case | fast | sgbm-hh4 |", "| clean |", "| dy3 |", "| gain.5 |",
+                             "| noise4 |", "| jpeg40 |", "| shear |" })
+        EXPECT_NE(String::npos, good.output.find(row)) << row;
+    for (const char* bad : { "dy", "dy1x", "clean2", "rain" })
+    {
+        const Execution wrong = run(folder, common + " --cases=" + bad);
+        EXPECT_EQ(1, wrong.status) << bad;
+        EXPECT_EQ(0u, wrong.errors.find("error: --cases knows no case '" + String(bad) + "'")) << wrong.errors;
+    }
+    folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
+    EXPECT_EQ(2, run(folder, common + " --cases=clean").status);
+}
 
 TEST(HDPStereo_Programs, evaluate)
 {
