@@ -53,11 +53,14 @@ public:
                 alignPair(search, alignmentBuffers_, images, result_.alignment);
             });
 
+        if (!p_.useTemporalPrediction)
+            temporal_ = TemporalState();
         layers_.resize(settings.layers);
         for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
         {
             const MatchedLayer* const upper = layer + 1 < settings.layers ? &layers_[layer + 1] : nullptr;
-            const LayerInput input = { layer, images[layer], upper, p_, settings };
+            TemporalState* const temporal = p_.useTemporalPrediction ? &temporal_ : nullptr;
+            const LayerInput input = { layer, images[layer], upper, p_, settings, temporal };
             matchLayer(input, buffers_, clock_, layers_[layer]);
         }
 
@@ -111,6 +114,7 @@ public:
     HDP_PARAMETER(bool, FillOcclusions, fillOcclusions)
     HDP_PARAMETER(int, DisparityDepth, disparityDepth)
     HDP_PARAMETER(bool, UseNonLocalRefinement, useNonLocalRefinement)
+    HDP_PARAMETER(bool, UseTemporalPrediction, useTemporalPrediction)
     HDP_PARAMETER(int, MaxRowOffset, maxRowOffset)
     HDP_PARAMETER(bool, UseLightAlignment, useLightAlignment)
     HDP_PARAMETER(double, NoiseThreshold, noiseThreshold)
@@ -201,6 +205,8 @@ public:
     }
 
     // cv::Algorithm
+    void clear() CV_OVERRIDE { temporal_.clear(); }
+
     String getDefaultName() const CV_OVERRIDE { return "hdpstereo_HDPTreeMatcher"; }
 
     void write(FileStorage& fs) const CV_OVERRIDE
@@ -214,6 +220,7 @@ public:
         if (!fn.isMap() || !fn["name"].isString() || (String)fn["name"] != getDefaultName())
             CV_Error(Error::StsParseError, "name must be " + getDefaultName());
         p_ = readParameters(fn, p_.treeStrategy);
+        temporal_.clear();
     }
 
 private:
@@ -267,6 +274,7 @@ private:
     std::vector<MatchedLayer> layers_;
     LayerBuffers buffers_;
     OutputBuffers output_;
+    TemporalState temporal_;
 };
 
 } // namespace

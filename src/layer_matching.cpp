@@ -185,6 +185,14 @@ void refine(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
                    in.settings.subpixel, buffers.aggregation, matched.winner);
 }
 
+//! Joins the winners with the disparities of the frame before.
+void joinLastFrame(const LayerInput& in, MatchedLayer& matched)
+{
+    const int scale = 1 << in.layer;
+    const TemporalLayer layer = { scale, in.parameters.minDisparity / (double)scale, largestDisparity(in) };
+    joinLastFrame(in.images.left, matched.census, layer, *in.temporal, matched.winner);
+}
+
 //! From the winners to the layer's disparities. The authors' program has this median; the paper has no such filter.
 void filter(const LayerInput& in, MatchedLayer& matched)
 {
@@ -215,6 +223,8 @@ void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, 
         aggregateScanlines(in, buffers, clock, matched);
     if (in.parameters.useNonLocalRefinement && hasTrees)
         clock.run("non-local refinement", [&] { refine(in, buffers, matched); });
+    if (in.temporal && in.isFinest())
+        clock.run("temporal prediction", [&] { joinLastFrame(in, matched); });
     clock.run("disparity median", [&] { filter(in, matched); });
 }
 

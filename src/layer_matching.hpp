@@ -14,6 +14,7 @@
 #include "scanline_aggregation.hpp"
 #include "stage_clock.hpp"
 #include "support_points.hpp"
+#include "temporal_prediction.hpp"
 #include "volume_scanlines.hpp"
 
 namespace cv {
@@ -47,6 +48,7 @@ struct LayerInput
     const MatchedLayer* upper; // the layer above; none at the top layer
     const MatcherParameters& parameters;
     const PairSettings& settings;
+    TemporalState* temporal; // the frame before; none if it is not used
 
     bool isTop() const { return !upper; }
     bool isFinest() const { return layer == settings.finestLayer; }

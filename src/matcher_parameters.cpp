@@ -84,6 +84,7 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
     visit("fillOcclusions", &P::fillOcclusions);
     visit("disparityDepth", &P::disparityDepth, "CV_16S or CV_32F", [](int v) { return v == CV_16S || v == CV_32F; });
     visit("useNonLocalRefinement", &P::useNonLocalRefinement);
+    visit("useTemporalPrediction", &P::useTemporalPrediction);
 }
 // clang-format on
 
@@ -199,6 +200,9 @@ void checkCombinations(const MatcherParameters& p, Size size)
 
     if (p.fillOcclusions && p.matchingCost != M::COST_CENSUS)
         CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for fillOcclusions");
+
+    if (p.useTemporalPrediction && p.matchingCost != M::COST_CENSUS)
+        CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for useTemporalPrediction");
 
     if (p.speckleWindowSize > 0 && size.area() > INT_MAX / speckleBytes)
         CV_Error(Error::StsOutOfRange,

@@ -51,6 +51,7 @@ struct MatcherParameters
     bool fillOcclusions = false;
     int disparityDepth = CV_16S;
     bool useNonLocalRefinement = false;
+    bool useTemporalPrediction = false;
 };
 
 //! The parameters of a preset; throws if there is none.

@@ -93,6 +93,7 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setP2(50);
     matcher.setScanlinePasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setUseNonLocalRefinement(false);
+    matcher.setUseTemporalPrediction(false);
     matcher.setFillOcclusions(!isPaper);
 }
 

@@ -83,6 +83,7 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_EQ(1, matcher->getScanlinePasses());
     EXPECT_EQ(0, matcher->getFinestLayer());
     EXPECT_FALSE(matcher->getUseNonLocalRefinement());
+    EXPECT_FALSE(matcher->getUseTemporalPrediction());
     EXPECT_FALSE(matcher->getFillOcclusions());
 
     EXPECT_EQ(serialized(*HDPTreeMatcher::create(0, 64, HDPTreeMatcher::PRESET_FAST)),
@@ -151,6 +152,7 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS(matcher, ScanlinePasses, 4, 2, 1);
     EXPECT_KEEPS(matcher, FinestLayer, 15, 1, 0);
     EXPECT_KEEPS(matcher, UseNonLocalRefinement, true, false);
+    EXPECT_KEEPS(matcher, UseTemporalPrediction, true, false);
     EXPECT_KEEPS(matcher, TreeStrategy, createSegmentTree(), createRandomTree());
     EXPECT_KEEPS(matcher, PredictionModel, DisparityPredictionModel::create(), Ptr<DisparityPredictionModel>());
 }

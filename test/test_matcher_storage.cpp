@@ -47,6 +47,7 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setScanlinePasses(3);
     matcher->setFinestLayer(2);
     matcher->setUseNonLocalRefinement(true);
+    matcher->setUseTemporalPrediction(true);
     matcher->setFillOcclusions(true);
     return matcher;
 }
@@ -103,6 +104,7 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(3, read->getScanlinePasses());
             EXPECT_EQ(2, read->getFinestLayer());
             EXPECT_TRUE(read->getUseNonLocalRefinement());
+            EXPECT_TRUE(read->getUseTemporalPrediction());
             EXPECT_TRUE(read->getFillOcclusions());
             expectIdentical(matchTestPair(*written), matchTestPair(*read));
         }
@@ -256,6 +258,7 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "scanlinePasses", { "0", "-1", "5", "2147483647", "0.5", 0 } },
         { "finestLayer", { "-1", "16", "2147483647", "0.5", 0 } },
         { "useNonLocalRefinement", { "0.5", 0 } },
+        { "useTemporalPrediction", { "0.5", 0 } },
         { "fillOcclusions", { "0.5", 0 } },
         { "delta0", { "-0.5", "1.", "1e300", 0 } },
         { "beta", { "-0.5", "1.5", "-1e300", 0 } },
@@ -319,6 +322,7 @@ TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
                                   "scanlinePasses",
                                   "finestLayer",
                                   "useNonLocalRefinement",
+                                  "useTemporalPrediction",
                                   "fillOcclusions" };
     const Ptr<HDPTreeMatcher> paper = HDPTreeMatcher::create(3, 19, HDPTreeMatcher::PRESET_PAPER);
     std::string text = serialized(*paper);

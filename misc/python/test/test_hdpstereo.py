@@ -63,6 +63,7 @@ PARAMETERS = {
     'ScanlinePasses': (1, 3),
     'FillOcclusions': (False, True),
     'UseNonLocalRefinement': (False, True),
+    'UseTemporalPrediction': (False, True),
     'DisparityDepth': (cv.CV_16S, cv.CV_32F),
 }
 

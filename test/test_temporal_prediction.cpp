@@ -1,0 +1,313 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "synthetic_video.hpp"
+#include "systems.hpp"
+
+namespace opencv_test {
+namespace {
+
+const int disparities = 48;
+const Size frameSize(320, 200);
+
+Ptr<HDPTreeMatcher> createTemporal(int preset = HDPTreeMatcher::PRESET_FAST)
+{
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, disparities, preset);
+    matcher->setUseTemporalPrediction(true);
+    return matcher;
+}
+
+Ptr<HDPTreeMatcher> createSingle(int preset = HDPTreeMatcher::PRESET_FAST)
+{
+    return HDPTreeMatcher::create(0, disparities, preset);
+}
+
+Mat matchFrame(HDPTreeMatcher& matcher, const SyntheticFrame& frame) { return match(matcher, frame.left, frame.right); }
+
+//! Number of pixels in the area that are wrong by at least a limit
+int countWrong(const Mat& disparity, const Mat& truth, double limit, Rect area = Rect(Point(), frameSize))
+{
+    int count = 0;
+    for (int y = area.y; y < area.br().y; ++y)
+        for (int x = area.x; x < area.br().x; ++x)
+            count += std::abs(disparity.at<short>(y, x) / 16. - truth.at<float>(y, x)) >= limit;
+    return count;
+}
+
+//! Mean error in visible pixels; what is wrong by more counts as one pixel.
+double limitedError(const Mat& disparity, const SyntheticFrame& frame)
+{
+    Mat error;
+    disparity.convertTo(error, CV_32F, 1. / 16);
+    cv::absdiff(error, frame.truth, error);
+    return cv::mean(cv::min(error, 1), frame.visible)[0];
+}
+
+double meanChange(const Mat& disparity, const Mat& last)
+{
+    return cv::norm(disparity, last, NORM_L1) / disparity.total() / 16;
+}
+
+std::vector<Board> someBoards()
+{
+    const Board near = { Rect2d(40, 100, 70, 80), 30.6, 3 }, far = { Rect2d(200, 30, 80, 110), 18.45, 4 };
+    return { near, far };
+}
+
+//! A square that appears, moves and vanishes leaves no traces: around it, no frame has more errors than a single one.
+TEST(HDPStereo_TemporalPrediction, moving_square)
+{
+    const int first = 3, last = 10, frames = 14, side = 56;
+    for (double noise : { 0., 2. })
+        for (int speed : { 3, 8 })
+        {
+            SyntheticVideo video(frameSize, 10, noise);
+            std::vector<SyntheticFrame> rendered;
+            std::vector<Rect> areas;
+            for (int i = 0; i < frames; ++i)
+            {
+                const Point corner(60 + speed * i, 70);
+                const Board square = { Rect2d(corner.x, corner.y, side, side), 26, 4 };
+                rendered.push_back(video.render(i, std::vector<Board>(first <= i && i <= last ? 1 : 0, square)));
+                const Rect around(corner.x - 30 - speed, corner.y - 20, side + 60 + speed, side + 40);
+                areas.push_back(around & Rect(Point(), frameSize));
+            }
+            for (int preset : { HDPTreeMatcher::PRESET_FAST, HDPTreeMatcher::PRESET_QUALITY })
+            {
+                SCOPED_TRACE(cv::format("preset %d, noise %.0f, %d pixels per frame", preset, noise, speed));
+                const Ptr<HDPTreeMatcher> single = createSingle(preset), temporal = createTemporal(preset);
+                int ofSingle = 0, ofTemporal = 0;
+                for (int i = 0; i < frames; ++i)
+                {
+                    const SyntheticFrame& frame = rendered[i];
+                    const int wrong = countWrong(matchFrame(*single, frame), frame.truth, 2, areas[i]);
+                    const int joined = countWrong(matchFrame(*temporal, frame), frame.truth, 2, areas[i]);
+                    const int few = i == first ? 10 : 60; // of about 10000 pixels
+                    EXPECT_LE(joined, 1.05 * wrong + few) << "frame " << i;
+                    ofSingle += wrong;
+                    ofTemporal += joined;
+                }
+                EXPECT_LE(ofTemporal, 1.05 * ofSingle + 10);
+            }
+        }
+}
+
+//! A scene that stands still under noise gets better with time, and hardly flickers.
+TEST(HDPStereo_TemporalPrediction, noise)
+{
+    for (const System& preset : presets)
+    {
+        if (preset.preset == HDPTreeMatcher::PRESET_PAPER)
+            continue; // has no census
+        SCOPED_TRACE(preset.name);
+        SyntheticVideo video(frameSize, 10.3, 5);
+        const Ptr<HDPTreeMatcher> single = createSingle(preset.preset), temporal = createTemporal(preset.preset);
+        double flickerOfSingle = 0, flickerOfTemporal = 0, ofSingle = 0, ofTemporal = 0;
+        Mat lastSingle, lastTemporal;
+        for (int i = 0; i < 10; ++i)
+        {
+            const SyntheticFrame frame = video.render(i, someBoards());
+            const Mat a = matchFrame(*single, frame), b = matchFrame(*temporal, frame);
+            if (i >= 5)
+            {
+                flickerOfSingle += meanChange(a, lastSingle);
+                flickerOfTemporal += meanChange(b, lastTemporal);
+                ofSingle += limitedError(a, frame);
+                ofTemporal += limitedError(b, frame);
+            }
+            else if (i == 0)
+                expectIdentical(a, b);
+            lastSingle = a;
+            lastTemporal = b;
+        }
+        EXPECT_LE(flickerOfTemporal, 0.3 * flickerOfSingle);
+        EXPECT_LE(ofTemporal, 0.95 * ofSingle);
+    }
+}
+
+//! The camera moves past and towards a scene.
+TEST(HDPStereo_TemporalPrediction, moving_camera)
+{
+    const Point3d steps[] = { Point3d(0.12, 0, 0), Point3d(0.05, -0.04, 0.0006), Point3d(0, 0, -0.0008) };
+    for (const Point3d& step : steps)
+    {
+        SCOPED_TRACE(cv::format("(%g, %g, %g)", step.x, step.y, step.z));
+        SyntheticVideo video(frameSize, 10.3, 4);
+        const Ptr<HDPTreeMatcher> single = createSingle(), temporal = createTemporal();
+        double ofSingle = 0, ofTemporal = 0;
+        for (int i = 0; i < 12; ++i)
+        {
+            const SyntheticFrame frame = video.render(i, someBoards(), step * i);
+            const Mat a = matchFrame(*single, frame), b = matchFrame(*temporal, frame);
+            if (i >= 4)
+            {
+                ofSingle += limitedError(a, frame);
+                ofTemporal += limitedError(b, frame);
+            }
+        }
+        EXPECT_LE(ofTemporal, 0.95 * ofSingle);
+    }
+}
+
+//! The first frame after a cut is that of a matcher which has seen nothing else.
+TEST(HDPStereo_TemporalPrediction, cut)
+{
+    SyntheticVideo before(frameSize, 10, 2), after(frameSize, 22, 2);
+    const Ptr<HDPTreeMatcher> temporal = createTemporal();
+    for (int i = 0; i < 4; ++i)
+        matchFrame(*temporal, before.render(i, someBoards()));
+    const SyntheticFrame frame = after.render(10, someBoards(), Point3d(40, 25, 0));
+    expectIdentical(matchFrame(*createSingle(), frame), matchFrame(*temporal, frame));
+}
+
+//! What was wrong once does not stay wrong.
+TEST(HDPStereo_TemporalPrediction, wrong_pair)
+{
+    SyntheticVideo video(frameSize, 10, 2), other(frameSize, 30, 2);
+    const Ptr<HDPTreeMatcher> single = createSingle(), temporal = createTemporal();
+    matchFrame(*temporal, video.render(0, someBoards()));
+    match(*temporal, video.render(1).left, other.render(1).right); // of which nothing matches
+    int ofSingle = 0, ofTemporal = 0;
+    for (int i = 2; i < 12; ++i)
+    {
+        const SyntheticFrame frame = video.render(i, someBoards());
+        ofSingle = countWrong(matchFrame(*single, frame), frame.truth, 1);
+        ofTemporal = countWrong(matchFrame(*temporal, frame), frame.truth, 1);
+        EXPECT_LE(ofTemporal, 1.05 * ofSingle + (i < 5 ? frameSize.area() / 15 : 100)) << "frame " << i;
+    }
+    EXPECT_LE(ofTemporal, 1.05 * ofSingle);
+}
+
+//! A video that stands still neither drifts nor freezes.
+TEST(HDPStereo_TemporalPrediction, thousand_frames)
+{
+    const Size size(96, 64);
+    const Board board = { Rect2d(45, 20, 30, 30), 22, 3 };
+    SyntheticVideo still(size, 8, 0), noisy(size, 8, 3);
+    const Ptr<HDPTreeMatcher> single = createSingle(), temporal = createTemporal();
+    const SyntheticFrame frame = still.render(0);
+    const Mat expected = matchFrame(*single, frame);
+    for (int i = 0; i < 1000; ++i)
+        if (i % 100 == 99)
+            expectIdentical(expected, matchFrame(*temporal, frame));
+        else
+            matchFrame(*temporal, frame);
+
+    std::vector<SyntheticFrame> frames;
+    for (int i = 0; i < 20; ++i)
+        frames.push_back(noisy.render(i));
+    const Rect all(Point(), size);
+    double early = 0, late = 0;
+    for (int i = 0; i < 1000; ++i)
+    {
+        const SyntheticFrame& next = frames[(i * 7 + i / 20) % 20];
+        const Mat disparity = matchFrame(*temporal, next);
+        double& sum = i < 500 ? early : late;
+        if (i % 500 >= 400)
+            sum += countWrong(disparity, next.truth, 0.5, all);
+    }
+    EXPECT_NEAR(late, early, 0.1 * early + 100);
+    const SyntheticFrame changed = noisy.render(1, std::vector<Board>(1, board));
+    EXPECT_LE(countWrong(matchFrame(*temporal, changed), changed.truth, 1, all),
+              1.05 * countWrong(matchFrame(*single, changed), changed.truth, 1, all) + 10);
+}
+
+TEST(HDPStereo_TemporalPrediction, begins_anew)
+{
+    SyntheticVideo video(frameSize, 10.3, 4);
+    const SyntheticFrame first = video.render(0, someBoards()), second = video.render(1, someBoards());
+    const Mat alone = matchFrame(*createSingle(), second);
+    const auto expectAnew = [&](const std::function<void(HDPTreeMatcher&)>& interrupt, bool expected) {
+        const Ptr<HDPTreeMatcher> matcher = createTemporal();
+        matchFrame(*matcher, first);
+        interrupt(*matcher);
+        EXPECT_EQ(expected, countDifferent(alone, matchFrame(*matcher, second)) == 0);
+    };
+    const auto computes = [&](HDPTreeMatcher& m) { matchFrame(m, first); };
+    const auto nothing = [](HDPTreeMatcher&) {};
+    expectAnew(nothing, false);
+    expectAnew([](HDPTreeMatcher& m) { m.clear(); }, true);
+    expectAnew([](HDPTreeMatcher& m) { deserialize(serialized(m), m); }, true);
+    expectAnew([&](HDPTreeMatcher& m) { match(m, first.left.rowRange(0, 120), first.right.rowRange(0, 120)); }, true);
+    expectAnew(
+        [&](HDPTreeMatcher& m) {
+        m.setUseTemporalPrediction(false);
+        computes(m);
+        m.setUseTemporalPrediction(true);
+        },
+        true);
+    expectAnew(
+        [&](HDPTreeMatcher& m) {
+        m.setNumDisparities(disparities + 16);
+        computes(m);
+        m.setNumDisparities(disparities);
+        },
+        true);
+    expectAnew(
+        [&](HDPTreeMatcher& m) {
+        m.setMinDisparity(1);
+        computes(m);
+        m.setMinDisparity(0);
+        },
+        true);
+    expectAnew(
+        [&](HDPTreeMatcher& m) {
+        m.setFinestLayer(1);
+        computes(m);
+        m.setFinestLayer(0);
+        },
+        true);
+    // What fails changes nothing.
+    expectAnew([&](HDPTreeMatcher& m) { EXPECT_ANY_THROW(match(m, first.left, first.right.rowRange(0, 50))); }, false);
+}
+
+TEST(HDPStereo_TemporalPrediction, needs_the_census)
+{
+    const Ptr<HDPTreeMatcher> matcher = createTemporal(HDPTreeMatcher::PRESET_PAPER);
+    const SyntheticFrame frame = SyntheticVideo(Size(60, 40), 5, 0).render(0);
+    expectRejected([&] { matchFrame(*matcher, frame); }, "useTemporalPrediction");
+    matcher->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
+    EXPECT_NO_THROW(matchFrame(*matcher, frame));
+}
+
+//! Any preset and any size, down to one pixel; the same for any number of threads
+TEST(HDPStereo_TemporalPrediction, sizes_and_threads)
+{
+    for (const System& preset : presets)
+        for (const Size size :
+             { frameSize, Size(131, 270), Size(37, 29), Size(9, 8), Size(2, 3), Size(40, 1), Size(1, 1) })
+        {
+            SCOPED_TRACE(preset.name + cv::format(", %d x %d", size.width, size.height));
+            SyntheticVideo video(size, 6, 4);
+            std::vector<Ptr<HDPTreeMatcher>> matchers;
+            for (int i = 0; i < 3; ++i)
+            {
+                matchers.push_back(createTemporal(preset.preset));
+                matchers[i]->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
+                matchers[i]->setMinDisparity(-5);
+                matchers[i]->setBlockSize(preset.preset == HDPTreeMatcher::PRESET_TREE ? 5 : 7);
+            }
+            for (int i = 0; i < 5; ++i)
+            {
+                const SyntheticFrame frame =
+                    video.render(i, someBoards(), Point3d(0.1, 0.05, 0.002) * std::max(i - 2, 0));
+                Mat maps[3];
+                for (int k = 0; k < 3; ++k)
+                {
+                    const ScopedThreads threads(2 * k + 1);
+                    maps[k] = matchFrame(*matchers[k], frame);
+                }
+                expectIdentical(maps[0], maps[1]);
+                expectIdentical(maps[0], maps[2]);
+                double least, most;
+                cv::minMaxLoc(maps[0], &least, &most);
+                EXPECT_GE(least, -5 * 16);
+                EXPECT_LE(most, (disparities - 6) * 16);
+            }
+        }
+}
+
+} // namespace
+} // namespace opencv_test
