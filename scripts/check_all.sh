@@ -7,6 +7,7 @@
 #     memory     10,000 calls of compute() under LeakSanitizer, and what is allocated meanwhile
 #     fuzz       scripts/fuzz.sh, for 1800 s or N
 #     in-tree    scripts/build_in_tree.sh
+#     projects   a program that builds the module by FetchContent, as a static library
 #     ros        ROS 1's stereo_image_proc under hdpstereo-run
 #     bookworm, trixie   scripts/test.sh from a clone in a fresh Debian 12 or 13 (as root; mmdebstrap makes it)
 # Each step's messages are in build/check_all/STEP.log; a summary comes last, and the status is that of the worst step.
@@ -19,11 +20,11 @@ steps=()
 for argument in "$@"; do
     case $argument in
     --fuzz-seconds=*) fuzz_seconds=${argument#*=} ;;
-    warnings | widths | threads | memory | fuzz | in-tree | ros | bookworm | trixie) steps+=("$argument") ;;
+    warnings | widths | threads | memory | fuzz | in-tree | projects | ros | bookworm | trixie) steps+=("$argument") ;;
     *) fail "no step $argument: $(sed -n 's/^#     \([a-z, -]*\)   .*/\1/p' "${BASH_SOURCE[0]}" | paste -sd ' ')" ;;
     esac
 done
-[ ${#steps[@]} -gt 0 ] || steps=(warnings widths threads memory fuzz in-tree ros bookworm trixie)
+[ ${#steps[@]} -gt 0 ] || steps=(warnings widths threads memory fuzz in-tree projects ros bookworm trixie)
 
 # build_tests DIRECTORY TARGET [OPTION...]: a build with tests, with these options of CMake.
 build_tests()
@@ -83,6 +84,12 @@ check_fuzz()
 check_in-tree()
 {
     "$checkout/scripts/build_in_tree.sh"
+}
+
+check_projects()
+{
+    build_tests "$build/release" all
+    "$checkout/scripts/check_other_projects.sh" "$build/release" fetch-content
 }
 
 check_ros()
