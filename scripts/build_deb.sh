@@ -3,6 +3,7 @@
 # missing. They are in build/deb; "apt install ./NAME.deb" installs one:
 #   libopencv-hdpstereo*, libopencv-hdpstereo-dev   the library, and what is needed to build with it
 #   hdpstereo-tools                                 programs: hdpstereo, hdpstereo-run, hdp_benchmark...
+#   python3-hdpstereo                               the Python package
 #   hdpstereo-doc                                   reference and tutorials
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -27,7 +28,7 @@ cd "$source"
 sed -i "1s/($version)/($version+deb$(. /etc/os-release && echo "${VERSION_ID:-0}"))/" debian/changelog
 debian/rules debian/control
 say "Building packages in $directory"
-DEB_BUILD_OPTIONS="parallel=$jobs" dpkg-buildpackage -b --no-sign >"$directory/build.log" 2>&1 ||
+DEB_BUILD_OPTIONS="parallel=$jobs noautodbgsym" dpkg-buildpackage -b --no-sign >"$directory/build.log" 2>&1 ||
     { tail -n 20 "$directory/build.log" >&2; fail "could not build them (all of the messages: $directory/build.log)"; }
 say "Checking them by lintian"
 lintian --allow-root --fail-on error "$directory"/*.changes

@@ -10,21 +10,26 @@
 #     projects   a program that builds the module by FetchContent, as a static library
 #     ros        ROS 1's stereo_image_proc under hdpstereo-run
 #     bookworm, trixie   scripts/test.sh from a clone in a fresh Debian 12 or 13 (as root; mmdebstrap makes it)
+#     packages-bookworm, packages-trixie   scripts/check_wheel.sh and build_deb.sh in the same way, and check_deb.sh in
+#                        another fresh one
 # Each step's messages are in build/check_all/STEP.log; a summary comes last, and the status is that of the worst step.
 # HDPSTEREO_MMDEBSTRAP: further options of mmdebstrap.
 # shellcheck source-path=SCRIPTDIR source=common.sh disable=SC2317
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 fuzz_seconds=1800
+all_steps=(warnings widths threads memory fuzz in-tree projects ros bookworm trixie packages-bookworm packages-trixie)
 steps=()
 for argument in "$@"; do
     case $argument in
     --fuzz-seconds=*) fuzz_seconds=${argument#*=} ;;
-    warnings | widths | threads | memory | fuzz | in-tree | projects | ros | bookworm | trixie) steps+=("$argument") ;;
-    *) fail "no step $argument: $(sed -n 's/^#     \([a-z, -]*\)   .*/\1/p' "${BASH_SOURCE[0]}" | paste -sd ' ')" ;;
+    *)
+        [[ " ${all_steps[*]} " == *" $argument "* ]] || fail "no step $argument: ${all_steps[*]}"
+        steps+=("$argument")
+        ;;
     esac
 done
-[ ${#steps[@]} -gt 0 ] || steps=(warnings widths threads memory fuzz in-tree projects ros bookworm trixie)
+[ ${#steps[@]} -gt 0 ] || steps=("${all_steps[@]}")
 
 # build_tests DIRECTORY TARGET [OPTION...]: a build with tests, with these options of CMake.
 build_tests()
@@ -101,25 +106,51 @@ check_ros()
     "$checkout/scripts/check_run.sh" "$build/release" "$OPENCV_SOURCE_DIR" ros
 }
 
-# check_debian SUITE: what is committed, on a machine that has nothing yet.
-check_debian()
+# make_root SUITE: sets $root, a machine that has nothing yet but a clone of what is committed, in ~/hdpstereo.
+make_root()
 {
-    local suite=$1 root=$build/check_all/$1
-    [ "$(id -u)" -eq 0 ] || fail "only root can make a fresh $suite"
+    root=$build/check_all/$1
+    [ "$(id -u)" -eq 0 ] || fail "only root can make a fresh $1"
     install_packages git mmdebstrap
     rm -rf --one-file-system "$root" "$root.clone"
-    say "Making a fresh $suite in $root"
+    say "Making a fresh $1 in $root"
     # shellcheck disable=SC2086  # options
-    mmdebstrap --variant=minbase ${HDPSTEREO_MMDEBSTRAP:-} "$suite" "$root"
+    mmdebstrap --variant=minbase ${HDPSTEREO_MMDEBSTRAP:-} "$1" "$root"
     git clone -q "file://$checkout" "$root.clone"
     mv "$root.clone" "$root/root/hdpstereo"
+}
+
+# in_root COMMANDS: in the clone
+in_root()
+{
     # What is mounted is so for this command alone.
-    unshare --mount bash -e -s "$root" "$jobs" <<'COMMANDS'
+    unshare --mount bash -e -s "$root" "$jobs" "$1" <<'COMMANDS'
 mount -t proc proc "$1/proc"
 mount --rbind /dev "$1/dev"
 exec chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 TERM=dumb \
-    CMAKE_BUILD_PARALLEL_LEVEL="$2" bash -c 'cat /etc/debian_version; cd ~/hdpstereo; exec scripts/test.sh' </dev/null
+    CMAKE_BUILD_PARALLEL_LEVEL="$2" bash -e -c "cat /etc/debian_version; cd ~/hdpstereo; $3" </dev/null
 COMMANDS
+}
+
+check_debian()
+{
+    make_root "$1"
+    in_root "exec scripts/test.sh"
+    rm -rf --one-file-system "$root"
+}
+
+# Packages are made in one root and used in another, which has nothing of what made them.
+check_packages()
+{
+    local debs=$build/check_all/$1.deb
+    make_root "$1"
+    in_root "scripts/build_deb.sh; scripts/check_wheel.sh"
+    rm -rf "$debs"
+    cp -r "$root/root/hdpstereo/build/deb" "$debs"
+    make_root "$1"
+    mkdir "$root/root/hdpstereo/build"
+    mv "$debs" "$root/root/hdpstereo/build/deb"
+    in_root "exec scripts/check_deb.sh"
     rm -rf --one-file-system "$root"
 }
 
@@ -131,6 +162,16 @@ check_bookworm()
 check_trixie()
 {
     check_debian trixie
+}
+
+check_packages-bookworm()
+{
+    check_packages bookworm
+}
+
+check_packages-trixie()
+{
+    check_packages trixie
 }
 
 mkdir -p "$build/check_all"
