@@ -72,7 +72,7 @@ TEST(HDPStereo_LightAlignment, levels_follow_the_model)
     }
 }
 
-TEST(HDPStereo_LightAlignment, finds_what_was_done)
+TEST(HDPStereo_SlowLightAlignment, finds_what_was_done)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 1);
     for (size_t i = 0; i < sizeof lights / sizeof *lights; ++i)
@@ -98,7 +98,7 @@ TEST(HDPStereo_LightAlignment, finds_what_was_done)
     }
 }
 
-TEST(HDPStereo_LightAlignment, errors_are_those_of_the_same_light)
+TEST(HDPStereo_SlowLightAlignment, errors_are_those_of_the_same_light)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 2);
     for (const int preset : { (int)HDPTreeMatcher::PRESET_FAST, (int)HDPTreeMatcher::PRESET_ULTRAFAST,

@@ -214,7 +214,7 @@ TEST(HDPStereo_RowAlignment, matches_are_tracked_to_a_fraction)
     EXPECT_LE(errors[errors.size() * 9 / 10], 0.15);
 }
 
-TEST(HDPStereo_RowAlignment, noise_level)
+TEST(HDPStereo_SlowRowAlignment, noise_level)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 15);
     for (const double noise : { 3., 6. }) // more leaves too few matches on the image itself
@@ -234,7 +234,7 @@ TEST(HDPStereo_RowAlignment, noise_level)
 }
 
 //! Noisy pairs are smoothed: fewer errors. Others are not.
-TEST(HDPStereo_RowAlignment, noise_threshold)
+TEST(HDPStereo_SlowRowAlignment, noise_threshold)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 17);
     RNG rng(18);
@@ -257,7 +257,7 @@ TEST(HDPStereo_RowAlignment, noise_threshold)
 
 ////////////////////////////////////////////// of the matcher //////////////////////////////////////////////
 
-TEST(HDPStereo_RowAlignment, finds_what_was_done)
+TEST(HDPStereo_SlowRowAlignment, finds_what_was_done)
 {
     const int presets[] = { HDPTreeMatcher::PRESET_FAST, HDPTreeMatcher::PRESET_ULTRAFAST,
                             HDPTreeMatcher::PRESET_QUALITY, HDPTreeMatcher::PRESET_TREE };
@@ -276,7 +276,7 @@ TEST(HDPStereo_RowAlignment, finds_what_was_done)
         }
 }
 
-TEST(HDPStereo_RowAlignment, errors_are_those_of_a_good_pair)
+TEST(HDPStereo_SlowRowAlignment, errors_are_those_of_a_good_pair)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 6);
     for (const int preset : { (int)HDPTreeMatcher::PRESET_FAST, (int)HDPTreeMatcher::PRESET_QUALITY })

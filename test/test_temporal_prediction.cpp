@@ -57,7 +57,7 @@ std::vector<Board> someBoards()
 }
 
 //! A square that appears, moves and vanishes leaves no traces: around it, no frame has more errors than a single one.
-TEST(HDPStereo_TemporalPrediction, moving_square)
+TEST(HDPStereo_SlowTemporalPrediction, moving_square)
 {
     const int first = 3, last = 10, frames = 14, side = 56;
     for (double noise : { 0., 2. })
@@ -95,7 +95,7 @@ TEST(HDPStereo_TemporalPrediction, moving_square)
 }
 
 //! A scene that stands still under noise gets better with time, and hardly flickers.
-TEST(HDPStereo_TemporalPrediction, noise)
+TEST(HDPStereo_SlowTemporalPrediction, noise)
 {
     for (const System& preset : presets)
     {
@@ -128,7 +128,7 @@ TEST(HDPStereo_TemporalPrediction, noise)
 }
 
 //! The camera moves past and towards a scene.
-TEST(HDPStereo_TemporalPrediction, moving_camera)
+TEST(HDPStereo_SlowTemporalPrediction, moving_camera)
 {
     const Point3d steps[] = { Point3d(0.12, 0, 0), Point3d(0.05, -0.04, 0.0006), Point3d(0, 0, -0.0008) };
     for (const Point3d& step : steps)
@@ -181,7 +181,7 @@ TEST(HDPStereo_TemporalPrediction, wrong_pair)
 }
 
 //! A video that stands still neither drifts nor freezes.
-TEST(HDPStereo_TemporalPrediction, thousand_frames)
+TEST(HDPStereo_SlowTemporalPrediction, thousand_frames)
 {
     const Size size(96, 64);
     const Board board = { Rect2d(45, 20, 30, 30), 22, 3 };
@@ -273,7 +273,7 @@ TEST(HDPStereo_TemporalPrediction, needs_the_census)
 }
 
 //! Any preset and any size, down to one pixel; the same for any number of threads
-TEST(HDPStereo_TemporalPrediction, sizes_and_threads)
+TEST(HDPStereo_SlowTemporalPrediction, sizes_and_threads)
 {
     for (const System& preset : presets)
         for (const Size size :
