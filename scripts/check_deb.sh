@@ -16,25 +16,7 @@ mapfile -t files < <(dpkg -L "${names[@]}" | grep -vx /. | sort -u)
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory"
-cat >program.cpp <<'CPP'
-#include <opencv2/hdpstereo.hpp>
-#include <iostream>
-int main()
-{
-    cv::Mat scene(60, 200, CV_8UC3), disparity;
-    cv::randu(scene, 0, 256);
-    cv::stereo::HDPTreeMatcher::create(0, 16)->compute(scene.colRange(0, 190), scene.colRange(5, 195), disparity);
-    std::cout << cv::mean(disparity)[0] << " " << cv::norm(disparity) << std::endl;
-    return disparity.at<short>(30, 100) == 5 * cv::StereoMatcher::DISP_SCALE ? 0 : 1;
-}
-CPP
-cat >CMakeLists.txt <<'CMAKE'
-cmake_minimum_required(VERSION 3.16)
-project(program CXX)
-find_package(hdpstereo 1.0 REQUIRED)
-add_executable(program program.cpp)
-target_link_libraries(program opencv_hdpstereo)
-CMAKE
+cp "$checkout"/scripts/other_project/* .
 say "A program, by CMake, pkg-config, and with the static library"
 { cmake -S . -B cmake && cmake --build cmake; } >log 2>&1 || { cat log >&2; fail "CMake"; }
 # shellcheck disable=SC2046  # lists of words

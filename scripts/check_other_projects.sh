@@ -9,35 +9,9 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 module_build=$1
 directory=$module_build/other_projects
 rm -rf "$directory"
-mkdir -p "$directory/project"
+mkdir -p "$directory"
 cd "$directory"
-
-cat >project/program.cpp <<'CPP'
-#include <opencv2/hdpstereo.hpp>
-#include <iostream>
-int main()
-{
-    cv::Mat scene(60, 200, CV_8UC3), disparity;
-    cv::randu(scene, 0, 256);
-    cv::stereo::HDPTreeMatcher::create(0, 16)->compute(scene.colRange(0, 190), scene.colRange(5, 195), disparity);
-    std::cout << cv::mean(disparity)[0] << " " << cv::norm(disparity) << std::endl;
-    return disparity.at<short>(30, 100) == 5 * cv::StereoMatcher::DISP_SCALE ? 0 : 1;
-}
-CPP
-cat >project/CMakeLists.txt <<'CMAKE'
-cmake_minimum_required(VERSION 3.16)
-project(other CXX)
-if(HDPSTEREO_CHECKOUT)
-  include(FetchContent)
-  FetchContent_Declare(hdpstereo SOURCE_DIR "${HDPSTEREO_CHECKOUT}")
-  FetchContent_MakeAvailable(hdpstereo)
-else()
-  find_package(hdpstereo 1.0 REQUIRED)
-endif()
-add_executable(program program.cpp)
-target_link_libraries(program opencv_hdpstereo)
-install(TARGETS program)
-CMAKE
+cp -r "$checkout/scripts/other_project" project
 
 # run NAME COMMAND...: messages go to NAME.log.
 run()
