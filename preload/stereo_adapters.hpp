@@ -11,11 +11,11 @@
 //
 // The adapter keeps the matcher that it gets, and leaves all setters, getters, read() and write() to it: a program
 // finds what it has set. compute() is by HDPTreeMatcher, with
-// - minDisparity, numDisparities, blockSize, disp12MaxDiff, speckleWindowSize and speckleRange of that matcher;
+// - minDisparity, numDisparities, disp12MaxDiff, speckleWindowSize and speckleRange of that matcher;
 // - of StereoBM also ROI1 and ROI2: if one is set, pixels outside getValidDisparityROI() are rejected.
-// The others have no counterpart, and no effect: P1 and P2 are in units of another matching cost, mode and the
-// prefilter are details of OpenCV's algorithms, and nothing here compares the best cost of a pixel with its second
-// best, as uniquenessRatio does, or measures texture.
+// The others have no counterpart, and no effect: a block of StereoSGBM is no window of a census, P1 and P2 are in units
+// of another matching cost, mode and the prefilter are details of OpenCV's algorithms, and nothing here compares the
+// best cost of a pixel with its second best, as uniquenessRatio does, or measures texture.
 
 //! Replaces the matcher by its adapter. preset: of HDPTreeMatcher.
 extern "C" CV_EXPORTS void hdpstereoAdaptSGBM(cv::Ptr<cv::StereoSGBM>& matcher, int preset);
