@@ -4,7 +4,7 @@
 #include "precomp.hpp"
 #include "camera_motion.hpp"
 
-#include "vectorized.hpp"
+#include "robust_fit.hpp"
 
 #include <cmath>
 
@@ -125,33 +125,7 @@ Matx44d matrixOf(const Terms& t)
     return Matx44d(t(0), t(1), t(2), t(3), t(4), t(5), t(6), t(7), 0, 0, 1, 0, t(8), t(9), t(10), 1);
 }
 
-//! Solves a x = b by Cholesky's method, a being symmetric and positive definite; its lower half is enough.
-Terms solveNormal(NormalMatrix a, Terms b)
-{
-    for (int i = 0; i < terms; ++i)
-        for (int j = 0; j <= i; ++j)
-        {
-            double rest = a(i, j);
-            for (int k = 0; k < j; ++k)
-                rest -= a(i, k) * a(j, k);
-            a(i, j) = i == j ? std::sqrt(rest) : rest / a(j, j);
-        }
-    for (int i = 0; i < terms; ++i)
-    {
-        for (int k = 0; k < i; ++k)
-            b(i) -= a(i, k) * b(k);
-        b(i) /= a(i, i);
-    }
-    for (int i = terms - 1; i >= 0; --i)
-    {
-        for (int k = i + 1; k < terms; ++k)
-            b(i) -= a(k, i) * b(k);
-        b(i) /= a(i, i);
-    }
-    return b;
-}
-
-//! Adds the equations of a point: X = x' W and Y = y' W.
+//! Adds the equations of a point: X = x' W and Y = y' W. Of the matrix, only the lower half, which Cholesky's method reads.
 void addEquations(const TrackedPoint& point, double weight, NormalMatrix& a, Terms& b)
 {
     const int used = 7; // of the terms, by each equation
@@ -185,8 +159,7 @@ double medianSquaredError(const Matx44d& forward, const std::vector<TrackedPoint
     std::vector<double> errors;
     for (const TrackedPoint& point : points)
         errors.push_back(squaredError(forward, point));
-    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
-    return errors[errors.size() / 2];
+    return medianOf(errors);
 }
 
 } // namespace
@@ -286,7 +259,7 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size)
         Terms b = inertia * none;
         for (size_t i = 0; i < normed.size(); ++i)
             addEquations(normed[i], weights[i], a, b);
-        forward = matrixOf(solveNormal(a, b));
+        forward = matrixOf(a.solve(b, DECOMP_CHOLESKY));
         const double scale = tolerance / unit;
         for (size_t i = 0; i < normed.size(); ++i)
             weights[i] = 1 / (1 + squaredError(forward, normed[i]) / (scale * scale));

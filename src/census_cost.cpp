@@ -102,11 +102,7 @@ void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
                 unsigned bits = (unsigned)(left[0][4 * x] ^ right[0][at]) |
                                 (unsigned)(left[1][4 * x] ^ right[1][at]) << 8 |
                                 (unsigned)(left[2][4 * x] ^ right[2][at]) << 16;
-                bits &= mask;
-                bits -= (bits >> 1) & 0x555555;
-                bits = (bits & 0x333333) + ((bits >> 2) & 0x333333);
-                bits = (bits + (bits >> 4)) & 0x0f0f0f;
-                cost[x] = (uchar)(bits + (bits >> 8) + (bits >> 16));
+                cost[x] = (uchar)countCensusBits(bits & mask);
             }
         }
     });

@@ -20,6 +20,15 @@ struct CensusPlanes
     size_t rightPlane;          // from a plane to the next
 };
 
+//! The number of bits set in the lower 24
+inline int countCensusBits(unsigned bits)
+{
+    bits -= (bits >> 1) & 0x555555;
+    bits = (bits & 0x333333) + ((bits >> 2) & 0x333333);
+    bits = (bits + (bits >> 4)) & 0x0f0f0f;
+    return (int)((bits + (bits >> 8) + (bits >> 16)) & 31);
+}
+
 /** The census cost: the number of pixels, of every second one in the window as on a checkerboard, that are darker than
 the centre in one image and not in the other. The census of a pixel has a bit for each of them, in planes of 8 bits: 3
 for a window of 7 x 7 pixels, 2 for 5, 1 for 3. */
@@ -40,6 +49,8 @@ public:
 
     //! The number of planes of 8 bits that hold the census of a pixel
     int planes() const { return planes_.count; }
+    //! The number of comparisons in the census of a pixel
+    int comparisons() const { return planes() == 3 ? 24 : planes() == 2 ? 12 : 4; } // windows of 7, 5 and 3
     //! The census of a row of the left image and its grey levels in 8 bits: 4 bytes per pixel, the planes and greyByte.
     //! There are 16 more pixels to read before and behind the row.
     const uchar* leftPixels(int y) const { return planes_.left + y * planes_.leftStep; }

@@ -20,15 +20,14 @@ void dispatchCosts(const uchar* left, const uchar* right, size_t planeStride, in
 }
 
 //! Whether enough of the window's comparisons found a darker pixel
-bool hasTexture(const uchar* left, int planes)
+bool hasTexture(const CensusCost& cost, const uchar* left)
 {
-    const int comparisons = planes == 3 ? 24 : planes == 2 ? 12 : 4; // per pixel: windows of 7, 5 and 3
     int darker = 0;
     for (int i = 0; i <= 2 * SparseMatches::radius; ++i)
-        for (int plane = 0; plane < planes; ++plane)
+        for (int plane = 0; plane < cost.planes(); ++plane)
             for (int bits = left[4 * i + plane]; bits; bits &= bits - 1)
                 ++darker;
-    return darker * SparseMatches::texture >= comparisons * (2 * SparseMatches::radius + 1);
+    return darker * SparseMatches::texture >= cost.comparisons() * (2 * SparseMatches::radius + 1);
 }
 
 uchar dispatchLowest(const uchar* costs, int count)
@@ -67,7 +66,7 @@ void findSparseMatches(const CensusCost& cost, Size size, int numDisparities, Ma
                 if (count <= 0 || x + radius >= size.width)
                     continue;
                 const uchar* left = cost.leftPixels(y) + 4 * (x - radius);
-                if (!hasTexture(left, cost.planes()))
+                if (!hasTexture(cost, left))
                     continue;
                 const uchar* right = cost.rightPlane(0, y) + size.width - 1 - (x - radius);
                 dispatchCosts(left, right, cost.planeStride(), cost.planes(), count, costs.data());

@@ -266,18 +266,12 @@ void findSources(TemporalState& s)
     }
 }
 
-//! The number of comparisons of a census
-int comparisons(const CensusCost& cost) { return cost.planes() == 3 ? 24 : cost.planes() == 2 ? 12 : 4; }
-
 int censusDifference(const CensusCost& cost, const uchar* left, const uchar* right)
 {
     unsigned bits = 0;
     for (int plane = 0; plane < cost.planes(); ++plane, right += cost.planeStride())
         bits |= (unsigned)(left[plane] ^ *right) << (8 * plane);
-    bits -= (bits >> 1) & 0x555555;
-    bits = (bits & 0x333333) + ((bits >> 2) & 0x333333);
-    bits = (bits + (bits >> 4)) & 0x0f0f0f;
-    return (int)((bits + (bits >> 8) + (bits >> 16)) & 31);
+    return countCensusBits(bits);
 }
 
 //! Memory for a row
@@ -306,7 +300,7 @@ void compareCosts(const CensusCost& cost, const Backward& backward, const Mat& m
 {
     const Size size = measured.size();
     const bool isStill = s.motion.isStill;
-    const int offset = T::costOffset * comparisons(cost) / 24;
+    const int offset = T::costOffset * cost.comparisons() / 24;
     s.evidence.create(s.sources.size(), CV_16SC(channels));
     parallel_for_(Range(0, s.sources.rows), [&](const Range& rows) {
         RowScratch scratch(s.sources.cols);
