@@ -60,7 +60,7 @@ public:
         {
             const MatchedLayer* const upper = layer + 1 < settings.layers ? &layers_[layer + 1] : nullptr;
             TemporalState* const temporal = p_.useTemporalPrediction ? &temporal_ : nullptr;
-            const LayerInput input = { layer, images[layer], upper, p_, settings, temporal };
+            const LayerInput input = { layer, images[layer], upper, p_, settings, result_.alignment.isNoisy, temporal };
             matchLayer(input, buffers_, clock_, layers_[layer]);
         }
 

@@ -90,13 +90,15 @@ void predict(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
     assignIntervals(in.upper->disparity, size, buffers.intervals, matched.pixelIntv);
 }
 
-//! Section 3.2. The median is that of the M+ systems; as in the authors' program, the cost does not see it.
+//! Section 3.2. The median is that of the M+ systems, and of noisy pairs; as in the authors' program, the cost does not
+//! see it.
 void growForest(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 {
     const MatcherParameters& p = in.parameters;
-    if (p.useMedianPrefilter)
+    const bool hasMedian = p.useMedianPrefilter || in.isNoisy;
+    if (hasMedian)
         medianBlur(in.images.guide, matched.guide, 3);
-    const Mat& guide = p.useMedianPrefilter ? matched.guide : in.images.guide;
+    const Mat& guide = hasMedian ? matched.guide : in.images.guide;
     buffers.forestLayer = in.layer;
     buildForest(guide, matched.pixelIntv, *p.treeStrategy, in.settings.beta, !p.usePrediction, buffers.forestBuffers,
                 buffers.forest);

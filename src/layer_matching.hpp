@@ -48,6 +48,7 @@ struct LayerInput
     const MatchedLayer* upper; // the layer above; none at the top layer
     const MatcherParameters& parameters;
     const PairSettings& settings;
+    bool isNoisy;            // the guide gets a median
     TemporalState* temporal; // the frame before; none if it is not used
 
     bool isTop() const { return !upper; }

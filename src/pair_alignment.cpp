@@ -15,14 +15,10 @@ namespace hdp {
 
 namespace {
 
-//! Both images by a small Gaussian, the guide by a median
-void smooth(LayerImages& images, bool isGrey, LayerImages& smoothed)
+//! Both images by a small Gaussian
+void smooth(LayerImages& images, LayerImages& smoothed)
 {
-    const double deviation = 0.5; // of the Gaussian, in pixels
-    medianBlur(images.guide, smoothed.guide, 3);
-    images.guide = smoothed.guide;
-    if (!isGrey)
-        return;
+    const double deviation = 0.5; // in pixels
     GaussianBlur(images.left, smoothed.left, Size(3, 3), deviation, deviation, BORDER_REPLICATE);
     GaussianBlur(images.right, smoothed.right, Size(3, 3), deviation, deviation, BORDER_REPLICATE);
     images.left = smoothed.left;
@@ -52,10 +48,7 @@ void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::ve
     }
     matchCoarsely(left, right, search.numDisparities, buffers.coarse);
     alignment.hasRows =
-        estimateRows(buffers.coarse, search.finestLayer, search.maxRowOffset, alignment.rows, alignment.noise) &&
-        search.maxRowOffset > 0;
-    if (search.maxRowOffset == 0)
-        alignment.rows = RowModel();
+        estimateRows(buffers.coarse, search.finestLayer, search.maxRowOffset, alignment.rows, alignment.noise);
     alignment.noise /= greyScale;
     if (search.hasLight && isGrey)
         alignment.hasLight = estimateLight(buffers.coarse, alignment.light);
@@ -72,12 +65,12 @@ void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::ve
         for (size_t layer = search.finestLayer + 1; layer < images.size(); ++layer)
             halveImage(images[layer - 1].right, images[layer].right); // into the memory of the pyramid
 
-    if (search.noiseThreshold > 0 && alignment.noise >= search.noiseThreshold)
-    {
-        buffers.smoothed.resize(images.size());
-        for (size_t layer = search.finestLayer; layer < images.size(); ++layer)
-            smooth(images[layer], isGrey, buffers.smoothed[layer]);
-    }
+    alignment.isNoisy = search.noiseThreshold > 0 && alignment.noise >= search.noiseThreshold;
+    if (!alignment.isNoisy || !isGrey)
+        return;
+    buffers.smoothed.resize(images.size());
+    for (size_t layer = search.finestLayer; layer < images.size(); ++layer)
+        smooth(images[layer], buffers.smoothed[layer]);
 }
 
 } // namespace hdp

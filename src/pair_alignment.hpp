@@ -28,7 +28,8 @@ struct PairAlignment
     RowModel rows;
     LightModel light;
     bool hasRows = false, hasLight = false;
-    double noise = 0; // standard deviation in levels of 255
+    double noise = 0;     // standard deviation in levels of 255
+    bool isNoisy = false; // noise has reached the threshold
 };
 
 //! Memory of alignPair(), kept from pair to pair
@@ -40,7 +41,7 @@ struct AlignmentBuffers
 };
 
 /** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it, and
-smooths both images of noisy pairs.
+smooths the grey levels of noisy pairs. The guides stay.
 @param search What is looked for.
 @param buffers Memory to work in.
 @param images Those of buildPairPyramids(); they may change.

@@ -94,21 +94,23 @@ double noiseOf(const std::vector<CornerMatch>& matches)
 struct MeanSquares
 {
     double move, deviation; // of the model
-
-    MeanSquares(const RowFit& fit, Size size) : move(0), deviation(0)
-    {
-        const int side = 8;
-        for (int i = 0; i < side; ++i)
-            for (int j = 0; j < side; ++j)
-            {
-                const Point2d place(((j + 0.5) / side - 0.5) * size.width, ((i + 0.5) / side - 0.5) * size.height);
-                const Coefficients basis = RowModel::basis(place);
-                const double value = fit.coefficients.dot(basis);
-                move += value * value / (side * side);
-                deviation += basis.dot(fit.covariance * basis) / (side * side);
-            }
-    }
 };
+
+MeanSquares meanSquares(const RowFit& fit, Size size)
+{
+    const int side = 8;
+    MeanSquares means = { 0, 0 };
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j)
+        {
+            const Point2d place(((j + 0.5) / side - 0.5) * size.width, ((i + 0.5) / side - 0.5) * size.height);
+            const Coefficients basis = RowModel::basis(place);
+            const double value = fit.coefficients.dot(basis);
+            means.move += value * value / (side * side);
+            means.deviation += basis.dot(fit.covariance * basis) / (side * side);
+        }
+    return means;
+}
 
 //! The largest move at a corner of the image
 double largestMove(const RowModel& model, Size size)
@@ -184,34 +186,32 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
 
     // Noise and other light may leave more to be seen on a coarse layer than on the image: the most certain fit counts.
     std::vector<CornerMatch> matches = coarse.matches;
-    RowFit best;
-    double leastDeviation = DBL_MAX;
+    RowModel best;
+    MeanSquares ofBest = { 0, DBL_MAX };
     for (int layer = coarse.layer;; --layer)
     {
         const std::vector<RowMove> moves = toMoves(matches, layer, size);
         if ((int)moves.size() < leastMatches)
             break;
         const RowFit fit = fitRows(moves, size);
-        const double deviation = MeanSquares(fit, size).deviation;
+        const MeanSquares ofFit = meanSquares(fit, size);
+        RowModel fitted;
+        fitted.coefficients = fit.coefficients;
         noise = noiseOf(matches);
-        if (deviation < leastDeviation)
+        if (ofFit.deviation < ofBest.deviation)
         {
-            leastDeviation = deviation;
-            best = fit;
+            ofBest = ofFit;
+            best = fitted;
         }
         if (layer <= finestLayer)
             break;
-        model.coefficients = fit.coefficients;
-        enterFinerLayer(model, layer, size, matches);
+        enterFinerLayer(fitted, layer, size, matches);
         trackCornerMatches(coarse.left[layer - 1], coarse.right[layer - 1], matches);
     }
-    model.coefficients = best.coefficients;
-    if (leastDeviation == DBL_MAX || largestMove(model, size) > maxOffset)
-    {
-        model = RowModel();
+    if (ofBest.deviation == DBL_MAX || largestMove(best, size) > maxOffset)
         return false;
-    }
-    return MeanSquares(best, size).move - certainty * certainty * leastDeviation > leastMove * leastMove;
+    model = best;
+    return ofBest.move - certainty * certainty * ofBest.deviation > leastMove * leastMove;
 }
 
 void alignRows(const Mat& right, const RowModel& model, Mat& aligned)

@@ -321,19 +321,16 @@ TEST(HDPStereo_RowAlignment, no_evidence)
             stripes.at<uchar>(y, x) = (uchar)(y / 4 % 2 * 100 + 50);
             columns.at<uchar>(y, x) = (uchar)(x / 4 % 2 * 100 + 50);
         }
-    const Mat left[] = { Mat(size, CV_8UC1, Scalar(128)),
-                         stripes,
-                         columns,
-                         randomImage(rng, size, CV_8UC1),
-                         randomImage(rng, Size(1, 1), CV_8UC1),
-                         randomImage(rng, Size(300, 3), CV_8UC1) };
-    const Mat right[] = { Mat(size, CV_8UC1, Scalar(128)),
-                          stripes,
-                          columns,
-                          randomImage(rng, size, CV_8UC1),
-                          randomImage(rng, Size(1, 1), CV_8UC1),
-                          randomImage(rng, Size(300, 3), CV_8UC1) };
-    for (size_t i = 0; i < sizeof left / sizeof *left; ++i)
+    const auto images = [&] {
+        return std::vector<Mat>{ Mat(size, CV_8UC1, Scalar(128)),
+                                 stripes,
+                                 columns,
+                                 randomImage(rng, size, CV_8UC1),
+                                 randomImage(rng, Size(1, 1), CV_8UC1),
+                                 randomImage(rng, Size(300, 3), CV_8UC1) };
+    };
+    const std::vector<Mat> left = images(), right = images();
+    for (size_t i = 0; i < left.size(); ++i)
     {
         const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32);
         match(*matcher, left[i], right[i]);
