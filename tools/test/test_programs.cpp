@@ -11,7 +11,9 @@
 #include <cstdlib>
 
 #ifdef __unix__
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace opencv_test {
 namespace {
@@ -210,6 +212,120 @@ TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
     for (const char* wrong : { " --preset=FAST", " --num-disparities=0", " --output=/no/such/folder/map.png",
                                " --output=map.unknown", " --point-cloud=x.ply", " --truth=/no/such/file.png" })
         EXPECT_EQ(1, run(folder, program + wrong).status) << wrong;
+}
+
+//! The most that a program takes, in KiB
+long peakMemory(const DatasetFolder& folder, const String& command)
+{
+    const String line =
+        "exec " + String(HDP_PROGRAMS) + "/" + command + " >/dev/null 2>'" + folder.path("stderr") + "'";
+    const pid_t child = fork();
+    if (child == 0)
+    {
+        execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
+        _exit(127);
+    }
+    int status = -1;
+    struct rusage usage = rusage();
+    EXPECT_EQ(child, wait4(child, &status, 0, &usage));
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << readText(folder.path("stderr"));
+    return usage.ru_maxrss;
+}
+
+TEST(HDPStereo_Programs, batch_of_folders)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const Mat left = cv::imread(folder.path("dataset/a/left.png")),
+              right = cv::imread(folder.path("dataset/a/right.png"));
+    for (const char* name : { "one.png", "small.png", "three.png", "torn.png", "two.png" })
+    {
+        folder.write(String("lefts/") + name, left);
+        folder.write(String("rights/") + name, right);
+    }
+    folder.write("rights/small.png", Mat(right, Rect(0, 0, 100, 100)));
+    folder.writeText("lefts/torn.png", "no picture");
+    folder.writeText("lefts/readme.txt", "left images");
+    folder.write("lefts/alone.png", left);
+    folder.writeText("out/two.png.part", "of a run that was killed");
+
+    const String lefts = folder.path("lefts"), rights = folder.path("rights"), out = folder.path("out"),
+                 program = "example_hdpstereo_hdp_stereo_match --num-disparities=32 ",
+                 command = program + "--batch " + lefts + " " + rights + " " + out;
+    const Execution first = run(folder, command);
+    EXPECT_EQ(2, first.status);
+    EXPECT_EQ("3 pairs matched, 0 were there, 3 left out\n", first.output);
+    for (const char* line : { "1/6 alone left out: cannot read the image", "2/6 one\n", "3/6 small left out: ",
+                              "4/6 three\n", "5/6 torn left out: cannot read the image", "6/6 two\n" })
+        EXPECT_NE(String::npos, first.errors.find(line)) << line << first.errors;
+    std::vector<String> files;
+    fs::glob_relative(out, "*", files);
+    EXPECT_EQ(std::vector<String>({ "one.png", "three.png", "two.png" }), files);
+    EXPECT_EQ(
+        0, run(folder, program + lefts + "/one.png " + rights + "/one.png --output=" + folder.path("map.png")).status);
+    const String map = readText(folder.path("map.png"));
+    for (const String& file : files)
+        EXPECT_TRUE(readText(fs::join(out, file)) == map) << file;
+
+    // The second run does what the first one has not.
+    folder.writeText("out/one.png", "kept");
+    folder.write("rights/alone.png", right);
+    const Execution second = run(folder, command);
+    EXPECT_EQ(2, second.status);
+    EXPECT_EQ("1 pairs matched, 3 were there, 2 left out\n", second.output);
+    EXPECT_EQ("kept", readText(fs::join(out, "one.png")));
+    EXPECT_TRUE(readText(fs::join(out, "alone.png")) == map);
+
+    // Mistakes of the call are found before any work.
+    const String other = " " + folder.path("lefts") + " " + folder.path("rights") + " " + folder.path("other");
+    for (const String& wrong : { String("--batch"), "--batch " + lefts + " " + rights, "--batch --preset=none" + other,
+                                 "--batch --format=jpg" + other, "--batch --output=x.png" + other,
+                                 "--batch --num-disparities=0" + other, "--batch " + folder.path("empty/") + ". x y" })
+    {
+        const Execution result = run(folder, "example_hdpstereo_hdp_stereo_match " + wrong);
+        EXPECT_EQ(1, result.status) << wrong;
+        EXPECT_EQ(firstLine(result.errors) + "\n", result.errors);
+    }
+    EXPECT_FALSE(fs::exists(folder.path("other")));
+#ifdef __linux__
+    // A disk that is full is no fault of the pair.
+    folder.writeText("full/readme.txt", "");
+    ASSERT_EQ(0, symlink("/dev/full", folder.path("full/one.png.part").c_str()));
+    const Execution full = run(folder, program + "--batch " + lefts + " " + rights + " " + folder.path("full"));
+    EXPECT_EQ(1, full.status);
+    EXPECT_NE(String::npos, full.errors.find("error: cannot write '")) << full.errors;
+    EXPECT_FALSE(fs::exists(folder.path("full/one.png")));
+#endif
+}
+
+TEST(HDPStereo_Programs, batch_of_a_list)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String program = "example_hdpstereo_hdp_stereo_match --num-disparities=32 --format=pfm --batch ";
+    const auto list = [&](int pairs) {
+        String text = "\n";
+        for (int i = 0; i < pairs; i++)
+            text += folder.path("dataset/a/left.png") + " " + folder.path("dataset/a/right.png") +
+                    cv::format(" night/%02d\r\n", i);
+        folder.writeText("list.txt", text);
+        return folder.path("list.txt") + " ";
+    };
+    const long few = peakMemory(folder, program + list(3) + folder.path("few"));
+    const long many = peakMemory(folder, program + list(60) + folder.path("many"));
+    EXPECT_EQ(CV_32FC1, cv::imread(folder.path("many/night/59.pfm"), IMREAD_UNCHANGED).type());
+#ifndef __SANITIZE_ADDRESS__ // it keeps what is freed
+    EXPECT_LT(many, few + 2000);
+#endif
+    for (const char* wrong : { "", "a.png b.png\n", "a.png b.png c d\n", "a.png b.png c\na.png b.png c\n" })
+    {
+        folder.writeText("wrong.txt", wrong);
+        EXPECT_EQ(1, run(folder, program + folder.path("wrong.txt") + " " + folder.path("other")).status) << wrong;
+    }
+    folder.writeText("tabs.txt", folder.path("no such left.png") + "\t" + folder.path("right.png") + "\tc d\n");
+    const Execution tabs = run(folder, program + folder.path("tabs.txt") + " " + folder.path("other"));
+    EXPECT_EQ(2, tabs.status);
+    EXPECT_NE(String::npos, tabs.errors.find("1/1 c d left out: ")) << tabs.errors;
 }
 
 //! Pictures of 16 bit stay so: in 8 bit, this texture would have 13 levels.
