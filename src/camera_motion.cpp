@@ -172,65 +172,65 @@ int trackingLevels(int width)
     return levels;
 }
 
-void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
+void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points)
 {
     const int top = (int)before.size() - 1;
     const Size grid(before[top].cols / T::spacing, before[top].rows / T::spacing);
-    std::vector<TrackedPoint> all(grid.area());
-    std::vector<uchar> isFound(grid.area());
-    parallel_for_(Range(0, grid.area()), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-        {
-            const Point place = choosePlace(before, Point(i % grid.width, i / grid.width) * T::spacing);
-            Point match = place;
-            for (int level = top; level >= 0 && match != nowhere; --level)
-            {
-                const bool isFirst = level == top;
-                const Point from(place.x << (top - level), place.y << (top - level));
-                match = search(before[level], from, now[level], isFirst ? match : 2 * match,
-                               isFirst ? T::searchRadius : T::refinementRadius);
-            }
-            isFound[i] = match != nowhere;
-            if (!isFound[i])
-                continue;
-            const Point from(place.x << top, place.y << top);
-            all[i].before = from;
-            all[i].now = refine(before[0], from, now[0], match);
-        }
-    });
     points.clear();
-    for (int i = 0; i < grid.area(); ++i)
-        if (isFound[i])
-            points.push_back(all[i]);
+    for (int y = 0; y < grid.height; ++y)
+        for (int x = 0; x < grid.width; ++x)
+        {
+            const Point place = choosePlace(before, Point(x, y) * T::spacing);
+            if (place == nowhere)
+                continue;
+            TrackedPoint point;
+            point.before = point.now = place * (1 << top);
+            point.disparity = 0;
+            points.push_back(point);
+        }
 }
 
-void trackPointsAgain(const std::vector<Mat>& before, const std::vector<Mat>& now, const CameraMotion& motion,
-                      std::vector<TrackedPoint>& points)
+void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
+{
+    const int top = (int)before.size() - 1;
+    parallel_for_(Range(0, (int)points.size()), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+        {
+            const Point from = points[i].before, coarse(from.x >> top, from.y >> top);
+            Point match = search(before[top], coarse, now[top], coarse, T::searchRadius);
+            for (int level = top - 1; level >= 0 && match != nowhere; --level)
+                match = search(before[level], Point(from.x >> level, from.y >> level), now[level], 2 * match,
+                               T::refinementRadius);
+            points[i].now = match != nowhere ? refine(before[0], from, now[0], match) : points[i].before;
+        }
+    });
+}
+
+void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, const CameraMotion& motion,
+                 std::vector<TrackedPoint>& points)
 {
     const int coarse = std::min(1, (int)before.size() - 1);
     parallel_for_(Range(0, (int)points.size()), [&](const Range& range) {
         for (int i = range.start; i < range.end; ++i)
         {
             TrackedPoint& point = points[i];
-            const Point from = point.before;
+            point.now = point.before;
             const Vec4d p = motion.forward * Vec4d(point.before.x, point.before.y, point.disparity, 1);
             if (!(p[0] >= 0 && p[1] >= 0 && p[0] < p[3] * now[0].cols && p[1] < p[3] * now[0].rows))
                 continue;
+            const Point from = point.before, half(from.x >> coarse, from.y >> coarse);
             Point match(cvFloor(p[0] / p[3] + 0.5), cvFloor(p[1] / p[3] + 0.5));
-            const Point half(from.x >> coarse, from.y >> coarse);
             if (isInside(before[coarse], half))
-                match = search(before[coarse], half, now[coarse], Point(match.x >> coarse, match.y >> coarse),
-                               T::refinementRadius);
-            if (match != nowhere)
-                match =
-                    search(before[0], from, now[0], Point(match.x << coarse, match.y << coarse), T::refinementRadius);
+                match = (1 << coarse) * search(before[coarse], half, now[coarse],
+                                               Point(match.x >> coarse, match.y >> coarse), T::refinementRadius);
+            match = search(before[0], from, now[0], match, T::refinementRadius);
             if (match != nowhere)
                 point.now = refine(before[0], from, now[0], match);
         }
     });
 }
 
-CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size)
+CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance)
 {
     CameraMotion motion;
     if ((int)points.size() < T::minPoints)
@@ -249,11 +249,10 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size)
     Terms none = Terms::zeros();
     none(0) = none(5) = 1;
     const double inertia = 1e-5 * points.size(); // decides what the points leave open
-    const double leastTolerance = 0.25;          // in pixels, as the next one
-    double tolerance = 4.5;
+    const double leastTolerance = 0.25;          // in pixels
     std::vector<double> weights(points.size(), 1.);
     Matx44d forward = Matx44d::eye();
-    for (int round = 0; round < T::fittingRounds; ++round)
+    for (int rounds = T::fittingRounds; rounds > 0; rounds -= tolerance == leastTolerance)
     {
         NormalMatrix a = inertia * NormalMatrix::eye();
         Terms b = inertia * none;
@@ -269,8 +268,10 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size)
     // Things that move by themselves may look as if the camera did, but most points tell whether it is at rest.
     const double moved = std::sqrt(medianSquaredError(forward, normed)) * unit;
     const double still = std::sqrt(medianSquaredError(Matx44d::eye(), normed)) * unit;
+    motion.error = still;
     if (!(still > 1.25 * moved + 0.05))
         return motion;
+    motion.error = moved;
     const Matx44d toNormed(1 / unit, 0, 0, -centre.x / unit, 0, 1 / unit, 0, -centre.y / unit, 0, 0, 1 / disparityUnit,
                            0, 0, 0, 0, 1);
     const Matx44d toPixels(unit, 0, 0, centre.x, 0, unit, 0, centre.y, 0, 0, disparityUnit, 0, 0, 0, 0, 1);
@@ -286,11 +287,26 @@ CameraMotion scaled(const CameraMotion& motion, double scale)
     const Matx44d up(scale, 0, 0, shift, 0, scale, 0, shift, 0, 0, scale, 0, 0, 0, 0, 1);
     const double back = 1 / scale;
     const Matx44d down(back, 0, 0, -shift * back, 0, back, 0, -shift * back, 0, 0, back, 0, 0, 0, 0, 1);
-    CameraMotion result;
-    result.isStill = motion.isStill;
+    CameraMotion result = motion;
+    result.error *= scale;
     if (!motion.isStill)
         result.forward = up * motion.forward * down;
     return result;
+}
+
+BackwardMotion::BackwardMotion(const CameraMotion& motion, double minDisparity, double largest)
+{
+    const Matx44d inverse = motion.forward.inv();
+    const Matx44d ofMap = inverse * Matx44d(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, minDisparity, 0, 0, 0, 1);
+    for (int i = 0; i < 4; ++i)
+    {
+        x_[i] = (float)ofMap(0, i);
+        y_[i] = (float)ofMap(1, i);
+        w_[i] = (float)ofMap(3, i);
+    }
+    const DisparityChange change = { (float)inverse(3, 0), (float)inverse(3, 1), (float)inverse(3, 2),
+                                     (float)inverse(3, 3), (float)minDisparity,  (float)largest };
+    change_ = change;
 }
 
 } // namespace hdp

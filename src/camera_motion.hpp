@@ -21,6 +21,7 @@ struct CameraMotion
 {
     Matx44d forward = Matx44d::eye();
     bool isStill = true; // forward is the identity
+    double error = 0;    // median distance of the points from where it takes them, in pixels
 };
 
 //! A point of the scene in two frames, in pixels
@@ -42,38 +43,85 @@ struct MotionTracking
         refinementRadius = 2, // on the others
         minTexture = 3,       // levels from a pixel to the next, in both directions, on average
         minPoints = 30,       // of a motion
-        fittingRounds = 12    // of reweighted least squares
+        fittingRounds = 3     // of reweighted least squares, after those with larger tolerances
     };
 };
 
 //! Number of levels that trackPoints() needs if the finest one has this width
 CV_EXPORTS int trackingLevels(int width);
 
+/** Chooses points to be tracked: on a grid, where the image has texture in both directions.
+@param before Pyramid of the frame before, CV_8UC1, the finest level first, each of half the size of the one before.
+@param points Receives TrackedPoint::before of each, in pixels of the finest level. */
+CV_EXPORTS void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points);
+
 /** Finds points again, from the coarsest level to the finest: where the sum of absolute differences over a square is
 least, with the fraction of a parabola.
-@param before Pyramid of the frame before, CV_8UC1, the finest level first, each of half the size of the one before.
+@param before Pyramid of the frame before.
 @param now That of this frame, of the same sizes.
-@param points Receives points on a grid, where the image has texture in both directions; positions in pixels of the
-finest level. Disparities are not set. */
+@param points Receives TrackedPoint::now of each; those that leave the image stay where they were. */
 CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now,
                             std::vector<TrackedPoint>& points);
 
 /** Finds points again near the places that a motion takes them to. See trackPoints().
-@param before
-@param now
+@param before Pyramid of the frame before.
+@param now That of this frame, of the same sizes.
 @param motion In pixels of the finest level, disparities as well.
-@param points Changed. */
-CV_EXPORTS void trackPointsAgain(const std::vector<Mat>& before, const std::vector<Mat>& now,
-                                 const CameraMotion& motion, std::vector<TrackedPoint>& points);
+@param points Receives TrackedPoint::now of each. */
+CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, const CameraMotion& motion,
+                            std::vector<TrackedPoint>& points);
 
 /** Fits a motion to most of the points. Those that do not fit, as on things that move by themselves, lose their weight.
 @param points The points.
 @param size Of the image that their positions are in.
-@return The motion; isStill if it does not explain clearly more of the points than none. */
-CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size);
+@param tolerance How far from a first guess they may be, in pixels.
+@return The motion; none if most of the points are where they were. */
+CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance);
 
 //! The motion in pixels of an image that is scale times as large
 CV_EXPORTS CameraMotion scaled(const CameraMotion& motion, double scale);
+
+//! How the motion of the camera changes the disparity of what is now at (x, y):
+//! before = now / (ofX x + ofY y + ofDisparity now + constant). Disparities are in pixels.
+struct DisparityChange
+{
+    float ofX, ofY, ofDisparity, constant;
+    float minDisparity, largest; // of a map, which counts from minDisparity; the next two do as well
+
+    CV_ALWAYS_INLINE float ofRow(int y) const { return ofY * y + constant; }
+    //! place: ofX x + ofRow(y)
+    CV_ALWAYS_INLINE float now(float before, float place) const
+    {
+        const float old = before + minDisparity, w = 1 - ofDisparity * old;
+        const float positive = w > 0.1f ? w : 0.1f; // less is at the camera or behind it
+        const float disparity = old * place / positive - minDisparity;
+        const float notNegative = disparity > 0 ? disparity : 0;
+        return notNegative < largest ? notNegative : largest;
+    }
+};
+
+//! From a pixel of this frame to where it was; disparities count from minDisparity, up to largest, in pixels.
+class CV_EXPORTS BackwardMotion
+{
+public:
+    BackwardMotion() {}
+    BackwardMotion(const CameraMotion& motion, double minDisparity, double largest);
+
+    //! Where a pixel was if this is its disparity now; at negative coordinates if it is behind the camera
+    Point2f place(int x, int y, float disparity) const
+    {
+        const float w = w_[0] * x + w_[1] * y + w_[2] * disparity + w_[3], factor = w > 0.001f ? 1 / w : 0;
+        const Point2f place((x_[0] * x + x_[1] * y + x_[2] * disparity + x_[3]) * factor,
+                            (y_[0] * x + y_[1] * y + y_[2] * disparity + y_[3]) * factor);
+        return factor > 0 ? place : Point2f(-1, -1);
+    }
+
+    const DisparityChange& change() const { return change_; }
+
+private:
+    Vec4f x_, y_, w_;
+    DisparityChange change_;
+};
 
 } // namespace hdp
 } // namespace stereo

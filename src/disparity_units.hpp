@@ -18,6 +18,12 @@ const int subpixelScale = 16;
 //! The candidate next to a disparity of a map, the larger one of two
 inline int wholeDisparity(int disparity) { return (int)((unsigned)(disparity + subpixelScale / 2) / subpixelScale); }
 
+//! The largest disparity that a map of a layer may have
+inline int largestDisparity(int numDisparities, int layer)
+{
+    return (int)((int64)(numDisparities - 1) * subpixelScale >> layer);
+}
+
 //! Candidates first .. last; empty if last < first. Stored in Mats as CV_16UC2.
 struct DisparityInterval
 {

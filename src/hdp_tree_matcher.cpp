@@ -53,8 +53,11 @@ public:
                 alignPair(search, alignmentBuffers_, images, result_.alignment);
             });
 
-        if (!p_.useTemporalPrediction)
+        if (p_.useTemporalPrediction)
+            clock_.run("temporal prediction", [&] { follow(images[settings.finestLayer].left, settings.finestLayer); });
+        else
             temporal_ = TemporalState();
+
         layers_.resize(settings.layers);
         for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
         {
@@ -243,6 +246,15 @@ private:
         if (layer < 0)
             CV_Error(Error::StsOutOfRange, format("layer must be >= 0, not %d", layer));
         return isMatched() && layer >= result_.settings.finestLayer && layer < result_.settings.layers;
+    }
+
+    //! What a frame has to do with the one before
+    void follow(const Mat& left, int finestLayer)
+    {
+        const int scale = 1 << finestLayer;
+        const TemporalLayer layer = { scale, p_.minDisparity / (double)scale,
+                                      largestDisparity(p_.numDisparities, finestLayer) };
+        followVideo(left, layer, temporal_);
     }
 
     //! Without the columns that are added to the images

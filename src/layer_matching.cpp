@@ -36,10 +36,7 @@ int disparitiesOf(const LayerInput& in, int layer)
 int disparitiesOf(const LayerInput& in) { return disparitiesOf(in, in.layer); }
 
 //! Of the layer's map
-int largestDisparity(const LayerInput& in)
-{
-    return (int)((int64)(in.parameters.numDisparities - 1) * subpixelScale >> in.layer);
-}
+int largestDisparity(const LayerInput& in) { return hdp::largestDisparity(in.parameters.numDisparities, in.layer); }
 
 void prepareCost(const LayerInput& in, MatchedLayer& matched)
 {
@@ -187,14 +184,6 @@ void refine(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
                    in.settings.subpixel, buffers.aggregation, matched.winner);
 }
 
-//! Joins the winners with the disparities of the frame before.
-void joinLastFrame(const LayerInput& in, MatchedLayer& matched)
-{
-    const int scale = 1 << in.layer;
-    const TemporalLayer layer = { scale, in.parameters.minDisparity / (double)scale, largestDisparity(in) };
-    joinLastFrame(in.images.left, matched.census, layer, *in.temporal, matched.winner);
-}
-
 //! From the winners to the layer's disparities. The authors' program has this median; the paper has no such filter.
 void filter(const LayerInput& in, MatchedLayer& matched)
 {
@@ -226,7 +215,7 @@ void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, 
     if (in.parameters.useNonLocalRefinement && hasTrees)
         clock.run("non-local refinement", [&] { refine(in, buffers, matched); });
     if (in.temporal && in.isFinest())
-        clock.run("temporal prediction", [&] { joinLastFrame(in, matched); });
+        clock.run("temporal prediction", [&] { joinLastFrame(matched.census, *in.temporal, matched.winner); });
     clock.run("disparity median", [&] { filter(in, matched); });
 }
 

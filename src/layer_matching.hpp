@@ -14,7 +14,7 @@
 #include "scanline_aggregation.hpp"
 #include "stage_clock.hpp"
 #include "support_points.hpp"
-#include "temporal_prediction.hpp"
+#include "temporal_join.hpp"
 #include "volume_scanlines.hpp"
 
 namespace cv {
@@ -49,7 +49,7 @@ struct LayerInput
     const MatcherParameters& parameters;
     const PairSettings& settings;
     bool isNoisy;            // the guide gets a median
-    TemporalState* temporal; // the frame before; none if it is not used
+    TemporalState* temporal; // what is known of the video; none if it is not used
 
     bool isTop() const { return !upper; }
     bool isFinest() const { return layer == settings.finestLayer; }

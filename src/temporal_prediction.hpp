@@ -5,35 +5,21 @@
 #define OPENCV_HDPSTEREO_TEMPORAL_PREDICTION_HPP
 
 #include "camera_motion.hpp"
-#include "census_cost.hpp"
 #include "disparity_units.hpp"
 
 namespace cv {
 namespace stereo {
 namespace hdp {
 
-//! The constants of joinLastFrame()
-struct TemporalJoin
+//! The constants of followVideo()
+struct VideoFollowing
 {
     enum
     {
-        cell = 2,            // side of the squares that decide together, in pixels
-        block = 8,           // side of the squares that move together, in pixels
-        window = 7,          // side of the square that costs are compared over, in cells
-        sameDisparity = 1,   // in pixels: costs of disparities no farther apart are not compared
-        costOffset = 8,      // in bits of a census of 24, see the next three
-        stillShare = 40,     // percent of the measured disparity's cost, and costOffset, by which that of the last
-        unmovedShare = 60,   // frame's may be larger: with a camera at rest; at the same place with one that moved;
-        movedShare = 26,     // where its motion leads
-        tolerance = 4,       // between disparities that agree, in pixels of the image
-        maxStep = 1,         // towards the measured disparity, before it is divided by the weight, in pixels
-        maxCount = 4,        // frames that a disparity may stand for
-        maxUnmovedCount = 2, // and for its weight, if the camera moved: a disparity at the same place,
-        maxMovedCount = 1,   // and one where the motion leads
-        stillness = 3,       // grey levels by which a cell that stands still changes less
-        noiseFactor = 4,     // with a camera at rest: it changes less than this times the median of all
-        contrastShare = 70,  // or than this percentage of the contrast around
-        cutShare = 60        // percent of its contrast by which a coarse image changes at a cut
+        cell = 2,      // side of the pixels of TemporalFrame::grey's finest level, in pixels of the layer
+        block = 8,     // side of the squares that move together
+        cutShare = 60, // percent of its contrast by which a coarse image changes at a cut
+        cutNoise = 4   // grey levels; what changes less is no cut
     };
 };
 
@@ -56,31 +42,6 @@ struct TemporalFrame
     }
 };
 
-//! How the motion of the camera changes the disparity of what is now at (x, y):
-//! before = now / (ofX x + ofY y + ofDisparity now + constant). Disparities are in pixels.
-struct DisparityChange
-{
-    float ofX, ofY, ofDisparity, constant;
-    float minDisparity, largest; // of a map, which counts from minDisparity; the next two do as well
-
-    CV_ALWAYS_INLINE float ofRow(int y) const { return ofY * y + constant; }
-    //! place: ofX x + ofRow(y)
-    CV_ALWAYS_INLINE float now(float before, float place) const
-    {
-        const float old = before + minDisparity, w = 1 - ofDisparity * old;
-        const float positive = w > 0.1f ? w : 0.1f; // less is at the camera or behind it
-        const float disparity = old * place / positive - minDisparity;
-        const float notNegative = disparity > 0 ? disparity : 0;
-        return notNegative < largest ? notNegative : largest;
-    }
-};
-
-//! How disparities are joined, in TemporalFrame's units; see TemporalJoin.
-struct JoinRule
-{
-    int tolerance, maxStep, maxWeight, maxCount;
-};
-
 //! What the disparities of a map stand for
 struct TemporalLayer
 {
@@ -94,39 +55,49 @@ struct TemporalLayer
     }
 };
 
-//! What joinLastFrame() knows of the video, and memory that is kept from pair to pair
+//! What is known of a video, and memory that is kept from pair to pair
 struct TemporalState
 {
     TemporalFrame last, next;
     TemporalLayer layer = TemporalLayer(); // of the last frame
-    CameraMotion motion;                   // to the last frame, in pixels of the layer
+    int age = 0;                           // frames before the next one, since it began anew
+
+    CameraMotion motion; // to the last frame that followVideo() saw, in pixels of the layer
+    BackwardMotion backward;
+    Mat shifts; // CV_16SC2, per block: from a pixel to where it was in the last frame; see noShift
 
     std::vector<TrackedPoint> points;
     Mat halved;
-    Mat shifts;   // CV_16SC2 of blocks: from a pixel to where it was
-    Mat sources;  // CV_8UC1 of cells
-    Mat evidence; // CV_16SC4 of cells
-    Mat choices;  // CV_8UC1 of cells
-    Mat smooth[2], change[2], contrast[2];
+    Mat change, contrast, sources, evidence, choices; // of joinLastFrame(), per cell
+
+    //! In place of the x of a shift: the block was not in the last frame.
+    enum
+    {
+        noShift = SHRT_MIN
+    };
 
     //! Forgets the last frame.
-    void clear() { last.disparity.release(); }
+    void clear()
+    {
+        last.disparity.release();
+        motion = CameraMotion();
+        age = 0;
+    }
 };
 
-/** Joins the disparities of a pair, before the median, with those of the frame before. Each pixel has up to three: the
-measured one, that of the last frame at the same place, if the image stands still there, and that which the motion of the
-camera takes there. One of the last frame is kept unless the measured one has clearly lower costs in the window around. It
-moves towards the measured one if both agree, by less the more frames it stands for; if not, it stands for fewer frames,
-in the end for none, and the measured one is taken.
+//! The pixel that a shift leads to
+inline Point shifted(int x, int y, const Vec2s& shift, Size size)
+{
+    return Point(std::min(std::max(x + shift[0], 0), size.width - 1),
+                 std::min(std::max(y + shift[1], 0), size.height - 1));
+}
 
-The first frame, one of another size or range, and one that shows another scene begin anew.
-@param left The layer's left image, see greyLevels().
-@param cost The layer's census cost.
-@param layer What the disparities stand for.
-@param state What is known of the video; changed.
-@param disparity CV_16UC1, a disparity map; changed. */
-CV_EXPORTS void joinLastFrame(const Mat& left, const CensusCost& cost, const TemporalLayer& layer, TemporalState& state,
-                              Mat& disparity);
+/** Finds how the cameras moved since the last frame, and where everything was then. The first frame, one of another size
+or with other disparities, and one that shows another scene begin anew.
+@param left The left image of the finest layer that is matched, see greyLevels().
+@param layer What its disparities stand for.
+@param state What is known of the video; TemporalState::age is 0 if it begins anew. */
+CV_EXPORTS void followVideo(const Mat& left, const TemporalLayer& layer, TemporalState& state);
 
 } // namespace hdp
 } // namespace stereo

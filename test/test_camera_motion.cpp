@@ -60,7 +60,7 @@ TEST(HDPStereo_CameraMotion, rigid_motions)
         const Vec3d rotation(rng.uniform(-.02, .02), rng.uniform(-.03, .03), rng.uniform(-.02, .02));
         const Vec3d translation(rng.uniform(-step, step), rng.uniform(-step, step), rng.uniform(-step, step));
         const Matx44d motion = rigidMotion(rotation, translation, focal, baseline);
-        const CameraMotion found = fitMotion(randomPoints(motion, 300, 0.3, 0.1, rng), imageSize);
+        const CameraMotion found = fitMotion(randomPoints(motion, 300, 0.3, 0.1, rng), imageSize, 4);
         ASSERT_FALSE(found.isStill);
         for (int k = 0; k < 50; ++k)
         {
@@ -74,10 +74,10 @@ TEST(HDPStereo_CameraMotion, rigid_motions)
 TEST(HDPStereo_CameraMotion, camera_at_rest)
 {
     RNG rng(42);
-    EXPECT_TRUE(fitMotion(randomPoints(Matx44d::eye(), 300, 0.4, 0.1, rng), imageSize).isStill);
-    EXPECT_TRUE(fitMotion(randomPoints(Matx44d::eye(), 300, 0.9, 0.1, rng), imageSize).isStill);
-    EXPECT_TRUE(fitMotion(randomPoints(Matx44d::eye(), 5, 0, 0.1, rng), imageSize).isStill);
-    EXPECT_TRUE(fitMotion(std::vector<TrackedPoint>(), imageSize).isStill);
+    EXPECT_TRUE(fitMotion(randomPoints(Matx44d::eye(), 300, 0.4, 0.1, rng), imageSize, 4).isStill);
+    EXPECT_TRUE(fitMotion(randomPoints(Matx44d::eye(), 300, 0.9, 0.1, rng), imageSize, 4).isStill);
+    EXPECT_TRUE(fitMotion(randomPoints(Matx44d::eye(), 5, 0, 0.1, rng), imageSize, 4).isStill);
+    EXPECT_TRUE(fitMotion(std::vector<TrackedPoint>(), imageSize, 4).isStill);
 }
 
 TEST(HDPStereo_CameraMotion, points_without_a_motion)
@@ -88,7 +88,28 @@ TEST(HDPStereo_CameraMotion, points_without_a_motion)
         point.before = point.now = Point2d(100, 100);
         point.disparity = 10;
     }
-    EXPECT_TRUE(fitMotion(points, imageSize).isStill);
+    EXPECT_TRUE(fitMotion(points, imageSize, 4).isStill);
+}
+
+//! Back from where a motion leads is where it came from.
+TEST(HDPStereo_CameraMotion, backward)
+{
+    RNG rng(44);
+    const double minDisparity = -3;
+    CameraMotion motion;
+    motion.forward = rigidMotion(Vec3d(.01, .02, -.01), Vec3d(.05, -.02, .1), 500, 0.4);
+    const BackwardMotion backward(motion, minDisparity, 100);
+    for (int i = 0; i < 200; ++i)
+    {
+        const int x = rng.uniform(0, 600), y = rng.uniform(0, 400);
+        const double now = rng.uniform(5., 60.);
+        const Vec3d before = project(motion.forward.inv(), Vec3d(x, y, now + minDisparity));
+        const Point2f place = backward.place(x, y, (float)now);
+        EXPECT_NEAR(before[0], place.x, 1e-2);
+        EXPECT_NEAR(before[1], place.y, 1e-2);
+        const DisparityChange& change = backward.change();
+        EXPECT_NEAR(now, change.now((float)(before[2] - minDisparity), change.ofX * x + change.ofRow(y)), 1e-3);
+    }
 }
 
 TEST(HDPStereo_CameraMotion, scaled)
@@ -125,12 +146,23 @@ TEST(HDPStereo_CameraMotion, tracks_points)
         SCOPED_TRACE(cv::format("(%d, %d)", shift.x, shift.y));
         const Rect area(50, 35, 600, 400);
         std::vector<TrackedPoint> points;
-        trackPoints(pyramidOf(image(area).clone()), pyramidOf(image(area - shift).clone()), points);
+        const std::vector<Mat> before = pyramidOf(image(area).clone()), now = pyramidOf(image(area - shift).clone());
+        choosePoints(before, points);
+        trackPoints(before, now, points);
         EXPECT_GE((int)points.size(), 200);
         int right = 0;
         for (const TrackedPoint& point : points)
             right += cv::norm(point.now - point.before - Point2d(shift)) <= 0.5;
         EXPECT_GE(right, 0.75 * points.size());
+
+        CameraMotion near; // four pixels beside the right one
+        near.forward(0, 3) = shift.x + 4;
+        near.forward(1, 3) = shift.y - 4;
+        trackPoints(before, now, near, points);
+        int again = 0;
+        for (const TrackedPoint& point : points)
+            again += cv::norm(point.now - point.before - Point2d(shift)) <= 0.5;
+        EXPECT_GE(again, 0.75 * points.size());
     }
 }
 
@@ -138,10 +170,10 @@ TEST(HDPStereo_CameraMotion, tracks_nothing_without_texture)
 {
     std::vector<TrackedPoint> points;
     const std::vector<Mat> flat = pyramidOf(Mat(400, 600, CV_8U, Scalar(90)));
-    trackPoints(flat, flat, points);
+    choosePoints(flat, points);
     EXPECT_TRUE(points.empty());
     const std::vector<Mat> tiny(1, Mat(1, 1, CV_8U, Scalar(9)));
-    trackPoints(tiny, tiny, points);
+    choosePoints(tiny, points);
     EXPECT_TRUE(points.empty());
 }
 

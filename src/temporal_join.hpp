@@ -1,0 +1,90 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_TEMPORAL_JOIN_HPP
+#define OPENCV_HDPSTEREO_TEMPORAL_JOIN_HPP
+
+#include "census_cost.hpp"
+#include "temporal_prediction.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+//! The constants of joinLastFrame()
+struct TemporalJoin
+{
+    enum
+    {
+        window = 7,          // side of the square that costs are compared over, in cells
+        sameDisparity = 1,   // in pixels: costs of disparities no farther apart are not compared
+        costOffset = 8,      // in bits of a census of 24, see the next three
+        stillShare = 40,     // percent of the measured disparity's cost, and costOffset, by which that of the last
+        unmovedShare = 60,   // frame's may be larger: with a camera at rest; at the same place with one that moved;
+        movedShare = 26,     // where its motion leads
+        tolerance = 4,       // between disparities that agree, in pixels of the image
+        maxStep = 1,         // towards the measured disparity, before it is divided by the weight, in pixels
+        maxCount = 4,        // frames that a disparity may stand for
+        maxUnmovedCount = 2, // and for its weight, if the camera moved: a disparity at the same place,
+        maxMovedCount = 1,   // and one where the motion leads
+        stillness = 5,       // halves of a grey level by which a cell that stands still changes at most
+        leastNoise = 3,      // grey levels, and
+        noiseFactor = 4,     // times the median of all changes: with a camera at rest, a cell that is the same changes
+        contrastShare = 70   // by no more, or by less than this percentage of the contrast around
+    };
+};
+
+//! What a cell may take from the last frame
+enum TemporalSource
+{
+    SAME_PLACE = 1, // the image stands still
+    MOVED_PLACE = 2 // the camera's motion leads to a pixel of the last frame
+};
+
+//! Of a cell, for the two disparities that the last frame may have for it
+enum TemporalEvidence
+{
+    COST_UNMOVED, // what it costs more than the measured one
+    COST_MOVED,
+    SCALE_UNMOVED, // what the measured one costs, and costOffset
+    SCALE_MOVED,
+    EVIDENCE_CHANNELS
+};
+
+//! What a cell takes
+enum TemporalChoice
+{
+    MEASURED,
+    UNMOVED,
+    MOVED
+};
+
+//! What each pixel of a row takes, and what the frame before has for it
+struct TemporalRow
+{
+    const uchar* choices;
+    const int *unmoved, *moved; // disparities
+    const uchar *unmovedCounts, *movedCounts;
+};
+
+//! How disparities are joined, in TemporalFrame's units; see TemporalJoin.
+struct JoinRule
+{
+    int tolerance, maxStep, maxUnmovedWeight, maxMovedWeight, maxCount;
+};
+
+/** Joins the disparities of a pair, before the median, with those of the frame before. Each pixel has up to three: the
+measured one, that of the last frame at the same place, if the image stands still there, and that which the motion of the
+camera takes there. One of the last frame is kept unless the measured one has clearly lower costs in the window around. It
+moves towards the measured one if both agree, by less the more frames it stands for; if not, it stands for fewer frames,
+in the end for none, and the measured one is taken.
+@param cost The layer's census cost.
+@param state What followVideo() found; this frame becomes the last one.
+@param disparity CV_16UC1, a disparity map; changed. */
+CV_EXPORTS void joinLastFrame(const CensusCost& cost, TemporalState& state, Mat& disparity);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif

@@ -1,0 +1,172 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "disparity_units.hpp"
+#include "temporal_join.hpp"
+#include "vectorized.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+/** A row of the frame before as joinRow() takes it.
+@param disparity Of TemporalFrame.
+@param detail Of TemporalFrame.
+@param width Of the row.
+@param finer Receives the disparities in 1 / TemporalFrame::scale pixel.
+@param counts Receives how many frames each stands for. */
+void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts);
+
+/** Disparities of the frame before become those of this one.
+@param change The camera's motion.
+@param y The row.
+@param step From a pixel to the next; the first one is 0.
+@param count Number of pixels.
+@param finer As of unpackRow(), changed. */
+void changeDisparities(const DisparityChange& change, int y, int step, int count, int* finer);
+
+/** Sums over the squares around the pixels of a row; beside it are the nearest ones.
+@param rows The rows of the squares.
+@param radius Of the squares.
+@param width Of the rows.
+@param columns Memory for a row, and radius elements on both sides.
+@param sums Receives the sums. */
+void sumSquares(const uchar* const* rows, int radius, int width, ushort* columns, ushort* sums);
+
+//! Adds a row times sign to columns.
+void addEvidence(const short* row, int sign, int length, short* columns);
+
+/** Sums over TemporalJoin::window cells of a row.
+@param columns The first of the cells that the first sum is over.
+@param length Number of sums, EVIDENCE_CHANNELS per cell.
+@param sums Receives the sums. */
+void sumWindow(const short* columns, int length, short* sums);
+
+/** Compares the disparities of a row's cells. Two that are about the same count as one, the moved one.
+@param measured Disparities of the pixels of the row.
+@param unmoved Those of the frame before at the same places.
+@param moved Those where the motion leads, of each cell, as of changeDisparities().
+@param count Number of cells.
+@param sources Of each cell, changed.
+@param different Receives which of the sources have another disparity than the measured one. */
+void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, uchar* sources,
+                        uchar* different);
+
+/** Joins a row of measured disparities with those of the frame before.
+@param measured The measured ones.
+@param rows What the frame before has.
+@param width Number of pixels.
+@param rule How to join them.
+@param disparity Receives TemporalFrame::disparity.
+@param detail Receives TemporalFrame::detail. */
+void joinRow(const ushort* measured, const TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
+             uchar* detail);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+//! condition ? a : b, condition being 0 or 1, without a branch
+inline int select(int condition, int a, int b) { return b ^ ((a ^ b) & -condition); }
+
+} // namespace
+
+void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts)
+{
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        finer[x] = TemporalFrame::finer(disparity[x], detail[x]);
+        counts[x] = (uchar)(detail[x] & TemporalFrame::countMask);
+    }
+}
+
+void changeDisparities(const DisparityChange& change, int y, int step, int count, int* finer)
+{
+    const DisparityChange c = change;
+    const float rowFactor = c.ofRow(y), columnFactor = c.ofX * step, unit = 1.f / TemporalFrame::scale;
+    HDP_VECTORIZED for (int i = 0; i < count; ++i) finer[i] =
+        (int)(c.now(finer[i] * unit, i * columnFactor + rowFactor) * TemporalFrame::scale);
+}
+
+void sumSquares(const uchar* const* rows, int radius, int width, ushort* columns, ushort* sums)
+{
+    const uchar *first = rows[0], *last = rows[2 * radius];
+    const uchar *second = rows[radius == 2 ? 1 : 0], *fourth = rows[radius == 2 ? 3 : 0], *middle = rows[radius];
+    const int inner = radius == 2;
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) columns[x] =
+        (ushort)(first[x] + middle[x] + last[x] + inner * (second[x] + fourth[x]));
+    for (int k = 1; k <= radius; ++k)
+    {
+        columns[-k] = columns[0];
+        columns[width - 1 + k] = columns[width - 1];
+    }
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) sums[x] =
+        (ushort)(columns[x - 1] + columns[x] + columns[x + 1] + inner * (columns[x - radius] + columns[x + radius]));
+}
+
+void addEvidence(const short* row, int sign, int length, short* columns)
+{
+    HDP_VECTORIZED for (int i = 0; i < length; ++i) columns[i] = (short)(columns[i] + sign * row[i]);
+}
+
+void sumWindow(const short* columns, int length, short* sums)
+{
+    const int c = EVIDENCE_CHANNELS;
+    static_assert(TemporalJoin::window == 7, "There are as many terms.");
+    HDP_VECTORIZED for (int i = 0; i < length; ++i) sums[i] =
+        (short)(columns[i] + columns[i + c] + columns[i + 2 * c] + columns[i + 3 * c] + columns[i + 4 * c] +
+                columns[i + 5 * c] + columns[i + 6 * c]);
+}
+
+void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, uchar* sources,
+                        uchar* different)
+{
+    const int same = TemporalJoin::sameDisparity * subpixelScale;
+    HDP_VECTORIZED for (int j = 0; j < count; ++j)
+    {
+        const int here = measured[j * VideoFollowing::cell], there = unmoved[j * VideoFollowing::cell];
+        const int hasMoved = (sources[j] & MOVED_PLACE) != 0, where = moved[j] >> TemporalFrame::detailBits;
+        const int areSame = hasMoved & (std::abs(there - where) <= same);
+        const int hasUnmoved = (sources[j] & SAME_PLACE) != 0 && !areSame;
+        sources[j] = (uchar)(hasUnmoved * SAME_PLACE + hasMoved * MOVED_PLACE);
+        different[j] = (uchar)((hasUnmoved & (std::abs(there - here) > same)) * SAME_PLACE +
+                               (hasMoved & (std::abs(where - here) > same)) * MOVED_PLACE);
+    }
+}
+
+void joinRow(const ushort* measured, const TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
+             uchar* detail)
+{
+    const int tolerance = rule.tolerance, maxStep = rule.maxStep, maxCount = rule.maxCount;
+    const int maxUnmoved = rule.maxUnmovedWeight, maxMoved = rule.maxMovedWeight;
+    const int half = 1 << (TemporalFrame::detailBits - 1);
+    const int *unmoved = row.unmoved, *moved = row.moved;
+    const uchar *unmovedCounts = row.unmovedCounts, *movedCounts = row.movedCounts, *choices = row.choices;
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) // without branches, so that it can be
+    {
+        const int here = measured[x] << TemporalFrame::detailBits, choice = choices[x], isMoved = choice == MOVED;
+        const int there = select(isMoved, moved[x], unmoved[x]), difference = here - there;
+        const int count = select(isMoved, movedCounts[x], unmovedCounts[x]) & -(choice != MEASURED);
+        const int limited = std::max(std::min(difference, maxStep), -maxStep);
+        const int weight = std::min(count, select(isMoved, maxMoved, maxUnmoved));
+        // 2^16 / (weight + 1)
+        const int share = select(weight > 2, select(weight > 3, 13107, 16384), select(weight > 1, 21845, 32768));
+        const int approached = there + ((limited * share + 32768) >> 16);
+        const int agrees = std::abs(difference) <= tolerance, isNew = count == 0;
+        const int joined = select(isNew, here, select(agrees, approached, there));
+        const int joinedCount = select(isNew, 1, select(agrees, std::min(count + 1, maxCount), count - 1));
+        const int rounded = joined + half;
+        disparity[x] = (ushort)(rounded >> TemporalFrame::detailBits);
+        detail[x] = (uchar)((rounded & TemporalFrame::countMask) << TemporalFrame::detailBits | joinedCount);
+    }
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
