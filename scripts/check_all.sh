@@ -8,6 +8,7 @@
 #     fuzz       scripts/fuzz.sh, for 1800 s or N
 #     in-tree    scripts/build_in_tree.sh
 #     projects   a program that builds the module by FetchContent, as a static library
+#     dask       samples/hdp_dask.py on a cluster that loses a worker
 #     ros        ROS 1's stereo_image_proc under hdpstereo-run
 #     bookworm, trixie   scripts/test.sh from a clone in a fresh Debian 12 or 13 (as root; mmdebstrap makes it)
 #     packages-bookworm, packages-trixie   scripts/check_wheel.sh and build_deb.sh in the same way, and check_deb.sh in
@@ -18,7 +19,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 fuzz_seconds=1800
-all_steps=(warnings widths threads memory fuzz in-tree projects ros bookworm trixie packages-bookworm packages-trixie)
+all_steps=(warnings widths threads memory fuzz in-tree projects dask ros bookworm trixie packages-bookworm packages-trixie)
 steps=()
 for argument in "$@"; do
     case $argument in
@@ -95,6 +96,13 @@ check_projects()
 {
     build_tests "$build/release" all
     "$checkout/scripts/check_other_projects.sh" "$build/release" fetch-content
+}
+
+check_dask()
+{
+    install_packages python3-distributed python3-opencv
+    "$checkout/scripts/test.sh" -R sample_dask
+    ! ctest --test-dir "$build/release" -R sample_dask | grep Skipped
 }
 
 check_ros()

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
+'''
+samples/hdp_dask.py on a cluster of two workers, one of which is killed on the way. Run by CTest, or alone:
+    PYTHONPATH=<build>/python python3 test_hdp_dask.py
+'''
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+try:
+    import cv2
+    import hdpstereo
+    import numpy as np
+    from distributed import LocalCluster
+except ImportError as e:
+    print('skipped: %s (on Debian: apt install python3-distributed python3-opencv)' % e)
+    sys.exit(77)
+
+SAMPLE = pathlib.Path(__file__).resolve().parents[2] / 'samples' / 'hdp_dask.py'
+PAIRS = 60
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder, \
+            LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        folder = pathlib.Path(folder)
+        for name in 'lefts', 'rights':
+            (folder / name).mkdir()
+        rng = np.random.RandomState(1)
+        for i in range(PAIRS):
+            scene = cv2.GaussianBlur(rng.randint(0, 256, (480, 680, 3)).astype(np.uint8), (3, 3), 0)
+            cv2.imwrite(str(folder / 'lefts' / ('%02d.png' % i)), scene[:, :640])
+            cv2.imwrite(str(folder / 'rights' / ('%02d.png' % i)), scene[:, i % 40:][:, :640])
+        (folder / 'rights' / '07.png').write_text('no picture')
+
+        command = [sys.executable, str(SAMPLE), 'lefts', 'rights', 'out', '--num-disparities=64',
+                   '--scheduler=' + cluster.scheduler_address]
+        pid = cluster.workers[0].pid
+        run = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, text=True)
+        deadline = time.time() + 120
+        while len(list(folder.glob('out/*.png'))) < 4:
+            assert run.poll() is None and time.time() < deadline, run.communicate()[0]
+            time.sleep(0.001)
+        os.kill(pid, signal.SIGKILL)
+        before = len(list(folder.glob('out/*.png')))
+        output = run.communicate(timeout=600)[0]
+        print(output, '%d maps were there when the worker was killed' % before)
+        assert before < PAIRS - 10, 'too late to matter'
+        assert run.returncode == 2, run.returncode  # there is a bad pair
+        assert output.count('left out') == 1 and '07.png left out: cannot read the image' in output
+
+        for i in set(range(PAIRS)) - {7}:
+            disparity = cv2.imread(str(folder / 'out' / ('%02d.png' % i)), cv2.IMREAD_UNCHANGED)
+            images = [cv2.imread(str(folder / side / ('%02d.png' % i))) for side in ('lefts', 'rights')]
+            expected = hdpstereo.HDPTreeMatcher.create(0, 64).compute(*images)
+            assert (disparity == np.maximum(expected * 16, 1)).all(), i
+
+        cv2.imwrite(str(folder / 'rights' / '07.png'), scene[:, 5:][:, :640])
+        again = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True, check=True).stdout
+        assert again.startswith('%d pairs, %d of them are there\n1/1 07.png\n' % (PAIRS, PAIRS - 1)), again
+
+
+if __name__ == '__main__':
+    main()
