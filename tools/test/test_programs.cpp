@@ -7,6 +7,7 @@
 #include "test_precomp.hpp"
 #include "dataset_folder.hpp"
 #include "synthetic_pair.hpp"
+#include "synthetic_video.hpp"
 
 #include <cstdlib>
 
@@ -68,7 +69,7 @@ TEST(HDPStereo_Programs, help_and_wrong_arguments)
     const DatasetFolder folder;
     for (const char* program :
          { "hdp_evaluate", "hdp_benchmark", "hdp_train", "hdp_parameters", "hdp_pictures", "hdp_robustness",
-           "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
+           "hdp_video", "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
     {
         SCOPED_TRACE(program);
         const Execution help = run(folder, String(program) + " --help");
@@ -98,6 +99,7 @@ TEST(HDPStereo_Programs, full_disk)
            "hdp_benchmark --methods=fast --runs=1" + pair, "hdp_benchmark --memory-of=fast" + pair,
            "hdp_train --layers=2 --max-components=1" + dataset + " -o " + folder.path("model.yml"),
            "hdp_robustness --methods=fast --cases=clean" + dataset, "hdp_parameters --presets=fast --runs=1" + dataset,
+           "hdp_video --methods=fast --noise=0 --still=2" + dataset,
            "hdp_pictures --output=" + folder.root + pair + truth, "example_hdpstereo_hdp_stereo_match" + pair,
            "example_hdpstereo_hdp_own_tree" + pair })
     {
@@ -125,6 +127,51 @@ TEST(HDPStereo_Programs, robustness)
     }
     folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
     EXPECT_EQ(2, run(folder, common + " --cases=clean").status);
+}
+
+TEST(HDPStereo_Programs, video)
+{
+    const DatasetFolder folder;
+    SyntheticVideo video(Size(160, 120), 8, 3);
+    for (int i = 0; i < 4; ++i)
+    {
+        const SyntheticFrame frame = video.render(i, std::vector<Board>(), Point3d(0.2 * i, 0, 0));
+        const String name = format("/%03d.png", i);
+        for (const String root : { "videos/known", "videos/unknown" })
+        {
+            folder.write(root + "/left" + name, frame.left);
+            folder.write(root + "/right" + name, frame.right);
+        }
+        Mat truth;
+        frame.truth.convertTo(truth, CV_16U, 256);
+        folder.write("videos/known/disp_lidar" + name, truth);
+    }
+    const String common =
+        "hdp_video " + folder.path("videos") + " --num-disparities=32 --methods=fast,bm,sgbm-3way --noise=0,2.5";
+    const Execution all = run(folder, common + " --runs=2");
+    EXPECT_EQ(0, all.status) << all.errors;
+    for (const char* row : { "### known: the last 2 of 4 frames", "### unknown: ", "\n| fast | 0 | ", "\n| bm | 2.5 | ",
+                             "\n| fast | 2.5 | - | - |" })
+        EXPECT_NE(String::npos, all.output.find(row)) << row << all.output;
+
+    // A scene that stands still: errors and flicker are fewer.
+    const Execution still = run(folder, "hdp_video " + folder.path("videos/known") +
+                                            " --num-disparities=32 --methods=fast --noise=6 --still=8");
+    EXPECT_EQ(0, still.status) << still.errors;
+    double d1[2], flicker[2];
+    const size_t at = still.output.find("| fast | 6 |");
+    ASSERT_NE(String::npos, at) << still.output;
+    ASSERT_EQ(4, std::sscanf(still.output.c_str() + at, "| fast | 6 | %lf | %lf | %lf | %lf |", &d1[0], &d1[1],
+                             &flicker[0], &flicker[1]));
+    EXPECT_LE(d1[1], d1[0]);
+    EXPECT_LT(flicker[1], 0.5 * flicker[0]);
+
+    for (const char* bad : { "--noise=x", "--noise=-1", "--still=1" })
+        EXPECT_EQ(1, run(folder, "hdp_video " + folder.path("videos") + " " + bad).status) << bad;
+    folder.write("videos/unknown/left/002.png", Mat(10, 10, CV_8U, Scalar(0)));
+    const Execution skipped = run(folder, common);
+    EXPECT_EQ(2, skipped.status);
+    EXPECT_NE(String::npos, skipped.errors.find("skipped unknown: ")) << skipped.errors;
 }
 
 TEST(HDPStereo_Programs, evaluate)
