@@ -3,7 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Matches a live source with cv::stereo::HDPTreeMatcher: two cameras or videos, or one that has both images side by side.
-// Shows the left image beside its disparities, and prints the frames per second.
+// Shows the left image beside its disparities, the frames per second, and how much the disparities flicker: the last frame
+// predicts the next, unless the key t turns that off.
 
 #include <cstdlib>
 #include <iostream>
@@ -34,6 +35,7 @@ static const char* const keys =
     "{preset          | fast | set of parameters: ultrafast, fast or quality }"
     "{min-disparity   | 0    | smallest disparity in pixels, after scaling }"
     "{num-disparities |      | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
+    "{single-frames   |      | without temporal prediction; the key t turns it on and off }"
     "{frames          |      | stop after this many; by default at the end of the source, or at Esc or q }"
     "{output          |      | what is shown: a video (FILE.avi, Motion JPEG) or pictures (FILE%04d.png) }"
     "{no-gui          |      | no window }";
@@ -143,8 +145,8 @@ public:
     {
     }
 
-    //! Returns false if the user wants to stop.
-    bool show(const Mat& picture, double fps)
+    //! Returns the key that was pressed; -1 if there is none.
+    int show(const Mat& picture, double fps)
     {
         if (!path_.empty() && !writer_.isOpened())
         {
@@ -159,11 +161,10 @@ public:
         if (hasWindow_)
         {
             imshow("hdp_live", picture);
-            const int key = waitKey(1) & 255;
-            return key != 27 && key != 'q';
+            return waitKey(1);
         }
 #endif
-        return true;
+        return -1;
     }
 
 private:
@@ -203,7 +204,8 @@ static Mat colorsOf(const Mat& image)
 }
 
 //! The left image beside its disparities, from blue (far) to orange (near)
-static Mat drawPicture(const Mat& left, const Mat& disparity16, const HDPTreeMatcher& matcher, const String& text)
+static Mat drawPicture(const Mat& left, const Mat& disparity16, const HDPTreeMatcher& matcher,
+                       const std::vector<String>& lines)
 {
     const int smallest = 16 * matcher.getMinDisparity(), range = 16 * matcher.getNumDisparities();
     Mat levels, colors, color, picture;
@@ -212,11 +214,63 @@ static Mat drawPicture(const Mat& left, const Mat& disparity16, const HDPTreeMat
     colors.setTo(Scalar::all(0), disparity16 < smallest);
     hconcat(colorsOf(left), colors, picture);
     const double size = std::max(picture.cols / 1280., 0.4);
-    const Point origin(cvRound(12 * size), cvRound(30 * size));
-    putText(picture, text, origin, FONT_HERSHEY_SIMPLEX, size, Scalar::all(0), cvRound(4 * size) + 1, LINE_AA);
-    putText(picture, text, origin, FONT_HERSHEY_SIMPLEX, size, Scalar::all(255), cvRound(size), LINE_AA);
+    for (size_t i = 0; i < lines.size(); i++)
+    {
+        const Point origin(cvRound(12 * size), cvRound(30 * size * (i + 1)));
+        for (const bool isOutline : { true, false })
+            putText(picture, lines[i], origin, FONT_HERSHEY_SIMPLEX, size, Scalar::all(isOutline ? 0 : 255),
+                    cvRound(isOutline ? 4 * size + 1 : size), LINE_AA);
+    }
     return picture;
 }
+
+//! What is measured without temporal prediction, or with it
+class Statistics
+{
+public:
+    void match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, Mat& disparity16)
+    {
+        timer_.start();
+        matcher.compute(left, right, disparity16);
+        timer_.stop();
+        Mat grey, disparity;
+        cvtColor(colorsOf(left), grey, COLOR_BGR2GRAY);
+        GaussianBlur(grey, grey, Size(), 2);
+        disparity16.convertTo(disparity, CV_32F, 1. / 16);
+        if (!lastGrey_.empty())
+            addFlicker(grey, disparity);
+        lastGrey_ = grey;
+        lastDisparity_ = disparity;
+    }
+
+    //! The next frame does not follow the last one.
+    void interrupt() { lastGrey_.release(); }
+
+    String text() const
+    {
+        const String time = timer_.getCounter() > 0 ? format("%.1f ms", timer_.getAvgTimeMilli()) : String("-");
+        return frames_ > 0 ? time + format(", flicker %.2f px", flicker_) : time;
+    }
+
+private:
+    //! How much disparities change from frame to frame where the image stands still: a mean of the last frames
+    void addFlicker(const Mat& grey, const Mat& disparity)
+    {
+        const double stillLevels = 3;
+        const int meanOf = 20;
+        Mat change, isStill;
+        absdiff(grey, lastGrey_, change);
+        isStill = change < stillLevels;
+        absdiff(disparity, lastDisparity_, change);
+        frames_ = std::min(frames_ + 1, meanOf);
+        flicker_ += (mean(change, isStill)[0] - flicker_) / frames_;
+    }
+
+    TickMeter timer_;
+    Mat lastGrey_, lastDisparity_;
+    double flicker_ = 0;
+    int frames_ = 0;
+};
 
 static void run(const CommandLineParser& parser)
 {
@@ -229,12 +283,14 @@ static void run(const CommandLineParser& parser)
     Rectifier rectifier(parser);
     StereoSource source(parser);
 
-    Ptr<HDPTreeMatcher> matcher; // kept for all frames, and with it its buffers
+    Ptr<HDPTreeMatcher> matcher; // kept for all frames, and with it its buffers and what it knows of the last frame
+    bool isTemporal = !parser.has("single-frames");
+    Statistics statistics[2]; // without temporal prediction, and with it
     Mat left, right, disparity;
-    TickMeter all, matching;
+    TickMeter all;
     all.start();
-    int frames = 0;
-    for (bool goesOn = true; goesOn && frames < maxFrames && source.read(left, right); frames++)
+    int frames = 0, key = -1;
+    for (; key != 27 && key != 'q' && frames < maxFrames && source.read(left, right); frames++)
     {
         rectifier.apply(left, right);
         resize(left, left, Size(), scale, scale, INTER_AREA);
@@ -245,18 +301,24 @@ static void run(const CommandLineParser& parser)
                                                                      : std::max((left.cols / 5 + 15) / 16 * 16, 16);
             matcher = HDPTreeMatcher::create(minDisparity, numDisparities, preset);
         }
-        matching.start();
-        matcher->compute(left, right, disparity);
-        matching.stop();
-        const String text = format("matching %.1f ms", matching.getAvgTimeMilli());
-        goesOn = viewer.show(drawPicture(left, disparity, *matcher, text), source.fps());
+        matcher->setUseTemporalPrediction(isTemporal);
+        statistics[isTemporal].match(*matcher, left, right, disparity);
+        all.stop(); // and on, for the time until now
+        all.start();
+        const std::vector<String> lines = { format("%.1f frames/s", (frames + 1) / all.getTimeSec()),
+                                            "single: " + statistics[0].text(), "temporal: " + statistics[1].text() };
+        key = viewer.show(drawPicture(left, disparity, *matcher, lines), source.fps());
+        if (key == 't')
+        {
+            isTemporal = !isTemporal;
+            statistics[isTemporal].interrupt();
+        }
     }
     all.stop();
     if (frames == 0)
         fail("the source has no frame");
-    std::cout << format("%d frames, %.1f frames/s, matching %.1f ms per frame", frames, frames / all.getTimeSec(),
-                        matching.getAvgTimeMilli())
-              << std::endl;
+    std::cout << format("%d frames, %.1f frames/s, matching ", frames, frames / all.getTimeSec())
+              << statistics[isTemporal].text() << std::endl;
     if (!std::cout)
         fail("cannot write to the standard output");
 }
