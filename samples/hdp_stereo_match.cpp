@@ -160,7 +160,7 @@ static void printTimes(const HDPTreeMatcher& matcher)
         std::cout << format("%-11s%-24s%10.1f ms\n", i == 0 ? "time" : "", stages[i].c_str(), milliseconds[i]);
 }
 
-//! Pixels without a disparity are wrong.
+//! Of all pixels with known truth, also the occluded ones. Pixels without a disparity are wrong.
 static void printErrors(const Mat& disparity, const Mat& truth)
 {
     CV_CheckEQ(truth.size(), disparity.size(), "--truth must have the size of the images");
@@ -170,6 +170,7 @@ static void printErrors(const Mat& disparity, const Mat& truth)
     for (int threshold = 1; threshold <= 2; threshold++)
         std::cout << format("%-11serr>=%-19d%10.2f %%\n", threshold == 1 ? "wrong" : "", threshold,
                             100. * countNonZero((error >= threshold) & (truth != 0)) / countNonZero(truth));
+    std::cout << "           of all pixels with known truth, those included that the right image does not show\n";
 }
 
 //! From blue by green to orange; both ends of the color map are left out.

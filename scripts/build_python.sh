@@ -16,7 +16,7 @@ directory=$build/release
 say "Building cv2 in $directory"
 if ! { cmake -S "$checkout" -B "$directory" -DOPENCV_SOURCE_DIR="$OPENCV_SOURCE_DIR" -DHDPSTEREO_PYTHON=ON \
         -DPython3_EXECUTABLE="$python" &&
-    cmake --build "$directory" --parallel "$jobs" --target opencv_python3; } >"$build/python.log" 2>&1; then
+    cmake --build "$directory" --parallel "$jobs" --target opencv_python3; } 2>&1 | show_progress >"$build/python.log"; then
     tail -n 20 "$build/python.log" >&2
     fail "could not build cv2 (all of the messages: $build/python.log)"
 fi

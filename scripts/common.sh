@@ -4,7 +4,7 @@
 set -euo pipefail
 
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build=$checkout/build # everything the scripts make is in here, but the demo's pictures
+build=${HDPSTEREO_BUILD:-$checkout/build} # everything the scripts make is in here, but the demo's pictures
 # shellcheck disable=SC2034  # for the others
 jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 # OPENCV_CPU_DISABLE of all instruction sets that the library is built for, and of fewer and fewer of them
@@ -23,6 +23,8 @@ fail()
     exit 1
 }
 
+[[ $build == /* ]] || build=$PWD/$build
+
 as_root()
 {
     if [ "$(id -u)" -eq 0 ]; then
@@ -30,14 +32,31 @@ as_root()
     elif command -v sudo >/dev/null; then
         sudo "$@"
     else
-        echo "not root, and there is no sudo" >&2
-        return 1
+        return 1 # not root, and there is no sudo
     fi
+}
+
+# Standard input to standard output, with a line for each quarter of what apt-get or make report on stderr.
+show_progress()
+{
+    local line what='' last=''
+    local -A verbs=([dl]=downloaded [pm]=installed [make]=built)
+    while IFS= read -r line; do
+        if [[ $line =~ ^(dl|pm)status:.*:([0-9]+)[.][0-9]+: ]] || [[ $line =~ ^\[\ *()([0-9]+)%\] ]]; then
+            what="${verbs[${BASH_REMATCH[1]:-make}]} $((BASH_REMATCH[2] / 25 * 25)) %"
+            [ "$what" = "$last" ] || [[ $what == *" 0 %" ]] || printf '   %s\n' "$what" >&2
+            last=$what
+        fi
+        [[ $line == [dp][lm]status:* ]] || printf '%s\n' "$line"
+    done
 }
 
 # install_packages PACKAGE...: those that are missing.
 install_packages()
 {
+    # Before anything that takes time: a folder that cannot be written is no fault of the network, or of the compiler.
+    mkdir -p "$build" 2>/dev/null || true
+    [ -w "$build" ] || fail "cannot write to $build: name another folder by HDPSTEREO_BUILD=FOLDER in the environment"
     local package missing=()
     if ! command -v apt-get >/dev/null; then
         say "No apt-get here: going on with what is installed (on Debian it would be: $*)"
@@ -49,20 +68,35 @@ install_packages()
     [ ${#missing[@]} -gt 0 ] || return 0
 
     local log=$build/install.log
-    mkdir -p "$build"
-    say "Installing ${missing[*]} with what they need (takes a minute or two)"
-    # The update's own status does not matter: the packages may be known, or in the archives that did answer.
-    if as_root apt-get -q update >"$log" 2>&1;
-        as_root env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends "${missing[@]}" \
-            >>"$log" 2>&1; then
-        return
+    if as_root true; then
+        say "Installing ${missing[*]} with what they need (takes a minute or two)"
+        # The update's own status does not matter: the packages may be known, or in the archives that did answer.
+        as_root apt-get -q update >"$log" 2>&1 || true
+        if as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o APT::Status-Fd=1 install -y --no-install-recommends \
+            "${missing[@]}" 2>&1 | show_progress >>"$log"; then
+            return
+        fi
+        tail -n 5 "$log" >&2
+        say "Could NOT install ${missing[*]}: no network? (all of the messages: $log)"
+    else
+        say "Could NOT install ${missing[*]}: neither root nor sudo"
     fi
-    tail -n 5 "$log" >&2
-    say "Could NOT install ${missing[*]}: no network? (all of the messages: $log)"
     for package in cmake c++ make tar; do
         command -v "$package" >/dev/null || fail "nothing can be built without $package"
     done
     say "Going on with what is installed"
+}
+
+# run_ctest PRESET [OPTION...]: as ctest --preset does, but in $build
+run_ctest()
+{
+    local preset=$1 options=()
+    shift
+    case $preset in
+    sanitize) options=(-LE slow) ;;
+    tsan) options=(-L threads) ;;
+    esac
+    ctest --test-dir "$build/$preset" --output-on-failure --no-label-summary --no-tests=error "${options[@]}" "$@"
 }
 
 # The Python that Debian's headers and numpy are for

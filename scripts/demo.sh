@@ -10,10 +10,9 @@ install_packages build-essential cmake libopencv-dev
 
 sample=example_hdpstereo_hdp_stereo_match
 directory=$build/release
-mkdir -p "$build"
 say "Building $sample in $directory"
 if ! { cmake -S "$checkout" -B "$directory" &&
-    cmake --build "$directory" --parallel "$jobs" --target "$sample"; } >"$build/demo.log" 2>&1; then
+    cmake --build "$directory" --parallel "$jobs" --target "$sample"; } 2>&1 | show_progress >"$build/demo.log"; then
     tail -n 20 "$build/demo.log" >&2
     fail "could not build $sample (all of the messages: $build/demo.log)"
 fi
@@ -34,8 +33,16 @@ fi
 # Shown relative to the current directory if that is the checkout.
 output=$checkout/demo
 [ "$PWD" != "$checkout" ] || output=demo
+[ -z "${HDPSTEREO_BUILD:-}" ] || output=$build/demo
 mkdir -p "$output"
+picture=$output/${name}_picture.png
+rm -f "$picture"
 # The user's options come last, and so win over these.
-set -- "--output=$output/$name.png" "--picture=$output/${name}_picture.png" "$@"
+set -- "--output=$output/$name.png" "--picture=$picture" "$@"
 say "$sample $*"
-exec "$directory/bin/$sample" "$@"
+"$directory/bin/$sample" "$@"
+[ -e "$picture" ] || exit 0
+say "Look at $picture: near is orange, far is blue"
+if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && command -v xdg-open >/dev/null; then
+    xdg-open "$picture" >/dev/null 2>&1 || true
+fi

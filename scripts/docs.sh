@@ -22,5 +22,5 @@ fi
 
 cd "$checkout"
 # bibtex alone, without the rest of TeX, does not know where to look.
-BIBINPUTS=. BSTINPUTS=. doxygen doc/Doxyfile
+{ cat doc/Doxyfile && echo "OUTPUT_DIRECTORY = \"$build/doc\""; } | BIBINPUTS=. BSTINPUTS=. doxygen -
 say "Done: $html/index.html"

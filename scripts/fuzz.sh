@@ -15,8 +15,8 @@ seconds=${1:-60}
 directory=$build/fuzz
 say "Building in $directory"
 cd "$checkout"
-cmake --preset fuzz
-cmake --build --preset fuzz --parallel "$jobs"
+cmake --preset fuzz -B "$directory"
+cmake --build "$directory" --parallel "$jobs"
 
 export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1:detect_leaks=1${ASAN_OPTIONS:+:$ASAN_OPTIONS}
 export UBSAN_OPTIONS=print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}

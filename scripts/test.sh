@@ -3,8 +3,8 @@
 #   scripts/test.sh [OPTION...]             all of it; with options of ctest, e.g. -L unit, -R Forest, -N (lists it)
 #   scripts/test.sh --sanitize [OPTION...]  what runs under AddressSanitizer and UndefinedBehaviorSanitizer
 #   scripts/test.sh [--sanitize] --gtest_filter=PATTERN [OPTION...]  opencv_test_hdpstereo alone, with its own options
-# cmake/tests.cmake defines the suite. OPENCV_SOURCE_DIR=<OpenCV's source> in the environment: uses that one instead of
-# Debian's source package.
+# cmake/tests.cmake defines the suite. In the environment: HDPSTEREO_BUILD=FOLDER builds there, not in build/;
+# OPENCV_SOURCE_DIR=<OpenCV's source> is used instead of Debian's source package.
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -32,14 +32,15 @@ fi
 
 say "Building in $build/$preset"
 time {
-    cmake --preset "$preset" "${options[@]}"
-    cmake --build --preset "$preset" --parallel "$jobs"
+    cmake --preset "$preset" -B "$build/$preset" "${options[@]}"
+    cmake --build "$build/$preset" --parallel "$jobs"
 }
 [ -n "${OPENCV_SOURCE_DIR:-}" ] || fail "built, but NOT tested: the test framework is in OpenCV's source"
 
 if [[ ${1:-} == --gtest_* ]]; then
+    export OPENCV_LOG_LEVEL=${OPENCV_LOG_LEVEL:-FATAL} # bad input is tested a lot
     export OPENCV_TEST_DATA_PATH=$checkout/testdata OPENCV_SAMPLES_DATA_PATH=$OPENCV_SOURCE_DIR/samples/data
     exec "$build/$preset/bin/opencv_test_hdpstereo" "$@"
 fi
 say "Testing"
-exec ctest --preset "$preset" --parallel "$jobs" "$@"
+run_ctest "$preset" --parallel "$jobs" "$@"
