@@ -25,10 +25,16 @@ const double leastDeterminant = 1e-3; // of a structure tensor, as a share of th
 const double wholeVariance = 0.1;     // of a match to whole pixels
 const int fractions = 32;             // of a pixel
 
-void dispatchCorrelate(const ushort* left, const ushort* right, size_t step, int count, int* columns, int* products,
-                       int* sums, int* squares)
+void dispatchTensors(const ushort* first, size_t step, int count, int* columns, int* xx, int* xy, int* yy)
 {
-    CV_CPU_DISPATCH(correlate, (left, right, step, count, columns, products, sums, squares), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(structureTensors, (first, step, count, columns, xx, xy, yy), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchCorrelate(const ushort* left, const ushort* right, size_t step, int count, int sum, double variance,
+                       int* memory, float* correlations)
+{
+    CV_CPU_DISPATCH(correlate, (left, right, step, count, sum, variance, memory, correlations),
+                    CV_CPU_DISPATCH_MODES_ALL);
 }
 
 void dispatchCut(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9])
@@ -42,23 +48,9 @@ void dispatchTracking(const ushort* right, size_t step, int fx, int fy, const sh
     CV_CPU_DISPATCH(trackingSums, (right, step, fx, fy, left, gradientX, gradientY, sums), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-//! The smaller eigenvalue of the structure tensor
-double cornerness(const Mat& image, Point p)
+//! The smaller eigenvalue of a structure tensor
+double cornerness(int xx, int xy, int yy)
 {
-    const int radius = 3;
-    const size_t step = image.step1();
-    int64 xx = 0, yy = 0, xy = 0;
-    for (int y = p.y - radius; y <= p.y + radius; ++y)
-    {
-        const ushort* row = image.ptr<ushort>(y) + p.x;
-        for (int x = -radius; x <= radius; ++x)
-        {
-            const int gx = row[x + 1] - row[x - 1], gy = row[x + (ptrdiff_t)step] - row[x - (ptrdiff_t)step];
-            xx += gx * gx;
-            yy += gy * gy;
-            xy += gx * gy;
-        }
-    }
     const double mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy);
     return mean - std::sqrt(half * half + (double)xy * xy);
 }
@@ -70,40 +62,46 @@ void findCorners(const Mat& image, std::vector<CornerMatch>& matches)
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
     const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / CornerMatching::points)), 4);
     const Size grid(inside.width / cell, inside.height / cell);
+    const int count = grid.width * cell, radius = CornerMatching::tensorSide / 2;
     matches.assign(grid.area(), CornerMatch());
     parallel_for_(Range(0, grid.height), [&](const Range& range) {
+        std::vector<int> columns(3 * (count + 2 * radius)), tensors(3 * count);
+        int *const xx = tensors.data(), *const xy = xx + count, *const yy = xy + count;
+        std::vector<double> best(grid.width);
         for (int i = range.start; i < range.end; ++i)
-            for (int j = 0; j < grid.width; ++j)
+        {
+            std::fill(best.begin(), best.end(), -1);
+            for (int y = inside.y + i * cell; y < inside.y + (i + 1) * cell; y += 2)
             {
-                CornerMatch& match = matches[i * grid.width + j];
-                double best = -1;
-                for (int y = 0; y < cell; y += 2)
-                    for (int x = 0; x < cell; x += 2)
+                dispatchTensors(image.ptr<ushort>(y - radius) + inside.x - radius, image.step1(), count, columns.data(),
+                                xx, xy, yy);
+                for (int j = 0; j < grid.width; ++j)
+                    for (int x = j * cell; x < (j + 1) * cell; x += 2)
                     {
-                        const Point p(inside.x + j * cell + x, inside.y + i * cell + y);
-                        const double value = cornerness(image, p);
-                        if (value > best)
+                        const double value = cornerness(xx[x], xy[x], yy[x]);
+                        if (value > best[j])
                         {
-                            best = value;
-                            match.left = p;
+                            best[j] = value;
+                            matches[i * grid.width + j].left = Point(inside.x + x, y);
                         }
                     }
             }
+        }
     });
 }
 
 //! Memory of the search, per thread
 struct Correlations
 {
-    std::vector<int> columns, products, sums, squares;
+    std::vector<int> memory;
     std::vector<float> values; // of the candidates, by rows, then by columns
 };
 
 //! The variance of a window, times the square of its pixels
-double windowVariance(const ushort* window, size_t step, int64& sum)
+double windowVariance(const ushort* window, size_t step, int& sum)
 {
     const int side = CornerMatching::searchSide;
-    int64 square = 0;
+    int square = 0;
     sum = 0;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x)
@@ -112,19 +110,21 @@ double windowVariance(const ushort* window, size_t step, int64& sum)
             sum += value;
             square += value * value;
         }
-    return (double)(square * side * side - sum * sum);
+    return (double)((int64)square * side * side - (int64)sum * sum);
 }
 
 //! Whether no candidate that is not beside the best one is nearly as good
 bool isUnique(const std::vector<float>& values, int columns, int best)
 {
     const double rival = 1 - (1 - values[best]) * (1 + rivalCorrelation) - rivalDistance;
-    const int beside = 2;
-    for (int i = 0; i < (int)values.size(); ++i)
-        if (values[i] > rival &&
-            std::max(std::abs(i / columns - best / columns), std::abs(i % columns - best % columns)) > beside)
-            return false;
-    return true;
+    const int beside = 2, rows = (int)values.size() / columns, x = best % columns, y = best / columns;
+    int rivals = 0;
+    for (const float value : values)
+        rivals += value > rival;
+    for (int i = std::max(y - beside, 0); i <= std::min(y + beside, rows - 1); ++i)
+        for (int j = std::max(x - beside, 0); j <= std::min(x + beside, columns - 1); ++j)
+            rivals -= values[i * columns + j] > rival;
+    return rivals == 0;
 }
 
 void findMatch(const Mat& left, const Mat& right, int numDisparities, Correlations& c, CornerMatch& match)
@@ -134,26 +134,17 @@ void findMatch(const Mat& left, const Mat& right, int numDisparities, Correlatio
     const Point first = match.left - Point(side / 2, side / 2);
     const int x0 = std::max(first.x - numDisparities + 1, 0), count = first.x - x0 + 1;
     const ushort* const window = left.ptr<ushort>(first.y) + first.x;
-    int64 sum;
+    int sum;
     const double variance = windowVariance(window, left.step1(), sum);
     if (variance < leastContrast * leastContrast * pixels * pixels)
         return;
-    c.columns.resize(2 * (count + side - 1));
-    c.products.resize(count);
-    c.sums.resize(count);
-    c.squares.resize(count);
+    c.memory.resize(5 * count + 2 * side);
     c.values.resize(rows * count);
     for (int i = 0; i < rows; ++i)
     {
         const int y = first.y + i - CornerMatching::searchRadius;
-        dispatchCorrelate(window, right.ptr<ushort>(y) + x0, left.step1(), count, c.columns.data(), c.products.data(),
-                          c.sums.data(), c.squares.data());
-        for (int j = 0; j < count; ++j)
-        {
-            const double rightVariance = (double)((int64)c.squares[j] * pixels - (int64)c.sums[j] * c.sums[j]);
-            const double covariance = (double)((int64)c.products[j] * pixels - sum * c.sums[j]);
-            c.values[i * count + j] = rightVariance > 0 ? (float)(covariance / std::sqrt(variance * rightVariance)) : 0;
-        }
+        dispatchCorrelate(window, right.ptr<ushort>(y) + x0, left.step1(), count, sum, variance, c.memory.data(),
+                          &c.values[i * count]);
     }
     const int best = (int)(std::max_element(c.values.begin(), c.values.end()) - c.values.begin());
     if (c.values[best] < leastCorrelation || !isUnique(c.values, count, best))

@@ -16,6 +16,7 @@ struct CornerMatching
     enum
     {
         points = 500,     // at most so many, one per cell of a grid
+        tensorSide = 7,   // of the window that tells how much of a corner a pixel is
         searchRadius = 2, // rows above and below that are searched on the coarse layer
         searchSide = 9,   // of the window there
         trackWidth = 16,  // of the window on the finer layers

@@ -6,22 +6,34 @@
 #include "corner_matches.hpp"
 #include "vectorized.hpp"
 
+#include <cmath>
+
 namespace cv {
 namespace stereo {
 namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** The sums of the normalised cross-correlation of a window with those that begin at count columns of the right image.
+/** The structure tensors of the pixels of a row: sums over their windows of tensorSide x tensorSide pixels.
+@param first First pixel of the first window.
+@param step From a row to the next, in pixels.
+@param count Number of pixels.
+@param columns Memory for 3 * (count + tensorSide - 1) numbers.
+@param xx Receives the sums of X * X, where X and Y are the gradients over two pixels.
+@param xy
+@param yy */
+void structureTensors(const ushort* first, size_t step, int count, int* columns, int* xx, int* xy, int* yy);
+
+/** The normalised cross-correlation of a window with those that begin at count columns of the right image.
 @param left First pixel of the window.
 @param right First pixel of the first window of the right image.
 @param step From a row to the next, of both, in pixels.
-@param columns Memory for 2 * (count + searchSide - 1) numbers.
 @param count Number of windows.
-@param products Receives the sums of left times right.
-@param sums Receives the sums of right.
-@param squares Receives the sums of right squared. */
-void correlate(const ushort* left, const ushort* right, size_t step, int count, int* columns, int* products, int* sums,
-               int* squares);
+@param sum Of the left window.
+@param variance Of the left window, times the square of its pixels.
+@param memory For 5 * count + 2 * searchSide numbers.
+@param correlations Receives -1 to 1; 0 for a right window without texture. */
+void correlate(const ushort* left, const ushort* right, size_t step, int count, int sum, double variance, int* memory,
+               float* correlations);
 
 /** The left window of trackCornerMatches(), its gradients over two pixels, and its sums.
 @param left First pixel of the window.
@@ -46,32 +58,67 @@ void trackingSums(const ushort* right, size_t step, int fx, int fy, const short*
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-void correlate(const ushort* left, const ushort* right, size_t step, int count, int* columns, int* products, int* sums,
-               int* squares)
+void structureTensors(const ushort* first, size_t step, int count, int* columns, int* xx, int* xy, int* yy)
 {
-    const int side = CornerMatching::searchSide, width = count + side - 1;
-    int *const columnSums = columns, *const columnSquares = columns + width;
+    const int side = CornerMatching::tensorSide, width = count + side - 1;
+    int *const columnXX = columns, *const columnXY = columnXX + width, *const columnYY = columnXY + width;
     HDP_VECTORIZED for (int i = 0; i < width; ++i)
     {
-        int sum = 0, square = 0;
-        for (int y = 0; y < CornerMatching::searchSide; ++y)
+        int sumXX = 0, sumXY = 0, sumYY = 0;
+        for (int y = 0; y < CornerMatching::tensorSide; ++y)
         {
-            const int value = right[y * step + i];
-            sum += value;
-            square += value * value;
+            const ushort *const row = first + y * step, *const above = row - step, *const below = row + step;
+            const short dx = (short)(row[i + 1] - row[i - 1]), dy = (short)(below[i] - above[i]);
+            sumXX += dx * dx;
+            sumXY += dx * dy;
+            sumYY += dy * dy;
         }
-        columnSums[i] = sum;
-        columnSquares[i] = square;
+        columnXX[i] = sumXX;
+        columnXY[i] = sumXY;
+        columnYY[i] = sumYY;
     }
     HDP_VECTORIZED for (int i = 0; i < count; ++i)
     {
-        int sum = 0, square = 0;
+        int sumXX = 0, sumXY = 0, sumYY = 0;
+        for (int x = 0; x < CornerMatching::tensorSide; ++x)
+        {
+            sumXX += columnXX[i + x];
+            sumXY += columnXY[i + x];
+            sumYY += columnYY[i + x];
+        }
+        xx[i] = sumXX;
+        xy[i] = sumXY;
+        yy[i] = sumYY;
+    }
+}
+
+void correlate(const ushort* left, const ushort* right, size_t step, int count, int sum, double variance, int* memory,
+               float* correlations)
+{
+    const int side = CornerMatching::searchSide, width = count + side - 1;
+    int *const products = memory, *const sums = products + count, *const squares = sums + count;
+    int *const columnSums = squares + count, *const columnSquares = columnSums + width;
+    HDP_VECTORIZED for (int i = 0; i < width; ++i)
+    {
+        int columnSum = 0, columnSquare = 0;
+        for (int y = 0; y < CornerMatching::searchSide; ++y)
+        {
+            const short value = (short)right[y * step + i];
+            columnSum += value;
+            columnSquare += value * value;
+        }
+        columnSums[i] = columnSum;
+        columnSquares[i] = columnSquare;
+    }
+    HDP_VECTORIZED for (int i = 0; i < count; ++i)
+    {
+        int rightSum = 0, square = 0;
         for (int x = 0; x < CornerMatching::searchSide; ++x)
         {
-            sum += columnSums[i + x];
+            rightSum += columnSums[i + x];
             square += columnSquares[i + x];
         }
-        sums[i] = sum;
+        sums[i] = rightSum;
         squares[i] = square;
         products[i] = 0;
     }
@@ -82,9 +129,17 @@ void correlate(const ushort* left, const ushort* right, size_t step, int count, 
         {
             int product = 0;
             for (int x = 0; x < CornerMatching::searchSide; ++x)
-                product += l[x] * r[i + x];
+                product += (short)l[x] * (short)r[i + x];
             products[i] += product;
         }
+    }
+    const double pixels = side * side, leftSum = sum; // all numbers below 2^53: exact
+    HDP_VECTORIZED for (int i = 0; i < count; ++i)
+    {
+        const double rightSum = sums[i], rightVariance = squares[i] * pixels - rightSum * rightSum;
+        const double covariance = products[i] * pixels - leftSum * rightSum;
+        const float correlation = (float)(covariance / std::sqrt(variance * std::max(rightVariance, 1.)));
+        correlations[i] = rightVariance > 0 ? correlation : 0.f;
     }
 }
 
