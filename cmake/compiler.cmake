@@ -10,6 +10,11 @@ if(HDPSTEREO_SANITIZE)
   add_link_options(-fsanitize=${HDPSTEREO_SANITIZE})
 endif()
 
+# The x87 of 32-bit x86 rounds as it likes.
+if(CMAKE_SIZEOF_VOID_P EQUAL 4 AND CMAKE_SYSTEM_PROCESSOR MATCHES "86|AMD64" AND NOT MSVC)
+  add_compile_options(-msse2 -mfpmath=sse)
+endif()
+
 # The warnings that OpenCV's own build turns on
 if(MSVC)
   set(warnings /W4)

@@ -10,16 +10,20 @@
 #     projects   a program that builds the module by FetchContent, as a static library
 #     dask       samples/hdp_dask.py on a cluster that loses a worker
 #     ros        ROS 1's stereo_image_proc under hdpstereo-run
+#     arm64, i386, riscv64, s390x   scripts/check_machine.sh: the same maps there, and unit tests
+#     clang      unit tests of a build by Clang
+#     mingw      nothing in the library keeps it from Windows: MinGW-w64 compiles it, against the headers of OpenCV
 #     bookworm, trixie   scripts/test.sh in a fresh Debian 12 or 13 (as root; mmdebstrap makes it)
 #     packages-bookworm, packages-trixie   scripts/check_wheel.sh and build_deb.sh in the same way, and check_deb.sh in
 #                        another fresh one
 # Each step's messages are in build/check_all/STEP.log; a summary comes last, and the status is that of the worst step.
-# HDPSTEREO_MMDEBSTRAP: further options of mmdebstrap.
+# HDPSTEREO_MMDEBSTRAP: further options of mmdebstrap. HDPSTEREO_MIRROR: Debian's archive for other machines.
 # shellcheck source-path=SCRIPTDIR source=common.sh disable=SC2317
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 fuzz_seconds=1800
-all_steps=(warnings widths threads memory fuzz in-tree projects dask ros bookworm trixie packages-bookworm packages-trixie)
+all_steps=(warnings widths threads memory fuzz in-tree projects dask ros arm64 i386 riscv64 s390x clang mingw bookworm
+    trixie packages-bookworm packages-trixie)
 steps=()
 for argument in "$@"; do
     case $argument in
@@ -115,6 +119,46 @@ check_ros()
     "$checkout/scripts/check_run.sh" "$build/release" "$OPENCV_SOURCE_DIR" ros
 }
 
+check_arm64()
+{
+    "$checkout/scripts/check_machine.sh" arm64
+}
+
+check_i386()
+{
+    "$checkout/scripts/check_machine.sh" i386
+}
+
+check_riscv64()
+{
+    "$checkout/scripts/check_machine.sh" riscv64
+}
+
+check_s390x()
+{
+    "$checkout/scripts/check_machine.sh" s390x
+}
+
+check_clang()
+{
+    install_packages build-essential cmake clang libopencv-dev
+    build_tests "$build/clang" opencv_test_hdpstereo -DCMAKE_CXX_COMPILER=clang++
+    ctest --test-dir "$build/clang" -L unit --output-on-failure --no-tests=error --parallel "$jobs"
+}
+
+check_mingw()
+{
+    install_packages build-essential cmake g++-mingw-w64-x86-64-posix libopencv-dev
+    cmake -S "$checkout" -B "$build/release" # makes the headers of dispatch
+    local file
+    for file in "$checkout"/src/*.cpp; do
+        echo "$file"
+        x86_64-w64-mingw32-g++-posix -fsyntax-only -std=c++11 -Wall -Wextra -Werror -D__OPENCV_BUILD=1 \
+            -I"$checkout/include" -I"$checkout/src" -I"$build/release/dispatch" -idirafter /usr/include/opencv4 \
+            -idirafter /usr/include/x86_64-linux-gnu/opencv4 "$file"
+    done
+}
+
 # make_root SUITE: sets $root, a machine that has nothing yet but what is committed, in ~/hdpstereo.
 make_root()
 {
@@ -207,7 +251,7 @@ for step in "${steps[@]}"; do
     # What tells most of it
     detail=$(grep -aE '^\[  (PASSED|FAILED)  \]|^[0-9]+% tests passed|^[0-9]+ calls:|^Done [0-9]+ runs|^SUMMARY|WARNING: Thread' "$log" |
         sed 's/^\[  //; s/  \]//' | paste -sd ';' | cut -c1-160) || true
-    summary+=$(printf '%-10s %s %6d s  %s' "$step" "$result" $((SECONDS - begin)) "$detail")$'\n'
+    summary+=$(printf '%-17s %s %6d s  %s' "$step" "$result" $((SECONDS - begin)) "$detail")$'\n'
 done
 say "Summary"
 printf '%s' "$summary"
