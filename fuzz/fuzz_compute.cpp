@@ -180,6 +180,29 @@ void makePair(Input& input, int numDisparities, Mat& left, Mat& right)
     }
 }
 
+//! The next frame of a video: the same, with noise, moved, or another scene
+void nextFrame(Input& input, Mat& left, Mat& right)
+{
+    RNG rng(input.ConsumeIntegral<uchar>() + 1);
+    const int kind = input.ConsumeIntegralInRange(0, 3);
+    const Matx23d move(1 + rng.uniform(-0.1, 0.1), 0, rng.uniform(-9., 9.), 0, 1 + rng.uniform(-0.1, 0.1),
+                       rng.uniform(-9., 9.));
+    for (Mat* image : { &left, &right })
+    {
+        Mat next = image->clone(), noise(image->size(), image->type());
+        if (kind == 1)
+        {
+            rng.fill(noise, RNG::UNIFORM, 0, 9);
+            add(*image, noise, next);
+        }
+        else if (kind == 2)
+            warpAffine(*image, next, move, image->size(), INTER_LINEAR, BORDER_REPLICATE);
+        else if (kind == 3)
+            fill(input, next);
+        *image = next;
+    }
+}
+
 //////////////////////////////////////////////// strategies /////////////////////////////////////////////////
 
 //! A user's strategy that does what the fuzzer wants, within its contract or not
@@ -397,7 +420,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         return input.ConsumeBool() && input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-1, last + 1);
     };
     change(m, [&] {
-        switch (input.ConsumeIntegralInRange(0, 39))
+        switch (input.ConsumeIntegralInRange(0, 41))
         {
         case 0:
             return m.setMinDisparity(input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-200, 200));
@@ -475,6 +498,9 @@ void setParameter(Input& input, HDPTreeMatcher& m)
             return m.setUseLightAlignment(input.ConsumeBool());
         case 38:
             return m.setNoiseThreshold(anyDouble(input));
+        case 39:
+        case 40:
+            return m.setUseTemporalPrediction(input.ConsumeBool());
         default:
             return m.setUseNonLocalRefinement(input.ConsumeBool());
         }
@@ -591,8 +617,26 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
             continue; // it cannot be told from none in a file
         setNumThreads(input.ConsumeIntegralInRange(1, 3));
         const Ptr<HDPTreeMatcher> fresh = freshCopy(*matcher);
+        if (matcher->getUseTemporalPrediction())
+        {
+            matcher->clear();
+            require(tryCompute(*matcher, left, right, disparity), "a matcher refuses the pair after clear()");
+        }
         require(tryCompute(*fresh, left, right, again), "a fresh matcher refuses the pair");
         require(areEqual(disparity, again), "a fresh matcher gives another map");
+        const int frames = matcher->getUseTemporalPrediction() ? input.ConsumeIntegralInRange(0, 3) : 0;
+        for (int frame = 0; frame < frames; ++frame)
+        {
+            nextFrame(input, left, right);
+            setNumThreads(input.ConsumeIntegralInRange(1, 3));
+            const bool isMatched = tryCompute(*matcher, left, right, disparity);
+            setNumThreads(input.ConsumeIntegralInRange(1, 3));
+            require(tryCompute(*fresh, left, right, again) == isMatched, "only one of two matchers refuses a frame");
+            if (!isMatched)
+                continue;
+            checkOutput(*matcher, left.size(), disparity);
+            require(areEqual(disparity, again), "a video's map depends on more than its frames");
+        }
     }
     return 0;
 }

@@ -114,52 +114,72 @@ void findContrast(const Mat& image, Mat& contrast)
     });
 }
 
-//! With a camera at rest, what changes by more than noise and by about the contrast is something else.
-void findUnchanged(TemporalState& s)
+//! The last frame as this one would show it if nothing moved but the camera: half a cell is the mean of two.
+void warpLastFrame(TemporalState& s)
 {
-    const Mat& now = s.next.grey[0];
-    absdiff(now, s.last.grey[0], s.change);
+    const Mat& before = s.last.grey[0];
+    const Point last(2 * before.cols - 2, 2 * before.rows - 2); // in half cells
+    static_assert(V::cell == 2, "Shifts are in half cells.");
+    s.warped.create(before.size(), CV_8U);
+    parallel_for_(Range(0, before.rows), [&](const Range& range) {
+        for (int y = range.start; y < range.end; ++y)
+        {
+            const Vec2s* shifts = s.shifts.ptr<Vec2s>(y * V::cell / V::block);
+            uchar* warped = s.warped.ptr(y);
+            for (int x = 0; x < before.cols; ++x)
+            {
+                const Vec2s& shift = shifts[x * V::cell / V::block];
+                const int fromX = std::min(std::max(2 * x + shift[0], 0), last.x);
+                const int fromY = std::min(std::max(2 * y + shift[1], 0), last.y);
+                const uchar *above = before.ptr(fromY / 2), *below = before.ptr((fromY + 1) / 2);
+                const int left = fromX / 2, right = (fromX + 1) / 2;
+                warped[x] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) / 4);
+            }
+        }
+    });
+}
+
+//! What looks different where the motion leads, by more than noise and by about the contrast, is something else.
+void findSources(TemporalState& s)
+{
+    const Mat &before = s.last.grey[0], &now = s.next.grey[0];
+    const bool isStill = s.motion.isStill;
+    if (!isStill)
+        warpLastFrame(s);
+    absdiff(now, isStill ? before : s.warped, s.change);
     findContrast(now, s.contrast);
     const int noise = T::leastNoise + T::noiseFactor * medianLevel(s.change);
     s.sources.create(now.size(), CV_8U);
     parallel_for_(Range(0, now.rows), [&](const Range& range) {
-        SquareSums changesOf(now.cols), contrastsOf(now.cols);
+        SquareSums changesOf(now.cols), contrastsOf(now.cols), sumsBefore(now.cols), sumsNow(now.cols);
         for (int y = range.start; y < range.end; ++y)
         {
             const ushort *changes = changesOf(s.change, y, 1), *contrasts = contrastsOf(s.contrast, y, 2);
             uchar* sources = s.sources.ptr(y);
             for (int x = 0; x < now.cols; ++x)
-            {
-                const bool isFaint = 100 * 25 * changes[x] <= T::contrastShare * 9 * contrasts[x];
-                sources[x] = changes[x] <= 9 * noise || isFaint ? SAME_PLACE : 0;
-            }
-        }
-    });
-}
-
-void findSources(TemporalState& s)
-{
-    const Mat &before = s.last.grey[0], &now = s.next.grey[0];
-    s.sources.create(now.size(), CV_8U);
-    parallel_for_(Range(0, now.rows), [&](const Range& range) {
-        SquareSums sumsBefore(now.cols), sumsNow(now.cols);
-        for (int y = range.start; y < range.end; ++y)
-        {
+                sources[x] = changes[x] <= 9 * noise || 100 * 25 * changes[x] <= T::contrastShare * 9 * contrasts[x];
+            if (isStill)
+                continue; // 1 is SAME_PLACE
             const ushort *there = sumsBefore(before, y, 1), *here = sumsNow(now, y, 1);
             const Vec2s* shifts = s.shifts.ptr<Vec2s>(y * V::cell / V::block);
-            uchar* sources = s.sources.ptr(y);
             for (int x = 0; x < now.cols; ++x)
             {
-                const bool isStill = std::abs(here[x] - there[x]) <= 9 * T::stillness / 2;
-                const bool hasShift = shifts[x * V::cell / V::block][0] != TemporalState::noShift;
-                sources[x] = (uchar)((isStill ? SAME_PLACE : 0) | (hasShift ? MOVED_PLACE : 0));
+                const bool isSame = std::abs(here[x] - there[x]) <= 9 * T::stillness / 2;
+                const bool isMoved = sources[x] && shifts[x * V::cell / V::block][0] != TemporalState::noShift;
+                sources[x] = (uchar)((isSame ? SAME_PLACE : 0) | (isMoved ? MOVED_PLACE : 0));
             }
         }
     });
 }
 
-int censusDifference(const CensusCost& cost, const uchar* left, const uchar* right)
+//! The cost of a pixel in bits; half of them if the right image does not show its match
+int costOf(const CensusCost& cost, Point pixel, int disparity, int width)
 {
+    const int candidate = wholeDisparity(disparity);
+    if (candidate > pixel.x)
+        return cost.comparisons() / 2;
+    const uchar* left = cost.leftPixels(pixel.y) + 4 * pixel.x;
+    const uchar* right = cost.rightPlane(0, pixel.y) + width - 1 - pixel.x + candidate;
     unsigned bits = 0;
     for (int plane = 0; plane < cost.planes(); ++plane, right += cost.planeStride())
         bits |= (unsigned)(left[plane] ^ *right) << (8 * plane);
@@ -193,10 +213,32 @@ void takeMovedCells(const TemporalState& s, int y, std::vector<int>& finer)
     dispatchChange(s.backward.change(), y, V::cell, s.sources.cols, finer.data());
 }
 
-//! Compares costs at the first pixel of each cell.
+//! Adds what the pixels of a cell tell.
+void compareCell(const CensusCost& cost, Point cell, const Mat& measured, const Mat& last, int moved, int sources,
+                 int offset, Vec4s& evidence)
+{
+    for (int i = 0; i < V::cell * V::cell; ++i)
+    {
+        const Point pixel(V::cell * cell.x + i % V::cell, V::cell * cell.y + i / V::cell);
+        const int here = costOf(cost, pixel, measured.at<ushort>(pixel), measured.cols);
+        if (sources & SAME_PLACE)
+        {
+            const int there = costOf(cost, pixel, last.at<ushort>(pixel), measured.cols);
+            evidence[COST_UNMOVED] = (short)(evidence[COST_UNMOVED] + there - here);
+            evidence[SCALE_UNMOVED] = (short)(evidence[SCALE_UNMOVED] + here + offset);
+        }
+        if (sources & MOVED_PLACE)
+        {
+            const int there = costOf(cost, pixel, moved, measured.cols);
+            evidence[COST_MOVED] = (short)(evidence[COST_MOVED] + there - here);
+            evidence[SCALE_MOVED] = (short)(evidence[SCALE_MOVED] + here + offset);
+        }
+    }
+}
+
+//! Compares costs in each cell whose first pixel has another disparity in the last frame.
 void compareCosts(const CensusCost& cost, const Mat& measured, TemporalState& s)
 {
-    const Size size = measured.size();
     const int cells = s.sources.cols, offset = T::costOffset * cost.comparisons() / 24;
     s.evidence.create(s.sources.size(), CV_16SC(EVIDENCE_CHANNELS));
     parallel_for_(Range(0, s.sources.rows), [&](const Range& rows) {
@@ -205,10 +247,10 @@ void compareCosts(const CensusCost& cost, const Mat& measured, TemporalState& s)
         for (int i = rows.start; i < rows.end; ++i)
         {
             const int y = i * V::cell;
-            const ushort *here = measured.ptr<ushort>(y), *there = s.last.disparity.ptr<ushort>(y);
             if (!s.motion.isStill)
                 takeMovedCells(s, y, scratch.moved);
-            dispatchCompare(here, there, scratch.moved.data(), cells, s.sources.ptr(i), different);
+            dispatchCompare(measured.ptr<ushort>(y), s.last.disparity.ptr<ushort>(y), scratch.moved.data(), cells,
+                            s.sources.ptr(i), different);
             int count = 0;
             for (int j = 0; j < cells; ++j)
             {
@@ -219,22 +261,9 @@ void compareCosts(const CensusCost& cost, const Mat& measured, TemporalState& s)
             std::fill(evidence, evidence + cells, Vec4s());
             for (int k = 0; k < count; ++k)
             {
-                const int j = scratch.unmoved[k], x = j * V::cell;
-                const uchar *left = cost.leftPixels(y) + 4 * x, *right = cost.rightPlane(0, y) + size.width - 1 - x;
-                const int costHere = censusDifference(cost, left, right + wholeDisparity(here[x]));
-                if (different[j] & SAME_PLACE)
-                {
-                    evidence[j][COST_UNMOVED] =
-                        (short)(censusDifference(cost, left, right + wholeDisparity(there[x])) - costHere);
-                    evidence[j][SCALE_UNMOVED] = (short)(costHere + offset);
-                }
-                if (different[j] & MOVED_PLACE)
-                {
-                    const int moved = scratch.moved[j] >> TemporalFrame::detailBits;
-                    evidence[j][COST_MOVED] =
-                        (short)(censusDifference(cost, left, right + wholeDisparity(moved)) - costHere);
-                    evidence[j][SCALE_MOVED] = (short)(costHere + offset);
-                }
+                const int j = scratch.unmoved[k];
+                compareCell(cost, Point(j, i), measured, s.last.disparity,
+                            scratch.moved[j] >> TemporalFrame::detailBits, different[j], offset, evidence[j]);
             }
         }
     });
@@ -245,12 +274,12 @@ TemporalChoice chooseCell(const short* sums, int sources, bool isStill)
     const int unmoved = sums[COST_UNMOVED], moved = sums[COST_MOVED];
     const bool hasUnmoved = (sources & SAME_PLACE) != 0, hasMoved = (sources & MOVED_PLACE) != 0;
     if (isStill)
-        return hasUnmoved && 100 * unmoved <= T::stillShare * sums[SCALE_UNMOVED] ? UNMOVED : MEASURED;
+        return hasUnmoved && 100 * unmoved <= T::keptShare * sums[SCALE_UNMOVED] ? UNMOVED : MEASURED;
     const int least = hasMoved ? std::min(moved, 0) : 0;
     const int scale = std::max(sums[SCALE_UNMOVED], sums[SCALE_MOVED]);
     if (hasUnmoved && 100 * (unmoved - least) <= T::unmovedShare * scale)
         return UNMOVED;
-    return hasMoved && 100 * moved <= T::movedShare * sums[SCALE_MOVED] ? MOVED : MEASURED;
+    return hasMoved && 100 * moved <= T::keptShare * sums[SCALE_MOVED] ? MOVED : MEASURED;
 }
 
 //! Chooses by the sums over a window around each cell; beside the image there is no evidence.
@@ -280,6 +309,20 @@ void choose(TemporalState& s)
             add(y - radius, -1);
         }
     });
+}
+
+//! Whether most of what could be taken from the last frame is not: its pair was a wrong one, or this one is.
+bool isContradicted(const TemporalState& s)
+{
+    int64 sources = 0, contradicted = 0;
+    for (int y = 0; y < s.choices.rows; ++y)
+        for (int x = 0; x < s.choices.cols; ++x)
+        {
+            const int hasSource = s.sources.ptr(y)[x] != 0;
+            sources += hasSource;
+            contradicted += hasSource & (s.choices.ptr(y)[x] == MEASURED);
+        }
+    return 2 * contradicted > sources;
 }
 
 //! The pixels of a row come from where the motion leads.
@@ -333,18 +376,18 @@ void joinRow(const Mat& measured, int y, RowScratch& scratch, TemporalState& s)
 
 void beginAnew(const Mat& disparity, TemporalState& s)
 {
+    s.age = 0;
     disparity.copyTo(s.next.disparity);
     s.next.detail.setTo(Scalar(1 << (2 * TemporalFrame::detailBits - 1) | 1)); // no rest, one frame
 }
 
 void join(const CensusCost& cost, Mat& disparity, TemporalState& s)
 {
-    if (s.motion.isStill)
-        findUnchanged(s);
-    else
-        findSources(s);
+    findSources(s);
     compareCosts(cost, disparity, s);
     choose(s);
+    if (isContradicted(s))
+        return beginAnew(disparity, s);
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         RowScratch scratch(disparity.cols);
         for (int y = rows.start; y < rows.end; ++y)

@@ -16,12 +16,11 @@ struct TemporalJoin
 {
     enum
     {
-        window = 7,          // side of the square that costs are compared over, in cells
-        sameDisparity = 1,   // in pixels: costs of disparities no farther apart are not compared
-        costOffset = 8,      // in bits of a census of 24, see the next three
-        stillShare = 40,     // percent of the measured disparity's cost, and costOffset, by which that of the last
-        unmovedShare = 60,   // frame's may be larger: with a camera at rest; at the same place with one that moved;
-        movedShare = 26,     // where its motion leads
+        window = 7,        // side of the square that costs are compared over, in cells
+        sameDisparity = 1, // in pixels: costs of disparities no farther apart are not compared
+        costOffset = 8,    // in bits of a census of 24
+        keptShare = 26, // percent of the measured disparity's cost, and costOffset, by which the last frame's may cost
+        unmovedShare = 33,   // more; if the camera moved, that at the same place
         tolerance = 4,       // between disparities that agree, in pixels of the image
         maxStep = 1,         // towards the measured disparity, before it is divided by the weight, in pixels
         maxCount = 4,        // frames that a disparity may stand for
@@ -29,8 +28,8 @@ struct TemporalJoin
         maxMovedCount = 1,   // and one where the motion leads
         stillness = 5,       // halves of a grey level by which a cell that stands still changes at most
         leastNoise = 3,      // grey levels, and
-        noiseFactor = 4,     // times the median of all changes: with a camera at rest, a cell that is the same changes
-        contrastShare = 70   // by no more, or by less than this percentage of the contrast around
+        noiseFactor = 4,     // times the median of all changes: what is the same, and no more than moved as the camera
+        contrastShare = 70   // does, changes by no more, or by less than this percentage of the contrast around
     };
 };
 
@@ -38,7 +37,7 @@ struct TemporalJoin
 enum TemporalSource
 {
     SAME_PLACE = 1, // the image stands still
-    MOVED_PLACE = 2 // the camera's motion leads to a pixel of the last frame
+    MOVED_PLACE = 2 // where the camera's motion leads, the last frame looks the same
 };
 
 //! Of a cell, for the two disparities that the last frame may have for it
@@ -74,10 +73,11 @@ struct JoinRule
 };
 
 /** Joins the disparities of a pair, before the median, with those of the frame before. Each pixel has up to three: the
-measured one, that of the last frame at the same place, if the image stands still there, and that which the motion of the
-camera takes there. One of the last frame is kept unless the measured one has clearly lower costs in the window around. It
-moves towards the measured one if both agree, by less the more frames it stands for; if not, it stands for fewer frames,
-in the end for none, and the measured one is taken.
+measured one, that of the last frame at the same place, if the image stands still there, and that which the motion of
+the camera takes there, if the image looks the same where it comes from. One of the last frame is kept unless the
+measured one has clearly lower costs in the window around. It moves towards the measured one if both agree, by less the
+more frames it stands for; if not, it stands for fewer frames, in the end for none, and the measured one is taken. If
+that is so for most of the pixels, the video begins anew.
 @param cost The layer's census cost.
 @param state What followVideo() found; this frame becomes the last one.
 @param disparity CV_16UC1, a disparity map; changed. */

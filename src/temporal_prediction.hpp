@@ -68,7 +68,7 @@ struct TemporalState
 
     std::vector<TrackedPoint> points;
     Mat halved;
-    Mat change, contrast, sources, evidence, choices; // of joinLastFrame(), per cell
+    Mat warped, change, contrast, sources, evidence, choices; // of joinLastFrame(), per cell
 
     //! In place of the x of a shift: the block was not in the last frame.
     enum
@@ -92,8 +92,8 @@ inline Point shifted(int x, int y, const Vec2s& shift, Size size)
                  std::min(std::max(y + shift[1], 0), size.height - 1));
 }
 
-/** Finds how the cameras moved since the last frame, and where everything was then. The first frame, one of another size
-or with other disparities, and one that shows another scene begin anew.
+/** Finds how the cameras moved since the last frame, and where everything was then. The first frame, one of another
+size or with other disparities, and one that shows another scene begin anew.
 @param left The left image of the finest layer that is matched, see greyLevels().
 @param layer What its disparities stand for.
 @param state What is known of the video; TemporalState::age is 0 if it begins anew. */

@@ -25,6 +25,7 @@
 #include "oracles.hpp"
 #include "systems.hpp"
 #include "synthetic_pair.hpp"
+#include "synthetic_video.hpp"
 
 namespace opencv_test {
 namespace {
@@ -94,6 +95,34 @@ TEST_P(HDPStereo_ReferenceOutputAloe, aloe)
     const Mat left = readReduced("aloeL.jpg", 17099323032531505918ULL),
               right = readReduced("aloeR.jpg", 9001120562101999804ULL);
     checkReference(std::string("aloe_") + GetParam().fileName + ".png", *createSystem(GetParam(), 64), left, right);
+}
+
+//! The last frame of a video
+TEST(HDPStereo_ReferenceOutputVideo, temporal_prediction)
+{
+    for (const bool isMoving : { false, true })
+    {
+        const Size size(160, 120);
+        const Board board = { Rect2d(60, 30, 50, 60), 18, 3 };
+        SyntheticVideo video(size, 8.3, 3);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, 32);
+        matcher->setUseTemporalPrediction(true);
+        const auto render = [&](int i) {
+            return video.render(i, std::vector<Board>(1, board), Point3d(0.1, 0.05, 0.0005) * (isMoving ? i : 0));
+        };
+        for (int i = 0; i < 4; ++i)
+            match(*matcher, render(i).left, render(i).right);
+        const SyntheticFrame last = render(4);
+        try
+        {
+            checkReference(isMoving ? "video_moving.png" : "video_still.png", *matcher, last.left, last.right);
+        }
+        catch (const SkipTestException&)
+        {
+            if (isMoving)
+                throw;
+        }
+    }
 }
 
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutput, testing::ValuesIn(allSystems()));

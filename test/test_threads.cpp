@@ -5,6 +5,7 @@
 #include "helpers.hpp"
 #include "systems.hpp"
 #include "synthetic_pair.hpp"
+#include "synthetic_video.hpp"
 
 #include <atomic>
 #include <thread>
@@ -110,6 +111,37 @@ std::vector<Result> computePairs(int i)
     for (const SyntheticPair& pair : testPairs())
         results.push_back(computeAll(*matcher, pair));
     return results;
+}
+
+//! The maps of a video whose camera moves after some frames
+std::vector<Mat> computeVideo(int i)
+{
+    const Board board = { Rect2d(80, 30, 50, 60), 16, 3 };
+    SyntheticVideo video(Size(200, 140), 8.3, 3);
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(i);
+    matcher->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
+    matcher->setBlockSize(5);
+    matcher->setUseTemporalPrediction(true);
+    std::vector<Mat> maps;
+    for (int k = 0; k < 5; ++k)
+    {
+        const SyntheticFrame frame =
+            video.render(k, std::vector<Board>(1, board), Point3d(0.1, 0.05, 0.0005) * std::max(k - 2, 0));
+        maps.push_back(match(*matcher, frame.left, frame.right));
+    }
+    return maps;
+}
+
+TEST(HDPStereo_Threads, videos_in_four_threads)
+{
+    const int videos = 4;
+    std::vector<std::vector<Mat>> expected, actual(videos);
+    for (int i = 0; i < videos; ++i)
+        expected.push_back(computeVideo(i));
+    runAtOnce(videos, [&](int i) { actual[i] = computeVideo(i); });
+    for (int i = 0; i < videos; ++i)
+        for (size_t k = 0; k < expected[i].size(); ++k)
+            expectIdentical(expected[i][k], actual[i][k]);
 }
 
 TEST(HDPStereo_Threads, eight_matchers_in_eight_threads)
