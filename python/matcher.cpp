@@ -133,6 +133,9 @@ disparity: an array for the result, if given: int16 or float32, of the images' s
 Returns the disparities of the left image: int16, times 16, or float32 in pixels, see setDisparityDepth(). What a filter
 rejects is (minDisparity - 1) * 16, or minDisparity - 1. Raises ValueError if images or parameters do not fit.)doc");
     matcher.def(
+        "clear", [](Matcher& self) { self.run([](HDPTreeMatcher& m) { m.clear(); }); },
+        "Forgets the pairs before, see setUseTemporalPrediction(): the next compute() begins a video.");
+    matcher.def(
         "setTreeStrategy",
         [](Matcher& self, const py::object& strategy) {
         const cv::Ptr<cv::stereo::TreeStrategy> kept = keptStrategy(strategy);

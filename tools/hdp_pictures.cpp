@@ -101,6 +101,34 @@ static int run(const CommandLineParser& parser)
     fast->setFillOcclusions(false);
     save("occlusions.jpg", { colorPicture(match(*fast), range), colorPicture(ofFast, range) }, INTER_AREA);
 
+    // The pair as a video of a scene that stands still, with noise of its own in each frame
+    const Ptr<HDPTreeMatcher> single = create(HDPTreeMatcher::PRESET_FAST), video = create(HDPTreeMatcher::PRESET_FAST);
+    video->setUseTemporalPrediction(true);
+    Mat ofSingle, ofVideo, changeOfSingle, changeOfVideo;
+    RNG rng(1);
+    for (int frame = 0; frame < 6; frame++)
+    {
+        Mat noisy[2], noise(left.size(), CV_32FC3), disparity16;
+        for (int i = 0; i < 2; i++)
+        {
+            rng.fill(noise, RNG::NORMAL, 0, 8);
+            add(i == 0 ? left : right, noise, noisy[i], noArray(), CV_8U);
+        }
+        for (const Ptr<HDPTreeMatcher>& matcher : { single, video })
+        {
+            Mat &disparity = matcher == single ? ofSingle : ofVideo,
+                &change = matcher == single ? changeOfSingle : changeOfVideo;
+            matcher->compute(noisy[0], noisy[1], disparity16);
+            const Mat last = disparity.empty() ? Mat(left.size(), CV_32F, Scalar(0)) : disparity;
+            disparity = toPixels(disparity16, pair.disparities.start);
+            absdiff(disparity, last, change);
+            change.convertTo(change, CV_8U, 64); // 4 pixels are white
+            cvtColor(change, change, COLOR_GRAY2BGR);
+        }
+    }
+    save("video.jpg", { colorPicture(ofSingle, range), changeOfSingle, colorPicture(ofVideo, range), changeOfVideo },
+         INTER_AREA);
+
     std::vector<Mat> errors;
     for (const int preset : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE, HDPTreeMatcher::PRESET_FAST })
         errors.push_back(withErrors(match(*create(preset)), pair, range));

@@ -237,6 +237,24 @@ class Matching(Test):
         matcher.setDisparityDepth(hdpstereo.CV_32F)
         self.assertSame(expected.astype(np.float32) / 16, matcher.compute(left, right))
 
+    def test_video(self):
+        video = HDPTreeMatcher(0, 32)
+        video.setUseTemporalPrediction(True)
+        rng = np.random.RandomState(3)
+        frames = [[np.clip(image + rng.normal(0, 6, image.shape), 0, 255).astype(np.uint8) for image in (LEFT, RIGHT)]
+                  for _ in range(6)]
+        single = [HDPTreeMatcher(0, 32).compute(*frame) for frame in frames]
+        maps = [video.compute(*frame) for frame in frames]
+        self.assertSame(single[0], maps[0])
+        flicker = [np.mean(np.abs(np.diff(m[-3:], axis=0))) for m in (np.array(single, float), np.array(maps, float))]
+        self.assertLess(flicker[1], 0.5 * flicker[0])
+        video.clear()
+        self.assertSame(single[1], video.compute(*frames[1]))
+        with self.assertRaises(ValueError):
+            video.compute(LEFT, LEFT[1:])
+        video.setUseTemporalPrediction(False)
+        self.assertSame(single[2], video.compute(*frames[2]))
+
     def test_layouts(self):
         matcher = HDPTreeMatcher(0, 32)
         views = (lambda image: image[10:-7, 20:-3], lambda image: image[::2], lambda image: image[:, ::2],

@@ -371,6 +371,24 @@ class hdpstereo_test(TestCase):
         matcher.compute(self.left, self.right)
         self.assertFalse(matcher.getLightAlignment()[0])
 
+    def test_video(self):
+        video = cv.stereo.HDPTreeMatcher.create(0, 32)
+        video.setUseTemporalPrediction(True)
+        rng = np.random.RandomState(3)
+        frames = [[np.clip(image + rng.normal(0, 6, image.shape), 0, 255).astype(np.uint8)
+                   for image in (self.left, self.right)] for _ in range(6)]
+        single = [cv.stereo.HDPTreeMatcher.create(0, 32).compute(*frame) for frame in frames]
+        maps = [video.compute(*frame) for frame in frames]
+        np.testing.assert_array_equal(single[0], maps[0])
+        flicker = [np.mean(np.abs(np.diff(m[-3:], axis=0))) for m in (np.array(single, float), np.array(maps, float))]
+        self.assertLess(flicker[1], 0.5 * flicker[0])
+        video.clear()
+        np.testing.assert_array_equal(single[1], video.compute(*frames[1]))
+        with self.assertRaises(cv.error):
+            video.compute(self.left, self.left[1:])
+        video.setUseTemporalPrediction(False)
+        np.testing.assert_array_equal(single[2], video.compute(*frames[2]))
+
     def test_what_the_last_compute_did(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32, PRESETS['PAPER'])
         self.assertEqual(0, len(matcher.getSearchRatios()))
