@@ -119,6 +119,7 @@ void warpLastFrame(TemporalState& s)
 {
     const Mat& before = s.last.grey[0];
     const Point last(2 * before.cols - 2, 2 * before.rows - 2); // in half cells
+    const int side = V::block / V::cell;                        // of the squares that move together, in cells
     static_assert(V::cell == 2, "Shifts are in half cells.");
     s.warped.create(before.size(), CV_8U);
     parallel_for_(Range(0, before.rows), [&](const Range& range) {
@@ -126,14 +127,20 @@ void warpLastFrame(TemporalState& s)
         {
             const Vec2s* shifts = s.shifts.ptr<Vec2s>(y * V::cell / V::block);
             uchar* warped = s.warped.ptr(y);
-            for (int x = 0; x < before.cols; ++x)
+            for (int begin = 0; begin < before.cols; begin += side)
             {
-                const Vec2s& shift = shifts[x * V::cell / V::block];
-                const int fromX = std::min(std::max(2 * x + shift[0], 0), last.x);
+                const Vec2s& shift = shifts[begin / side];
+                const int end = std::min(begin + side, before.cols), fromX = 2 * begin + shift[0];
                 const int fromY = std::min(std::max(2 * y + shift[1], 0), last.y);
                 const uchar *above = before.ptr(fromY / 2), *below = before.ptr((fromY + 1) / 2);
-                const int left = fromX / 2, right = (fromX + 1) / 2;
-                warped[x] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) / 4);
+                const bool isInside = fromX >= 0 && fromX + 2 * (end - begin - 1) <= last.x;
+                for (int x = begin; x < end; ++x)
+                {
+                    const int from = fromX + 2 * (x - begin);
+                    const int at = isInside ? from : std::min(std::max(from, 0), last.x);
+                    const int left = at >> 1, right = (at + 1) >> 1;
+                    warped[x] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) >> 2);
+                }
             }
         }
     });
