@@ -112,7 +112,7 @@ void aggregateVolume(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& 
 {
     const MatcherParameters& p = in.parameters;
     const int scale = CostVolume::scale;
-    const VolumePenalties penalties = { scale * p.P1, scale * p.P2, p.gamma };
+    const VolumePenalties penalties = { scale * p.P1 / 2, scale * p.P2, p.gamma }; // means of costs are smoother
     aggregateMeans(buffers.forest, matched.cost(), disparitiesOf(in), p.gamma * meanGamma, buffers.aggregation,
                    buffers.volume);
     aggregateVolume(buffers.volume, buffers.forest.weights, penalties, buffers.volumeScanlines, matched.winner);
@@ -167,8 +167,10 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
         });
         clock.run("cost aggregation", [&] {
             const ScanlinePenalties penalties = { p.P1, p.P2, pass == 0 ? 1 : 2 };
-            aggregateScanlines(matched.census, in.images.left.size(), disparities, largestDisparity(in),
-                               matched.windows, penalties, buffers.scanlines, matched.winner, matched.residual);
+            // The direction from below costs half as much as the others together: where it is cheap, or worth it
+            const bool hasFromBelow = !in.isFinest() || pass > 0;
+            aggregateScanlines(matched.census, in.images.left, disparities, largestDisparity(in), matched.windows,
+                               penalties, hasFromBelow, buffers.scanlines, matched.winner, matched.residual);
         });
         if (p.fillOcclusions)
             clock.run("occlusions", [&] { fillOccluded(matched.winner, matched.residual); });

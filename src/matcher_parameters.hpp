@@ -44,8 +44,8 @@ struct MatcherParameters
     bool useSubpixel = false;
     int aggregation = HDPTreeMatcher::AGGREGATION_TREES;
     int topAggregation = HDPTreeMatcher::AGGREGATION_TREES;
-    int P1 = 12;
-    int P2 = 50;
+    int P1 = 18;
+    int P2 = 65;
     int finestLayer = 0;
     int scanlinePasses = 1;
     bool fillOcclusions = false;

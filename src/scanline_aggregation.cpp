@@ -15,13 +15,14 @@ namespace {
 // Of a stripe, about: stripes are of even number, so that also two threads have as much to do.
 const int stripeHeight = 128;
 
-// Rows above a stripe from which on the direction from above is followed
+// Rows before a stripe from which on the directions from above and from below are followed
 const int warmUpRows = 16;
 
-void dispatchStripe(const ScanlineProblem& problem, int above, const Range& rows, ScanlineScratch& scratch,
-                    Mat& disparity, Mat& residual)
+void dispatchStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
+                    uchar* followed, Mat& disparity, Mat& residual)
 {
-    CV_CPU_DISPATCH(aggregateStripe, (problem, above, rows, scratch, disparity, residual), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(aggregateStripe, (problem, stripe, scratch, followed, disparity, residual),
+                    CV_CPU_DISPATCH_MODES_ALL);
 }
 
 } // namespace
@@ -40,28 +41,34 @@ void ScanlineScratch::prepare(int width)
         stored->resize(upperColumns * CandidateWindow::candidates);
     for (std::vector<short>& run : first)
         run.resize(2 * pairs);
+    edges.resize(2 * blockColumns + 16); // some more to read
     winners.resize(blockColumns);
     winnerCosts.resize(blockColumns);
     winnerSums.resize(blockColumns);
 }
 
-void aggregateScanlines(const CensusCost& cost, Size size, int numDisparities, int largest, const Mat& windows,
-                        const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
+void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int largest, const Mat& windows,
+                        const ScanlinePenalties& penalties, bool hasFromBelow, ScanlineBuffers& buffers, Mat& disparity,
+                        Mat& residual)
 {
-    const ScanlineProblem problem = { &cost, size, numDisparities, largest, &windows, penalties };
+    const Size size = left.size();
+    const ScanlineProblem problem = { &cost, &left, size, numDisparities, largest, &windows, penalties, hasFromBelow };
     const int stripes =
         size.height < stripeHeight / 2 ? 1 : 2 * std::max(1, cvRound(size.height / (2. * stripeHeight)));
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);
     buffers.stripes.resize(stripes);
     parallel_for_(Range(0, stripes), [&](const Range& range) {
+        Mat followed; // as large as a thread needs it, not as the image would
         for (int i = range.start; i < range.end; ++i)
         {
             const auto border = [&](int64 index) { return (int)(size.height * index / stripes / 2 * 2); };
             const Range rows(border(i), i + 1 < stripes ? border(i + 1) : size.height);
-            buffers.stripes[i].prepare(size.width);
-            dispatchStripe(problem, std::max(rows.start - warmUpRows, 0), rows, buffers.stripes[i], disparity,
-                           residual);
+            const Range reach(std::max(rows.start - warmUpRows, 0), std::min(rows.end + warmUpRows, size.height));
+            const ScanlineStripe stripe = { rows, reach };
+            if (hasFromBelow)
+                followed.create((rows.size() + 1) / 2 * 2, (int)ScanlineScratch::followedBytes(size.width), CV_8U);
+            dispatchStripe(problem, stripe, buffers.stripes[i], followed.data, disparity, residual);
         }
     });
 }

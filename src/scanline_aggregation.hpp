@@ -15,7 +15,8 @@ namespace hdp {
 //! Penalties in units of the census cost
 struct ScanlinePenalties
 {
-    int small, large; // for a step of one disparity and for a larger one between neighbours, 0..largest
+    int small, large; // for a step of one disparity and for a larger one between neighbours of one grey level,
+                      // 0..largest
     int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..largestPrior
     enum
     {
@@ -28,17 +29,26 @@ struct ScanlinePenalties
 struct ScanlineProblem
 {
     const CensusCost* cost;
+    const Mat* left;
     Size size;
     int numDisparities;
     int largest; // disparity of a map
     const Mat* windows;
     ScanlinePenalties penalties;
+    bool hasFromBelow; // a fourth direction
 
     //! Of a window: others are outside of the range.
     int validCandidates() const
     {
         return std::min(CandidateWindow::candidates + 0, numDisparities + 2 * CandidateWindow::beyondRange);
     }
+};
+
+//! Rows of an image that are aggregated by themselves, and those that the directions from above and from below are
+//! followed over; both from an even one on
+struct ScanlineStripe
+{
+    Range rows, reach;
 };
 
 /** Memory of a sweep over one stripe. A block is the rows that a sweep does at once, at most maxBlock. */
@@ -55,6 +65,11 @@ struct ScanlineScratch
         bool isContiguous; // and so are those of the other rows of the block in the same step
     };
 
+    //! What is stored of a direction, per row of a block: for the columns of all steps, and of a step more at both ends
+    static size_t followedBytes(int width)
+    {
+        return (((size_t)width + 1) / 2 + maxBlock + 1) * 2 * CandidateWindow::candidates;
+    }
     //! Provides the memory for a layer of this width, and clears what a sweep starts from.
     CV_EXPORTS void prepare(int width);
 
@@ -62,6 +77,7 @@ struct ScanlineScratch
     std::vector<Column> columns;                               // of the layer above
     std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // CandidateWindow::candidates per such column
     std::vector<short> first[CandidateWindow::runs];           // by column
+    std::vector<uchar> edges;                                  // large penalties of a block, two per pixel
     // Of the winners of a block: their lanes, sums, each with those of the lanes before and behind, and costs
     std::vector<uchar> winners, winnerCosts;
     std::vector<unsigned> winnerSums;
@@ -73,36 +89,38 @@ struct ScanlineBuffers
 };
 
 /** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching with the
-three directions that one sweep over the rows can do, from the left, from the right and from above. The cost of
-candidate d is
+three directions that one sweep over the rows can do, from the left, from the right and from above, and with that from
+below, which takes a second one. The cost of candidate d is
 
 C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 31) / 4) + floor(prior * |d - predicted| / 2),
 
 I being grey levels and predicted the disparity that the candidate's run was predicted for, all whole numbers.
 
 With L(p, d) of a direction and q the pixel before p,
-L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large) - m, m = min_k L(q, k),
-where candidates that q does not have count m + large. d - 1 and d + 1 stand for the candidates before and after d in the
+L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
+large(p, q) = max(small, large - floor(3 * |I(p) - I(q)| / 2)),
+where candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d in the
 window of p: those that p does not have are left out, and the last one of its first run and the first one of the second
 count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less its own
 minimum, at most 255, the first of them if there are several; the tip of the V through its sum and those of the
 candidates beside it, if p has disparities d - 1 and d + 1, gives the sub-pixel part.
 
-The image is cut into stripes that do not depend on the number of threads; the direction from above starts anew some rows
-above each of them.
+The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
+start anew some rows before each of them.
 @param cost The layer's census cost.
-@param size Of the layer.
+@param left The layer's grey levels, see LayerImages.
 @param numDisparities Of the layer.
 @param largest The largest disparity that a map of the layer may have. The winner may be beyond the ends of the range; its
 disparity is not.
 @param windows From predictWindows().
 @param penalties The penalties.
+@param hasFromBelow Whether there is the direction from below.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
-CV_EXPORTS void aggregateScanlines(const CensusCost& cost, Size size, int numDisparities, int largest,
-                                   const Mat& windows, const ScanlinePenalties& penalties, ScanlineBuffers& buffers,
-                                   Mat& disparity, Mat& residual);
+CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int largest,
+                                   const Mat& windows, const ScanlinePenalties& penalties, bool hasFromBelow,
+                                   ScanlineBuffers& buffers, Mat& disparity, Mat& residual);
 
 } // namespace hdp
 } // namespace stereo

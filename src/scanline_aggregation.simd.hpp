@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "scanline_aggregation.hpp"
+#include "image_levels.hpp"
 #include "vectorized.hpp"
 #include <cstring>
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
@@ -17,13 +18,13 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** Aggregates a stripe of the image.
 @param problem The layer.
-@param above First row of the direction from above, even.
-@param rows Rows of the result, from an even one on.
-@param scratch Memory to work in, prepared.
+@param stripe Its rows.
+@param scratch Memory to work in.
+@param followed The same, ScanlineScratch::followedBytes() for each row; not used without a direction from below.
 @param disparity As in aggregateScanlines().
 @param residual As in aggregateScanlines(). */
-void aggregateStripe(const ScanlineProblem& problem, int above, const Range& rows, ScanlineScratch& scratch,
-                     Mat& disparity, Mat& residual);
+void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
+                     uchar* followed, Mat& disparity, Mat& residual);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -34,12 +35,13 @@ typedef CandidateWindow Window;
 /** A sweep over a stripe. With the notation of aggregateScanlines(), and m the minimum of L(q, k) over k, a direction
 carries what a candidate saves against the large penalty, instead of its cost:
 
-H(q, d) = max(m + large - L(q, d), 0), which is also right, 0, for candidates that q does not have.
-As min(x, m + large) = m + large - max(m + large - x, 0) for any x,
-min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large) - m = large - gain(d) with
-gain(d) = max(H(q, d), H(q, d - 1) - small, H(q, d + 1) - small, 0), so that
-L(p, d) = (C(p, d) + large) - gain(d), and with its minimum m' over the candidates of p
-H(p, d) = max(large - (L(p, d) - m'), 0).
+H(q, d) = max(m + large(p, q) - L(q, d), 0), which is also right, 0, for candidates that q does not have.
+As min(x, m + large(p, q)) = m + large(p, q) - max(m + large(p, q) - x, 0) for any x,
+min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m = large(p, q) - gain(d) with
+gain(d) = max(H(q, d), H(q, d - 1) - small, H(q, d + 1) - small, 0).
+Only differences between the candidates of a pixel count, so large may stand for large(p, q) here:
+L(p, d) = (C(p, d) + large) - gain(d), and with its minimum m' over the candidates of p and the pixel r after it
+H(p, d) = max(large(p, r) - (L(p, d) - m'), 0).
 
 All of these are bytes, and the differences saturate at 0 by themselves. What aggregateScanlines() says, step by step, is
 oracle::Scanlines of test/oracles.hpp; the two are compared.
@@ -48,19 +50,19 @@ Rows are done in blocks of ByteLanes::groups, skewed: when group r is at column 
 column x - 2 of the next row. So it finds what the group before left there two steps ago, and all groups enter a pixel of
 the layer above, which is two columns wide, at the same step. A step is a pair of columns, for group r those of pixel
 t - r of the layer above. Groups that are beside the image compute what nobody reads: all that is stored by column has a
-margin. */
+margin. The direction from below is that from above of a sweep upward, which has the lower row of a block in its first
+group. */
 class Sweep
 {
 public:
-    Sweep(const ScanlineProblem& problem, ScanlineScratch& scratch)
+    Sweep(const ScanlineProblem& problem, bool isUpward, ScanlineScratch& scratch)
         : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
           planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)),
-          large_(ByteLanes::repeat(problem.penalties.large)), zero_(ByteLanes::repeat(0)),
-          blockCosts_(scratch.costs.data()), fromRight_(scratch.fromRight.data()),
+          zero_(ByteLanes::repeat(0)), blockCosts_(scratch.costs.data()), fromRight_(scratch.fromRight.data()),
           fromAbove_(scratch.fromAbove.data() + margin * Window::candidates), columns_(scratch.columns.data() + margin),
           priors_(firstStep(scratch.priors)), intoRight_(firstStep(scratch.intoRight)),
           intoLeft_(firstStep(scratch.intoLeft)), intoBelow_(firstStep(scratch.intoBelow)), windows_(0), upperRow_(-1),
-          entersUpperRow_(false)
+          entersUpperRow_(false), isUpward_(isUpward)
     {
         for (int run = 0; run < Window::runs; ++run)
             first_[run] = scratch.first[run].data();
@@ -70,28 +72,30 @@ public:
             winners_[r] = scratch.winners.data() + row;
             sums_[r] = scratch.winnerSums.data() + row;
             costs_[r] = scratch.winnerCosts.data() + row;
+            edges_[r] = scratch.edges.data() + 2 * row;
         }
         preparePriorTable();
         prepareOrderTables();
     }
 
-    //! The direction from above alone, over a block of rows from y on.
-    void warmUp(int y)
+    //! The vertical direction alone, over a block of rows from y on; followed: where to store it, if it is needed
+    void follow(int y, uchar* followed)
     {
         enterRows(y);
         switch (p_.cost->planes())
         {
         case 1:
-            return warmUpBlock<1>();
+            return followBlock<1>(followed);
         case 2:
-            return warmUpBlock<2>();
+            return followBlock<2>(followed);
         default:
-            return warmUpBlock<3>();
+            return followBlock<3>(followed);
         }
     }
 
-    //! All directions and the winners of a block of rows, y to end - 1 at most.
-    void run(int y, int end, Mat& disparity, Mat& residual)
+    //! All directions and the winners of a block of rows, y to end - 1 at most; fromBelow: what a sweep upward has
+    //! stored, if there is one
+    void run(int y, int end, const uchar* fromBelow, Mat& disparity, Mat& residual)
     {
         enterRows(y);
         switch (p_.cost->planes())
@@ -105,7 +109,7 @@ public:
         default:
             fromRight<3>();
         }
-        fromLeftAndAbove();
+        fromLeftAndAbove(fromBelow);
         for (int r = 0; r < groups && y + r < end; ++r)
             finishRow(r, disparity.ptr<ushort>(y + r), residual.ptr(y + r));
     }
@@ -175,7 +179,8 @@ private:
         }
     }
 
-    //! Prepares a block of rows from y on: what follows from the windows, if they are new, and the rows' pointers.
+    //! Prepares a block of rows, y in the first group: what follows from the windows, if they are new, from the grey
+    //! levels, and the rows' pointers.
     void enterRows(int y)
     {
         const int upperRow = std::min(y / 2, p_.windows->rows - 1);
@@ -187,12 +192,41 @@ private:
             upperRow_ = upperRow;
             enterWindows(above);
         }
+        const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
         for (int r = 0; r < groups; ++r)
         {
-            const int row = std::min(y + r, p_.size.height - 1);
+            const int row = std::min(y + r * forward, lastRow), next = std::min(std::max(row + forward, 0), lastRow);
             left_[r] = p_.cost->leftPixels(row);
             right_[r] = p_.cost->rightPlane(0, row) + width_ - 1;
+            weighEdges(p_.left->ptr<ushort>(row), p_.left->ptr<ushort>(next), edges_[r]);
+            if (isUpward_ && y - r > lastRow) // nothing comes from there
+                std::memset(edges_[r], 0, 2 * (size_t)width_);
         }
+    }
+
+    //! large(p, q) between each pixel of a row and its neighbours to the right and in the next row
+    void weighEdges(const ushort* row, const ushort* next, uchar* edges) const
+    {
+        const int large = p_.penalties.large, least = std::min(p_.penalties.small, large), last = width_ - 1;
+        const auto penalty = [&](int p, int q) {
+            return (uchar)std::max(large - std::abs(p - q) * 3 / (2 * greyScale), least);
+        };
+        HDP_VECTORIZED for (int x = 0; x < last; ++x)
+        {
+            edges[2 * x] = penalty(row[x], row[x + 1]);
+            edges[2 * x + 1] = penalty(row[x], next[x]);
+        }
+        edges[2 * last] = 0; // there is no pixel
+        edges[2 * last + 1] = penalty(row[last], next[last]);
+    }
+
+    //! large(p, q) of edges of a step, see weighEdges(): number `at` from the pixel on the left of its columns on
+    template <int at> CV_ALWAYS_INLINE ByteLanes largePenalty(int step) const
+    {
+        const uchar* edges[groups];
+        for (int r = 0; r < groups; ++r)
+            edges[r] = edges_[r] + 4 * (ptrdiff_t)(step - r) - 2;
+        return ByteLanes::repeatByte<at>(edges);
     }
 
     void enterWindows(const Window* above)
@@ -299,13 +333,14 @@ private:
         return contrast + (difference ^ third).countBits() + (carries + carries);
     }
 
-    //! L(p, d) - m of a direction; cost: C(p, d) + large; h: H of the pixel before, which becomes that of this one.
-    ByteLanes advance(ByteLanes& h, const ByteLanes& cost) const
+    //! L(p, d) - m of a direction; cost: C(p, d) + large; h: H of the pixel before, which becomes that of this one;
+    //! large: to the pixel after.
+    ByteLanes advance(ByteLanes& h, const ByteLanes& cost, const ByteLanes& large) const
     {
         const ByteLanes gain = h.max(h.toNext().max(h.toPrevious()) - small_);
         const ByteLanes sum = cost - gain;
         const ByteLanes aboveMinimum = sum - sum.minimum();
-        h = large_ - aboveMinimum;
+        h = large - aboveMinimum;
         return aboveMinimum;
     }
 
@@ -334,9 +369,10 @@ private:
             uchar* costs = blockCosts_ + (size_t)t * 2 * lanes;
             uchar* directions = fromRight_ + (size_t)t * 2 * lanes;
             h = h.permute(ByteLanes::load(ofStep(intoLeft_, t)));
+            const ByteLanes large[2] = { largePenalty<0>(t), largePenalty<2>(t) };
             for (int column = 1; column >= 0; --column)
             {
-                const ByteLanes direction = advance(h, cost[column]);
+                const ByteLanes direction = advance(h, cost[column], large[column]);
                 if (t + 1 >= pairs_)
                     h = clearOutside(h, t, column);
                 cost[column].store(costs + column * lanes);
@@ -345,31 +381,39 @@ private:
         }
     }
 
-    //! The direction from above: before holds H of the last step's columns.
-    ByteLanes fromAbove(const ByteLanes& cost, int t, int column, ByteLanes& before)
+    //! The direction from above: before holds H of the last step's columns; large: to the next row
+    ByteLanes fromAbove(const ByteLanes& cost, const ByteLanes& large, int t, int column, ByteLanes& before)
     {
         uchar* above = fromAbove_ + (ptrdiff_t)(2 * t + column) * Window::candidates;
         ByteLanes h = ByteLanes::shiftIn(above, before);
         if (entersUpperRow_) // only the block's first row may
             h = h.permute(ByteLanes::first(ofStep(intoBelow_, t)));
-        const ByteLanes direction = advance(h, cost);
+        const ByteLanes direction = advance(h, cost, large);
         before = h;
         h.storeLast(above - 2 * (groups - 1) * Window::candidates);
         return direction;
     }
 
-    template <int planes> void warmUpBlock()
+    //! Where a direction at a column of a step is stored; there is room for a step more at both ends.
+    static ptrdiff_t storedAt(int step, int column) { return ((ptrdiff_t)(step + 1) * 2 + column) * lanes; }
+
+    template <int planes> void followBlock(uchar* followed)
     {
         ByteLanes before[2] = { zero_, zero_ }, cost[2];
         for (int t = 0; t < steps_; ++t)
         {
             costs<planes>(t, cost);
+            const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
             for (int column = 0; column < 2; ++column)
-                fromAbove(cost[column], t, column, before[column]);
+            {
+                const ByteLanes direction = fromAbove(cost[column], toNext[column], t, column, before[column]);
+                if (followed)
+                    direction.store(followed + storedAt(t, column));
+            }
         }
     }
 
-    void fromLeftAndAbove()
+    void fromLeftAndAbove(const uchar* fromBelow)
     {
         ByteLanes h = zero_, before[2] = { zero_, zero_ };
         for (int t = 0; t < steps_; ++t)
@@ -377,17 +421,33 @@ private:
             const uchar* costs = blockCosts_ + (size_t)t * 2 * lanes;
             const uchar* directions = fromRight_ + (size_t)t * 2 * lanes;
             h = h.permute(ByteLanes::load(ofStep(intoRight_, t)));
+            const ByteLanes toRight[2] = { largePenalty<2>(t), largePenalty<4>(t) };
+            const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
             for (int column = 0; column < 2; ++column)
             {
                 const ByteLanes cost = ByteLanes::load(costs + column * lanes);
-                const ByteLanes fromLeft = advance(h, cost);
-                const ByteLanes sum = fromLeft + ByteLanes::load(directions + column * lanes) +
-                                      fromAbove(cost, t, column, before[column]);
+                const ByteLanes fromLeft = advance(h, cost, toRight[column]);
+                ByteLanes sum = fromLeft + ByteLanes::load(directions + column * lanes) +
+                                fromAbove(cost, toNext[column], t, column, before[column]);
+                if (fromBelow)
+                    sum = sum + loadFromBelow(fromBelow, t, column);
                 takeWinners(sum, t, column, costs + column * lanes);
             }
             if (t + 1 < groups)
                 h = clearOutside(h, t, 1);
         }
+    }
+
+    //! In a sweep upward, group groups - 1 - r has had the row of group r.
+    static ByteLanes loadFromBelow(const uchar* fromBelow, int t, int column)
+    {
+        const uchar* of[groups];
+        for (int r = 0; r < groups; ++r)
+        {
+            const int other = groups - 1 - r;
+            of[r] = fromBelow + storedAt(t - r + other, column) + other * Window::candidates;
+        }
+        return ByteLanes::load(of, 0);
     }
 
     //! The winners' lanes, sums with those beside them, and costs
@@ -451,17 +511,18 @@ private:
     const ScanlineProblem& p_;
     const int width_, pairs_, steps_; // columns, pairs of them, and steps over all groups
     const size_t planeStride_;        // from a plane of the cost to the next
-    const ByteLanes small_, large_, zero_;
+    const ByteLanes small_, zero_;
     // The scratch memory, from column or step 0 on
     uchar *const blockCosts_, *const fromRight_, *const fromAbove_;
     Column* const columns_;
     uchar *const priors_, *const intoRight_, *const intoLeft_, *const intoBelow_;
     short* first_[Window::runs];
-    uchar *winners_[groups], *costs_[groups];
+    uchar *winners_[groups], *costs_[groups], *edges_[groups];
     unsigned* sums_[groups];
     const Window* windows_; // of the block's row of the upper layer
     int upperRow_;          // that row
     bool entersUpperRow_;   // whether it is not that of the block before
+    const bool isUpward_;
     const uchar *left_[groups], *right_[groups];
     uchar priorTable_[2 * priorRange][Window::candidates];
     uchar pairOrder_[3 * Window::candidates], runOrder_[Window::runs][3 * Window::candidates];
@@ -469,14 +530,27 @@ private:
 
 } // namespace
 
-void aggregateStripe(const ScanlineProblem& problem, int above, const Range& rows, ScanlineScratch& scratch,
-                     Mat& disparity, Mat& residual)
+void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
+                     uchar* followed, Mat& disparity, Mat& residual)
 {
-    Sweep sweep(problem, scratch);
-    for (int y = above; y < rows.start; y += ByteLanes::groups)
-        sweep.warmUp(y);
-    for (int y = rows.start; y < rows.end; y += ByteLanes::groups)
-        sweep.run(y, rows.end, disparity, residual);
+    const int block = ByteLanes::groups, width = problem.size.width;
+    const Range &rows = stripe.rows, &reach = stripe.reach;
+    const auto ofBlock = [&](int y) {
+        return problem.hasFromBelow ? followed + (y - rows.start) * ScanlineScratch::followedBytes(width) : nullptr;
+    };
+    if (problem.hasFromBelow)
+    {
+        scratch.prepare(width);
+        Sweep upward(problem, true, scratch);
+        for (int y = (reach.end + 1) / 2 * 2 - block; y >= rows.start; y -= block)
+            upward.follow(y + block - 1, y < rows.end ? ofBlock(y) : nullptr);
+    }
+    scratch.prepare(width);
+    Sweep downward(problem, false, scratch);
+    for (int y = reach.start; y < rows.start; y += block)
+        downward.follow(y, nullptr);
+    for (int y = rows.start; y < rows.end; y += block)
+        downward.run(y, rows.end, ofBlock(y), disparity, residual);
 }
 
 #endif

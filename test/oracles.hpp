@@ -656,15 +656,15 @@ class Scanlines
 public:
     //! left, right: grey levels in quarters; windows: CandidateWindow, one for every 2 x 2 pixels.
     Scanlines(const Mat& left, const Mat& right, int blockSize, int numDisparities, int largest, const Mat& windows,
-              const hdp::ScanlinePenalties& penalties)
+              const hdp::ScanlinePenalties& penalties, bool hasFromBelow)
         : left_(left), right_(right), census_(left, right, blockSize), size_(left.size()),
           numDisparities_(numDisparities), largest_(largest), windows_(windows), small_(penalties.small),
-          large_(penalties.large), prior_(penalties.prior)
+          large_(penalties.large), prior_(penalties.prior), hasFromBelow_(hasFromBelow)
     {
     }
 
-    //! CV_16UC1. In an even number of stripes of about 128 rows; from above each path begins 16 rows above its stripe. residual receives
-    //! the winners' own costs, CV_8UC1.
+    //! CV_16UC1. In an even number of stripes of about 128 rows; the paths from above and from below begin 16 rows
+    //! before their stripe. residual receives the winners' own costs, CV_8UC1.
     Mat match(Mat& residual) const
     {
         Mat disparity(size_, CV_16UC1);
@@ -673,6 +673,10 @@ public:
         for (int i = 0; i < stripes; ++i)
         {
             const int first = firstRow(i, stripes), end = i + 1 < stripes ? firstRow(i + 1, stripes) : size_.height;
+            std::vector<std::vector<Costs>> below(size_.height + 1, std::vector<Costs>(size_.width));
+            for (int y = std::min(end + 16, size_.height) - 1; hasFromBelow_ && y >= first; --y)
+                for (int x = 0; x < size_.width; ++x)
+                    below[y][x] = follow(Point(x, y), Point(x, y + 1), below[y + 1][x]);
             std::vector<Costs> above(size_.width);
             for (int y = std::max(first - 16, 0); y < end; ++y)
             {
@@ -686,7 +690,7 @@ public:
                     right[x] = follow(Point(x, y), Point(x + 1, y), x + 1 < size_.width ? right[x + 1] : Costs());
                 for (int x = 0; y >= first && x < size_.width; ++x)
                     disparity.at<ushort>(y, x) =
-                        winner(Point(x, y), left[x], right[x], above[x], residual.at<uchar>(y, x));
+                        winner(Point(x, y), { left[x], right[x], above[x], below[y][x] }, residual.at<uchar>(y, x));
             }
         }
         return disparity;
@@ -733,13 +737,15 @@ private:
             return result;
         const std::vector<int> theirs = candidates(q);
         const int m = *std::min_element(before.begin(), before.end());
+        const int contrast = std::abs(left_.at<ushort>(p) - left_.at<ushort>(q)); // in quarters of levels
+        const int large = std::max(std::min(small_, large_), large_ - (int)std::floor(1.5 * contrast / 4));
         const auto costBefore = [&](int d) {
             const size_t i = (size_t)(std::find(theirs.begin(), theirs.end(), d) - theirs.begin());
-            return i < theirs.size() ? before[i] : m + large_;
+            return i < theirs.size() ? before[i] : m + large;
         };
         for (size_t i = 0; i < own.size(); ++i)
         {
-            int best = std::min(m + large_, costBefore(own[i]));
+            int best = std::min(m + large, costBefore(own[i]));
             if (i > 0)
                 best = std::min(best, costBefore(own[i - 1]) + small_);
             if (i + 1 < own.size())
@@ -749,13 +755,13 @@ private:
         return result;
     }
 
-    ushort winner(Point p, const Costs& left, const Costs& right, const Costs& above, uchar& residual) const
+    ushort winner(Point p, const std::vector<Costs>& directions, uchar& residual) const
     {
         const std::vector<int> d = candidates(p);
         std::vector<int> sums(d.size(), 0);
-        for (const Costs* costs : { &left, &right, &above })
-            for (size_t i = 0; i < d.size(); ++i)
-                sums[i] += (*costs)[i] - *std::min_element(costs->begin(), costs->end());
+        for (const Costs& costs : directions)
+            for (size_t i = 0; i < costs.size(); ++i)
+                sums[i] += costs[i] - *std::min_element(costs.begin(), costs.end());
         for (int& sum : sums)
             sum = std::min(sum, 255);
         const size_t i = (size_t)(std::min_element(sums.begin(), sums.end()) - sums.begin());
@@ -777,6 +783,7 @@ private:
     int numDisparities_, largest_;
     Mat windows_;
     int small_, large_, prior_;
+    const bool hasFromBelow_;
 };
 
 //! L(p, d) of a direction in a volume of costs, see aggregateVolume(): from the pixel that is step away. costs: C, rows

@@ -89,8 +89,8 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setIntervalMargin(isTree ? 1 : 0);
     matcher.setDelta0(isTree ? 0.02 : (double)HDPTreeMatcher::AUTO);
     matcher.setBeta(isTree ? 0.9 : (double)HDPTreeMatcher::AUTO);
-    matcher.setP1(12);
-    matcher.setP2(50);
+    matcher.setP1(18);
+    matcher.setP2(65);
     matcher.setScanlinePasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setUseNonLocalRefinement(false);
     matcher.setUseTemporalPrediction(false);

@@ -69,11 +69,12 @@ struct Layer
     }
 
     //! Disparities beside residuals
-    Mat expected(const hdp::ScanlinePenalties& penalties) const
+    Mat expected(const hdp::ScanlinePenalties& penalties, bool hasFromBelow) const
     {
         Mat residual;
         const Mat disparity =
-            oracle::Scanlines(left, right, blockSize, numDisparities, largest(), windows, penalties).match(residual);
+            oracle::Scanlines(left, right, blockSize, numDisparities, largest(), windows, penalties, hasFromBelow)
+                .match(residual);
         return beside(disparity, residual);
     }
 
@@ -86,15 +87,23 @@ struct Layer
     }
 };
 
-Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::ScanlineBuffers& buffers)
+Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, bool hasFromBelow,
+              hdp::ScanlineBuffers& buffers)
 {
     Mat disparity, residual;
-    hdp::aggregateScanlines(layer.cost(), layer.size(), layer.numDisparities, layer.largest(), layer.windows, penalties,
-                            buffers, disparity, residual);
+    hdp::aggregateScanlines(layer.cost(), layer.left, layer.numDisparities, layer.largest(), layer.windows, penalties,
+                            hasFromBelow, buffers, disparity, residual);
     return Layer::beside(disparity, residual);
 }
 
-const hdp::ScanlinePenalties usualPenalties = { 12, 50, 1 };
+const hdp::ScanlinePenalties usualPenalties = { 18, 60, 1 };
+
+//! With and without the direction from below
+void expectFormula(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::ScanlineBuffers& buffers)
+{
+    for (bool hasFromBelow : { false, true })
+        expectIdentical(layer.expected(penalties, hasFromBelow), aggregate(layer, penalties, hasFromBelow, buffers));
+}
 
 typedef testing::TestWithParam<int> HDPStereo_ScanlineAggregation; // blockSize
 
@@ -108,7 +117,7 @@ TEST_P(HDPStereo_ScanlineAggregation, formula_in_small_images)
         {
             SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
             const Layer layer(rng, size, numDisparities, GetParam());
-            expectIdentical(layer.expected(usualPenalties), aggregate(layer, usualPenalties, buffers));
+            expectFormula(layer, usualPenalties, buffers);
         }
 }
 
@@ -122,7 +131,7 @@ TEST_P(HDPStereo_ScanlineAggregation, formula_in_stripes)
         {
             SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
             const Layer layer(rng, size, numDisparities, GetParam());
-            expectIdentical(layer.expected(usualPenalties), aggregate(layer, usualPenalties, buffers));
+            expectFormula(layer, usualPenalties, buffers);
         }
 }
 
@@ -140,7 +149,7 @@ TEST_P(HDPStereo_ScanlineAggregation, any_penalties)
         {
             SCOPED_TRACE(testing::Message()
                          << numDisparities << " disparities, " << p.small << ", " << p.large << ", " << p.prior);
-            expectIdentical(layer.expected(p), aggregate(layer, p, buffers));
+            expectFormula(layer, p, buffers);
         }
     }
 }
@@ -156,12 +165,17 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
             SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
             const Layer layer(rng, size, numDisparities, GetParam());
             const hdp::CensusCost cost = layer.cost();
-            const hdp::ScanlineProblem problem = { &cost,           size,           numDisparities,
-                                                   layer.largest(), &layer.windows, usualPenalties };
-            Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
-            scratch.prepare(size.width);
-            hdp::opt_emulated::aggregateStripe(problem, 0, Range(0, size.height), scratch, disparity, residual);
-            expectIdentical(aggregate(layer, usualPenalties, buffers), Layer::beside(disparity, residual));
+            for (bool hasFromBelow : { false, true })
+            {
+                const hdp::ScanlineProblem problem = { &cost,           &layer.left,    size,           numDisparities,
+                                                       layer.largest(), &layer.windows, usualPenalties, hasFromBelow };
+                const hdp::ScanlineStripe stripe = { Range(0, size.height), Range(0, size.height) };
+                std::vector<uchar> followed((size.height + 1) * hdp::ScanlineScratch::followedBytes(size.width));
+                Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
+                hdp::opt_emulated::aggregateStripe(problem, stripe, scratch, followed.data(), disparity, residual);
+                expectIdentical(aggregate(layer, usualPenalties, hasFromBelow, buffers),
+                                Layer::beside(disparity, residual));
+            }
         }
 }
 

@@ -81,8 +81,8 @@ static std::vector<Variant> variantsOf(int preset)
         add<int>(variants, "finestLayer", &M::setFinestLayer, { 1, 2 });
         add<int>(variants, "scanlinePasses", &M::setScanlinePasses, { 2, 3 });
         add<int>(variants, "topAggregation", &M::setTopAggregation, { M::AGGREGATION_SCANLINES });
-        add<int>(variants, "P1", &M::setP1, { 6, 24 });
-        add<int>(variants, "P2", &M::setP2, { 25, 100 });
+        add<int>(variants, "P1", &M::setP1, { 9, 36 });
+        add<int>(variants, "P2", &M::setP2, { 35, 100 });
     }
     else
     {

@@ -305,8 +305,9 @@ public:
     /** @brief Cost aggregation of the layers below the top one; for that one see setTopAggregation().
     @param aggregation HDPTreeMatcher::AGGREGATION_TREES (PRESET_PAPER, PRESET_TREE): section 3.
     HDPTreeMatcher::AGGREGATION_SCANLINES (the others): semi-global matching @cite Hirschmuller2008SGM from the left,
-    from the right and from above, over 16 candidates per pixel around the disparity of the layer above and, if there
-    may be one, that of another surface. It needs HDPTreeMatcher::COST_CENSUS, and has no use for the prediction model,
+    from the right and from above, in the layers before the finest one and in later passes from below, too, over 16
+    candidates per pixel around the disparity of the layer above and, if there may be one, that of another surface. It
+    needs HDPTreeMatcher::COST_CENSUS, and has no use for the prediction model,
     delta0, beta, the margin and the prior. */
     CV_WRAP virtual void setAggregation(int aggregation) = 0;
     /** @copybrief setAggregation @sa setAggregation */
@@ -316,24 +317,25 @@ public:
     @param aggregation HDPTreeMatcher::AGGREGATION_TREES (default): sums over its trees, as in section 3.3.
     HDPTreeMatcher::AGGREGATION_SCANLINES (PRESET_QUALITY): the costs become weighted means over each pixel's tree, with
     a fifth of \f$\gamma\f$; then semi-global matching @cite Hirschmuller2008SGM from the left, from the right, from
-    above and from below searches the full range. P2 is multiplied by the similarity of the two neighbours, see
-    setGamma(), but never becomes less than P1. Surfaces without texture get better disparities. It takes time, and 3
-    bytes per pixel and disparity of the top layer. Without effect with AGGREGATION_TREES below or without
-    prediction. */
+    above and from below searches the full range. P1 is half as large there; P2 is multiplied by the similarity of the
+    two neighbours, see setGamma(), but never becomes less than P1. Surfaces without texture get better disparities. It
+    takes time, and 3 bytes per pixel and disparity of the top layer. Without effect with AGGREGATION_TREES below or
+    without prediction. */
     CV_WRAP virtual void setTopAggregation(int aggregation) = 0;
     /** @copybrief setTopAggregation @sa setTopAggregation */
     CV_WRAP virtual int getTopAggregation() const = 0;
 
     /** @brief Penalty for a step of one disparity between neighbours on a scanline.
-    @param P1 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 12 by default. Used by
+    @param P1 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 18 by default. Used by
     HDPTreeMatcher::AGGREGATION_SCANLINES only. */
     CV_WRAP virtual void setP1(int P1) = 0;
     /** @copybrief setP1 @sa setP1 */
     CV_WRAP virtual int getP1() const = 0;
 
     /** @brief Penalty for a larger step between neighbours on a scanline.
-    @param P2 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 50 by default. Used by
-    HDPTreeMatcher::AGGREGATION_SCANLINES only. */
+    @param P2 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 65 by default. It is for neighbours
+    of one grey level; others cost 1.5 less for each level between them, as surfaces end where the image has an edge,
+    but not less than P1. Used by HDPTreeMatcher::AGGREGATION_SCANLINES only. */
     CV_WRAP virtual void setP2(int P2) = 0;
     /** @copybrief setP2 @sa setP2 */
     CV_WRAP virtual int getP2() const = 0;
