@@ -239,13 +239,14 @@ MatcherParameters presetParameters(int preset)
 
     p.aggregation = M::AGGREGATION_SCANLINES;
     p.treeStrategy = createSegmentTree();
-    p.maxTopDisparities = 64;
+    p.topAggregation = M::AGGREGATION_SCANLINES;
+    p.maxTopDisparities = 32;
     if (preset == M::PRESET_ULTRAFAST)
         p.finestLayer = 1;
     if (preset == M::PRESET_QUALITY)
     {
         p.numLayers = 2;
-        p.topAggregation = M::AGGREGATION_SCANLINES;
+        p.maxTopDisparities = 48;
         p.scanlinePasses = 2;
         p.disparityMedianSize = 7;
         p.disparityMedianPasses = 2;

@@ -78,9 +78,9 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : isQuality ? 7 : 5);
     matcher.setDisparityMedianPasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
-    matcher.setTopAggregation(isQuality ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
+    matcher.setTopAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
     matcher.setNumLayers(isQuality ? 2 : 3);
-    matcher.setMaxTopDisparities(hasScanlines ? 64 : 0);
+    matcher.setMaxTopDisparities(isQuality ? 48 : hasScanlines ? 32 : 0);
     matcher.setMaxRowOffset(isPaper ? 0 : 64);
     matcher.setUseLightAlignment(!isPaper);
     matcher.setNoiseThreshold(isPaper ? 0 : 3);

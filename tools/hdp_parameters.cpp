@@ -80,7 +80,8 @@ static std::vector<Variant> variantsOf(int preset)
         add<int>(variants, "numLayers", &M::setNumLayers, { 2, 4 });
         add<int>(variants, "finestLayer", &M::setFinestLayer, { 1, 2 });
         add<int>(variants, "scanlinePasses", &M::setScanlinePasses, { 2, 3 });
-        add<int>(variants, "topAggregation", &M::setTopAggregation, { M::AGGREGATION_SCANLINES });
+        add<int>(variants, "topAggregation", &M::setTopAggregation, { M::AGGREGATION_TREES });
+        add<int>(variants, "maxTopDisparities", &M::setMaxTopDisparities, { 16, 64 });
         add<int>(variants, "P1", &M::setP1, { 9, 36 });
         add<int>(variants, "P2", &M::setP2, { 35, 100 });
     }

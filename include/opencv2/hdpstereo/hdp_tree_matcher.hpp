@@ -69,11 +69,11 @@ Where the presets differ:
 | noiseThreshold | 0 | 3 | 3 | 3 | 3 |
 | treeStrategy | MST | MST | ST | ST | ST |
 | numLayers | 3 | 3 | 3 | 3 | 2 |
-| maxTopDisparities | 0 | 0 | 64 | 64 | 64 |
+| maxTopDisparities | 0 | 0 | 32 | 32 | 48 |
 | finestLayer | 0 | 0 | 0 | 1 | 0 |
 | matchingCost | COLOR_GRADIENT | CENSUS | CENSUS | CENSUS | CENSUS |
 | aggregation | TREES | TREES | SCANLINES | SCANLINES | SCANLINES |
-| topAggregation | without effect | without effect | TREES | TREES | SCANLINES |
+| topAggregation | without effect | without effect | SCANLINES | SCANLINES | SCANLINES |
 | gamma | 25.5 | 20 | 20 | 20 | 20 |
 | disparityPrior | SUPPORT_POINTS | UPPER_LAYER | without effect | without effect | without effect |
 | delta0, beta | AUTO | 0.02, 0.9 | without effect | without effect | without effect |
@@ -111,7 +111,7 @@ public:
     enum Preset
     {
         PRESET_PAPER = 0,     //!< the system behind the paper's tables, HDP+MST; see also setTreeStrategy()
-        PRESET_FAST = 1,      //!< the default: a tree on the top layer, scanlines below
+        PRESET_FAST = 1,      //!< the default: scanlines, on the top layer over means of trees
         PRESET_ULTRAFAST = 2, //!< PRESET_FAST at half the resolution
         PRESET_QUALITY = 3,   //!< slower and more accurate than PRESET_FAST
         PRESET_TREE = 4       //!< trees on every layer, as in the paper; census cost, sub-pixel disparities
@@ -181,8 +181,8 @@ public:
     CV_WRAP virtual int getNumLayers() const = 0;
 
     /** @brief Largest number of disparities of the top layer, which searches all of them.
-    @param maxTopDisparities 0 (PRESET_PAPER, PRESET_TREE): no limit, there are numLayers layers. Otherwise (64 in the
-    other presets) layers are added until the top one has at most this many disparities; of those beyond the second, one
+    @param maxTopDisparities 0 (PRESET_PAPER, PRESET_TREE): no limit, there are numLayers layers. Otherwise (48 in
+    PRESET_QUALITY, 32 in the others) layers are added until the top one has at most this many disparities; of those beyond the second, one
     that would leave it fewer than 16 is not used. Without effect if prediction is off. */
     CV_WRAP virtual void setMaxTopDisparities(int maxTopDisparities) = 0;
     /** @copybrief setMaxTopDisparities @sa setMaxTopDisparities */
@@ -314,13 +314,13 @@ public:
     CV_WRAP virtual int getAggregation() const = 0;
 
     /** @brief Cost aggregation of the top layer, with HDPTreeMatcher::AGGREGATION_SCANLINES below it.
-    @param aggregation HDPTreeMatcher::AGGREGATION_TREES (default): sums over its trees, as in section 3.3.
-    HDPTreeMatcher::AGGREGATION_SCANLINES (PRESET_QUALITY): the costs become weighted means over each pixel's tree, with
-    a fifth of \f$\gamma\f$; then semi-global matching @cite Hirschmuller2008SGM from the left, from the right, from
-    above and from below searches the full range. P1 is half as large there; P2 is multiplied by the similarity of the
-    two neighbours, see setGamma(), but never becomes less than P1. Surfaces without texture get better disparities. It
-    takes time, and 3 bytes per pixel and disparity of the top layer. Without effect with AGGREGATION_TREES below or
-    without prediction. */
+    @param aggregation HDPTreeMatcher::AGGREGATION_TREES: sums over its trees, as in section 3.3.
+    HDPTreeMatcher::AGGREGATION_SCANLINES (PRESET_FAST, ULTRAFAST, QUALITY): the costs become weighted means over each
+    pixel's tree, with a fifth of \f$\gamma\f$; then semi-global matching @cite Hirschmuller2008SGM from the left, from
+    the right, from above and from below searches the full range. P1 is half as large there; P2 is multiplied by the
+    similarity of the two neighbours, see setGamma(), but never becomes less than P1. Surfaces without texture get
+    better disparities. It takes 3 bytes per pixel and disparity of the top layer. Without effect with AGGREGATION_TREES
+    below or without prediction. */
     CV_WRAP virtual void setTopAggregation(int aggregation) = 0;
     /** @copybrief setTopAggregation @sa setTopAggregation */
     CV_WRAP virtual int getTopAggregation() const = 0;
