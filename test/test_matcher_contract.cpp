@@ -201,7 +201,7 @@ const Change commonChanges[] = {
     { "finestLayer", [](HDPTreeMatcher& m) { m.setFinestLayer(1 - m.getFinestLayer()); } },
     { "maxTopDisparities", [](HDPTreeMatcher& m) {
         m.setNumLayers(3); // all have 3 layers without a limit, and 2 with one
-        m.setMaxTopDisparities(64 - m.getMaxTopDisparities());
+        m.setMaxTopDisparities(m.getMaxTopDisparities() ? 0 : 64);
     } },
 };
 
@@ -756,7 +756,7 @@ TEST(HDPStereo_MatcherContract, search_ratios)
     EXPECT_EQ(std::vector<double>(1, 1.), ratios);
 }
 
-//! At least two, or three that leave the top one 16 disparities or more, and so many that it has 64 or less
+//! At least two, or three that leave the top one 16 disparities or more, and so many that it has 32 or less, or 48
 TEST(HDPStereo_MatcherContract, number_of_layers)
 {
     for (const System& preset : presets)
@@ -766,9 +766,9 @@ TEST(HDPStereo_MatcherContract, number_of_layers)
             int expected = 3;
             if (preset.preset != HDPTreeMatcher::PRESET_PAPER && preset.preset != HDPTreeMatcher::PRESET_TREE)
             {
-                const bool mayHaveThree = preset.preset != HDPTreeMatcher::PRESET_QUALITY && numDisparities > 60;
-                expected = mayHaveThree ? 3 : 2;
-                for (int limit = 64 << (expected - 1); numDisparities > limit; limit *= 2)
+                const bool isQuality = preset.preset == HDPTreeMatcher::PRESET_QUALITY;
+                expected = !isQuality && numDisparities > 60 ? 3 : 2;
+                for (int limit = (isQuality ? 48 : 32) << (expected - 1); numDisparities > limit; limit *= 2)
                     ++expected;
             }
             ASSERT_EQ(expected,
@@ -788,7 +788,7 @@ TEST(HDPStereo_MatcherContract, number_of_layers)
 //! The image has so many layers, and no more than it has pixels for; without prediction one.
 TEST(HDPStereo_MatcherContract, layers_of_an_image)
 {
-    const Mat image(33, 40, CV_8UC1, Scalar(7)), small(9, 8, CV_8UC1, Scalar(7));
+    const Mat image(65, 80, CV_8UC1, Scalar(7)), small(9, 8, CV_8UC1, Scalar(7));
     for (const System& system : { presetFast, presetUltrafast, presetQuality })
         for (int numDisparities : { 1, 5, 64, 129, 257, 1024, 2048 })
         {
@@ -798,10 +798,9 @@ TEST(HDPStereo_MatcherContract, layers_of_an_image)
                 hdp::chooseLayers(numDisparities, matcher->getNumLayers(), matcher->getMaxTopDisparities());
             std::vector<double> ratios, ofLayers(layers, 1.);
             for (int layer = 0; layer < layers - 1; ++layer) // 16 candidates
-                ofLayers[layer] =
-                    layer < matcher->getFinestLayer()
-                        ? 0
-                        : std::min(1., 16. / (cvCeil((numDisparities - 1) / std::pow(2., layer)) + 1));
+                ofLayers[layer] = layer < matcher->getFinestLayer()
+                                      ? 0
+                                      : std::min(1., 16. / (cvCeil((numDisparities - 1) / std::pow(2., layer)) + 1));
             match(*matcher, image, image);
             matcher->getSearchRatios(ratios);
             EXPECT_EQ(ofLayers, ratios);
