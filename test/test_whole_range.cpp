@@ -64,15 +64,14 @@ bool hasScanlines(const System& preset, int numDisparities)
 TEST(HDPStereo_WholeRange, each_disparity_of_a_small_range_is_found)
 {
     for (const System& preset : presets)
-        for (int numDisparities : { 16, 64 })
-            if (hasScanlines(preset, numDisparities))
-                expectWholeRange(preset, numDisparities);
+        if (hasScanlines(preset, 16))
+            expectWholeRange(preset, 16);
 }
 
 TEST(HDPStereo_SlowWholeRange, each_disparity_is_found)
 {
     for (const System& preset : presets)
-        for (int numDisparities : { 48, 65, 100, 128, 256 })
+        for (int numDisparities : { 48, 64, 65, 100, 128, 256 })
             if (hasScanlines(preset, numDisparities))
                 expectWholeRange(preset, numDisparities);
 }
