@@ -125,7 +125,8 @@ Matx44d matrixOf(const Terms& t)
     return Matx44d(t(0), t(1), t(2), t(3), t(4), t(5), t(6), t(7), 0, 0, 1, 0, t(8), t(9), t(10), 1);
 }
 
-//! Adds the equations of a point: X = x' W and Y = y' W. Of the matrix, only the lower half, which Cholesky's method reads.
+//! Adds the equations of a point: X = x' W and Y = y' W. Of the matrix it is the lower half, which Cholesky's method
+//! reads.
 void addEquations(const TrackedPoint& point, double weight, NormalMatrix& a, Terms& b)
 {
     const int used = 7; // of the terms, by each equation

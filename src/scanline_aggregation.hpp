@@ -29,7 +29,7 @@ struct ScanlinePenalties
 struct ScanlineProblem
 {
     const CensusCost* cost;
-    const Mat* left;
+    const Mat* left; // grey levels
     Size size;
     int numDisparities;
     int largest; // disparity of a map
@@ -94,14 +94,14 @@ below, which takes a second one. The cost of candidate d is
 
 C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 31) / 4) + floor(prior * |d - predicted| / 2),
 
-I being grey levels and predicted the disparity that the candidate's run was predicted for, all whole numbers.
+I being grey levels, here whole ones, and predicted the disparity that the candidate's run was predicted for.
 
 With L(p, d) of a direction and q the pixel before p,
 L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
-large(p, q) = max(small, large - floor(3 * |I(p) - I(q)| / 2)),
-where candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d in the
-window of p: those that p does not have are left out, and the last one of its first run and the first one of the second
-count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less its own
+large(p, q) = max(min(small, large), large - floor(3 * |I(p) - I(q)| / 2)),
+where candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d
+in the window of p: those that p does not have are left out, and the last one of its first run and the first one of the
+second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less its own
 minimum, at most 255, the first of them if there are several; the tip of the V through its sum and those of the
 candidates beside it, if p has disparities d - 1 and d + 1, gives the sub-pixel part.
 

@@ -261,7 +261,7 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
         expectEffects(preset, topChanges, hasScanlines);
         if (matcher->getMatchingCost() == HDPTreeMatcher::COST_COLOR_GRADIENT)
             expectEffects(preset, colorAndGradientChanges, true);
-        if (hasScanlines && matcher->getFinestLayer() == 0) // else only the top layer is matched, which has a tree
+        if (hasScanlines && matcher->getFinestLayer() == 0) // else the top layer alone is matched
             expectEffects(preset, scanlineChanges, true);
     }
 }

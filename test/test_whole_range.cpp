@@ -55,7 +55,8 @@ void expectWholeRange(const System& preset, int numDisparities)
         }
 }
 
-//! With up to 60 disparities ULTRAFAST has but a tree at half the resolution, which does not find fractions at the ends.
+//! With up to 60 disparities ULTRAFAST matches the top layer alone, at half the resolution, and finds no fractions at the
+//! ends of the range.
 bool hasScanlines(const System& preset, int numDisparities)
 {
     return preset.preset != HDPTreeMatcher::PRESET_ULTRAFAST || numDisparities > 60;

@@ -67,7 +67,6 @@ static std::vector<Variant> variantsOf(int preset)
     add<int>(variants, "maxRowOffset", &M::setMaxRowOffset, { 0 });
     add<bool>(variants, "useLightAlignment", &M::setUseLightAlignment, { false });
     add<double>(variants, "noiseThreshold", &M::setNoiseThreshold, { 0, 1 });
-    add<bool>(variants, "useNonLocalRefinement", &M::setUseNonLocalRefinement, { true });
     variants.push_back(
         { "numDisparities twice as large", [](M& m) { m.setNumDisparities(2 * m.getNumDisparities()); }, 0, 0, 0 });
     if (preset == M::PRESET_FAST) // each has one of the two
@@ -77,7 +76,6 @@ static std::vector<Variant> variantsOf(int preset)
     addTree(variants, "createRandomTree()", stereo::createRandomTree());
     if (preset == M::PRESET_FAST)
     {
-        add<int>(variants, "numLayers", &M::setNumLayers, { 2, 4 });
         add<int>(variants, "finestLayer", &M::setFinestLayer, { 1, 2 });
         add<int>(variants, "scanlinePasses", &M::setScanlinePasses, { 2, 3 });
         add<int>(variants, "topAggregation", &M::setTopAggregation, { M::AGGREGATION_TREES });
@@ -88,6 +86,7 @@ static std::vector<Variant> variantsOf(int preset)
     else
     {
         variants[0].name = "PRESET_TREE";
+        add<bool>(variants, "useNonLocalRefinement", &M::setUseNonLocalRefinement, { true });
         add<int>(variants, "numLayers", &M::setNumLayers, { 2, 4 });
         add<double>(variants, "delta0", &M::setDelta0, { 0.005, 0.08 });
         add<double>(variants, "beta", &M::setBeta, { 0.6, 0.98 });

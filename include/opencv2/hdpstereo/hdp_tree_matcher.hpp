@@ -182,8 +182,8 @@ public:
 
     /** @brief Largest number of disparities of the top layer, which searches all of them.
     @param maxTopDisparities 0 (PRESET_PAPER, PRESET_TREE): no limit, there are numLayers layers. Otherwise (48 in
-    PRESET_QUALITY, 32 in the others) layers are added until the top one has at most this many disparities; of those beyond the second, one
-    that would leave it fewer than 16 is not used. Without effect if prediction is off. */
+    PRESET_QUALITY, 32 in the others) layers are added until the top one has at most this many disparities; of those
+    beyond the second, one that would leave it fewer than 16 is not used. Without effect if prediction is off. */
     CV_WRAP virtual void setMaxTopDisparities(int maxTopDisparities) = 0;
     /** @copybrief setMaxTopDisparities @sa setMaxTopDisparities */
     CV_WRAP virtual int getMaxTopDisparities() const = 0;
