@@ -58,6 +58,12 @@ void trackingSums(const ushort* right, size_t step, int fx, int fy, const short*
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
+namespace {
+
+const int windowPixels = CornerMatching::trackWidth * CornerMatching::trackHeight;
+
+} // namespace
+
 void structureTensors(const ushort* first, size_t step, int count, int* columns, int* xx, int* xy, int* yy)
 {
     const int side = CornerMatching::tensorSide, width = count + side - 1;
@@ -145,7 +151,6 @@ void correlate(const ushort* left, const ushort* right, size_t step, int count, 
 
 void cutWindow(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9])
 {
-    int sum = 0, square = 0, sumX = 0, sumY = 0, xx = 0, xy = 0, yy = 0, productX = 0, productY = 0;
     for (int y = 0; y < CornerMatching::trackHeight; ++y)
     {
         const ushort* const row = left + y * step;
@@ -155,20 +160,23 @@ void cutWindow(const ushort* left, size_t step, short* values, short* gradientX,
         short* const gy = gradientY + y * CornerMatching::trackWidth;
         HDP_VECTORIZED for (int x = 0; x < CornerMatching::trackWidth; ++x)
         {
-            const int value = row[x], dx = row[x + 1] - row[x - 1], dy = below[x] - above[x];
-            l[x] = (short)value;
-            gx[x] = (short)dx;
-            gy[x] = (short)dy;
-            sum += value;
-            square += value * value;
-            sumX += dx;
-            sumY += dy;
-            xx += dx * dx;
-            xy += dx * dy;
-            yy += dy * dy;
-            productX += value * dx;
-            productY += value * dy;
+            l[x] = (short)row[x];
+            gx[x] = (short)(row[x + 1] - row[x - 1]);
+            gy[x] = (short)(below[x] - above[x]);
         }
+    }
+    int sum = 0, square = 0, sumX = 0, sumY = 0, xx = 0, xy = 0, yy = 0, productX = 0, productY = 0;
+    HDP_VECTORIZED for (int i = 0; i < windowPixels; ++i)
+    {
+        sum += values[i];
+        square += values[i] * values[i];
+        sumX += gradientX[i];
+        sumY += gradientY[i];
+        xx += gradientX[i] * gradientX[i];
+        xy += gradientX[i] * gradientY[i];
+        yy += gradientY[i] * gradientY[i];
+        productX += values[i] * gradientX[i];
+        productY += values[i] * gradientY[i];
     }
     const int all[9] = { sum, square, sumX, sumY, xx, xy, yy, productX, productY };
     for (int i = 0; i < 9; ++i)
@@ -178,22 +186,25 @@ void cutWindow(const ushort* left, size_t step, short* values, short* gradientX,
 void trackingSums(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
                   const short* gradientY, int sums[5])
 {
-    const int width = CornerMatching::trackWidth;
-    const int w11 = fx * fy, w10 = fy * 32 - w11, w01 = fx * 32 - w11, w00 = 1024 - w11 - w10 - w01;
-    int sum = 0, square = 0, product = 0, productX = 0, productY = 0;
+    const short w11 = (short)(fx * fy), w10 = (short)(fy * 32 - w11), w01 = (short)(fx * 32 - w11),
+                w00 = (short)(1024 - w11 - w10 - w01);
+    short values[windowPixels];
     for (int y = 0; y < CornerMatching::trackHeight; ++y)
     {
         const ushort *const a = right + y * step, *const b = a + step;
-        const short *const l = left + y * width, *const gx = gradientX + y * width, *const gy = gradientY + y * width;
-        for (int x = 0; x < CornerMatching::trackWidth; ++x)
-        {
-            const int value = (w00 * a[x] + w01 * a[x + 1] + w10 * b[x] + w11 * b[x + 1] + 512) >> 10;
-            sum += value;
-            square += value * value;
-            product += value * l[x];
-            productX += value * gx[x];
-            productY += value * gy[x];
-        }
+        short* const row = values + y * CornerMatching::trackWidth;
+        HDP_VECTORIZED for (int x = 0; x < CornerMatching::trackWidth; ++x) row[x] =
+            (short)((w00 * (short)a[x] + w01 * (short)a[x + 1] + w10 * (short)b[x] + w11 * (short)b[x + 1] + 512) >>
+                    10);
+    }
+    int sum = 0, square = 0, product = 0, productX = 0, productY = 0;
+    HDP_VECTORIZED for (int i = 0; i < windowPixels; ++i)
+    {
+        sum += values[i];
+        square += values[i] * values[i];
+        product += values[i] * left[i];
+        productX += values[i] * gradientX[i];
+        productY += values[i] * gradientY[i];
     }
     sums[0] = sum;
     sums[1] = square;

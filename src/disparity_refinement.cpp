@@ -23,6 +23,11 @@ void dispatchMedian(const ushort* const* rows, int size, int width, short* const
     CV_CPU_DISPATCH(medianRow, (rows, size, width, sorted, filtered), CV_CPU_DISPATCH_MODES_ALL);
 }
 
+bool dispatchNearer(const ushort* before, const ushort* after, int count)
+{
+    CV_CPU_DISPATCH(isAnyNearer, (before, after, count), CV_CPU_DISPATCH_MODES_ALL);
+}
+
 template <typename T>
 void dispatchVisibility(const T* disparity, int width, int invalid, int largest, int* columns, int* nearest,
                         uchar* visibility)
@@ -102,9 +107,9 @@ void restoreThinStructures(const Mat& unfiltered, Mat& disparity)
             {
                 // Hardly a group of columns has any.
                 const int end = std::min(begin + ThinStructures::columns, disparity.cols);
-                int any = 0;
-                HDP_VECTORIZED for (int x = begin; x < end; ++x) any |= before[x] - row[x] >= minDistance;
-                for (int x = begin; any && x < end; ++x)
+                if (!dispatchNearer(before + begin, row + begin, end - begin))
+                    continue;
+                for (int x = begin; x < end; ++x)
                     if (before[x] - row[x] >= minDistance && isInStructure(unfiltered, y, x))
                         row[x] = before[x];
             }

@@ -37,7 +37,22 @@ void visibilityRow(const short* disparity, int width, int invalid, int largest, 
 @param filtered Receives the row. */
 void medianRow(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered);
 
+//! Whether one of count disparities before the median is nearer than after it by ThinStructures::minDistance
+bool isAnyNearer(const ushort* before, const ushort* after, int count);
+
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+bool isAnyNearer(const ushort* before, const ushort* after, int count)
+{
+    const ushort least = ThinStructures::minDistance * subpixelScale;
+    ushort any = 0;
+    HDP_VECTORIZED for (int x = 0; x < count; ++x)
+    {
+        const ushort nearer = (ushort)(std::max(before[x], after[x]) - after[x]);
+        any |= (ushort)(nearer >= least);
+    }
+    return any != 0;
+}
 
 namespace {
 
@@ -58,8 +73,10 @@ int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int wid
     const int hidden = 7;            // pixels before it per visible one, at least
     const uchar* visible = scratch.visible.data();
     const int* columns = scratch.columns.data();
-    int border = 0, visibleBefore = 0;
-    for (int begin = findByte(visible, 0, width, 1); begin < width;)
+    int border = 0, visibleBefore = 0, reach = 0; // what is at the border is before reach
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) reach = std::max(reach, columns[x] <= 1 + near ? x + 1 : 0);
+    for (int begin = findByte(visible, 0, width, 1);
+         begin < width && (begin < reach || hidden * visibleBefore < width);)
     {
         const int runEnd = findByte(visible, begin, width, 0);
         for (int x = begin; x < runEnd; ++x)

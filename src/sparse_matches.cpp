@@ -22,11 +22,10 @@ void dispatchCosts(const uchar* left, const uchar* right, size_t planeStride, in
 //! Whether enough of the window's comparisons found a darker pixel
 bool hasTexture(const CensusCost& cost, const uchar* left)
 {
+    const unsigned mask = 0xffffff >> (8 * (3 - cost.planes()));
     int darker = 0;
-    for (int i = 0; i <= 2 * SparseMatches::radius; ++i)
-        for (int plane = 0; plane < cost.planes(); ++plane)
-            for (int bits = left[4 * i + plane]; bits; bits &= bits - 1)
-                ++darker;
+    for (int i = 0; i <= 2 * SparseMatches::radius; ++i, left += 4)
+        darker += countCensusBits((left[0] | (unsigned)left[1] << 8 | (unsigned)left[2] << 16) & mask);
     return darker * SparseMatches::texture >= cost.comparisons() * (2 * SparseMatches::radius + 1);
 }
 
