@@ -65,23 +65,25 @@ inline int findByte(const uchar* bytes, int begin, int end, uchar value)
     return found ? (int)((const uchar*)found - bytes) : end;
 }
 
+const int nearBorder = 3; // columns of the right image, from 1 on, that count as its border
+
 //! Where the part of the row begins that the right image shows: at the last visible surface that begins at the border of
 //! the right image. One that begins farther inside counts, too, if hardly a pixel before it is visible.
-int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width)
+//! reach: from this column on no surface begins there.
+int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width, int reach)
 {
-    const int surface = 4, near = 2; // columns, at least and at most
-    const int hidden = 7;            // pixels before it per visible one, at least
+    const int surface = 4; // columns, at least
+    const int hidden = 7;  // pixels before it per visible one, at least
     const uchar* visible = scratch.visible.data();
     const int* columns = scratch.columns.data();
-    int border = 0, visibleBefore = 0, reach = 0; // what is at the border is before reach
-    HDP_VECTORIZED for (int x = 0; x < width; ++x) reach = std::max(reach, columns[x] <= 1 + near ? x + 1 : 0);
+    int border = 0, visibleBefore = 0;
     for (int begin = findByte(visible, 0, width, 1);
          begin < width && (begin < reach || hidden * visibleBefore < width);)
     {
         const int runEnd = findByte(visible, begin, width, 0);
         for (int x = begin; x < runEnd; ++x)
         {
-            const bool isAtBorder = columns[x] <= 1 + near;
+            const bool isAtBorder = columns[x] <= nearBorder;
             if (!isAtBorder && (x > begin || hidden * visibleBefore > x))
                 break;
             int end = x + 1;
@@ -105,9 +107,12 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, Occlus
     int* columns = scratch.columns.data();
     uchar *visible = scratch.visible.data(), *shown = scratch.shown.data();
     std::fill(there, there + width + 1, UINT_MAX);
+    int reach = 0;
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        columns[x] = std::max(x + 1 - wholeDisparity(disparity[x]), 0);
+        const int column = std::max(x + 1 - wholeDisparity(disparity[x]), 0);
+        columns[x] = column;
+        reach = std::max(reach, column <= nearBorder ? x + 1 : 0);
         keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
     }
     for (int x = 0; x < width; ++x)
@@ -118,7 +123,7 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, Occlus
         const int difference = (int)(0xffff - (keys[x] & 0xffff)) - disparity[x];
         visible[x] = (uchar)((columns[x] > 0) & (difference <= subpixelScale) & (difference >= -subpixelScale));
     }
-    std::fill(visible, visible + findBorder(disparity, scratch, width), (uchar)0);
+    std::fill(visible, visible + findBorder(disparity, scratch, width, reach), (uchar)0);
     shown[0] = visible[0];
     shown[width - 1] = visible[width - 1];
     HDP_VECTORIZED for (int x = 1; x < width - 1; ++x) shown[x] = visible[x] & (visible[x - 1] | visible[x + 1]);

@@ -27,7 +27,7 @@ void dispatchStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe
 
 } // namespace
 
-void ScanlineScratch::prepare(int width)
+void ScanlineScratch::prepare(int width, int numDisparities)
 {
     const size_t pairs = ((size_t)width + 1) / 2, upperColumns = pairs + 2 * margin;
     const size_t stepBytes = 2 * maxBlock * CandidateWindow::candidates,
@@ -41,6 +41,13 @@ void ScanlineScratch::prepare(int width)
         stored->resize(upperColumns * CandidateWindow::candidates);
     for (std::vector<short>& run : first)
         run.resize(2 * pairs);
+    const int length = CandidateWindow::runLength, farthest = numDisparities + CandidateWindow::candidates;
+    for (int run = 0; run < CandidateWindow::runs; ++run)
+    {
+        orders[run].assign(2 * (farthest + length), 255);
+        for (int i = 0; i < length; ++i)
+            orders[run][farthest + length + i] = (uchar)(run * length + i);
+    }
     edges.resize(2 * blockColumns + 16); // some more to read
     winners.resize(blockColumns);
     winnerCosts.resize(blockColumns);

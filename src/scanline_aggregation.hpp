@@ -70,14 +70,17 @@ struct ScanlineScratch
     {
         return (((size_t)width + 1) / 2 + maxBlock + 1) * 2 * CandidateWindow::candidates;
     }
-    //! Provides the memory for a layer of this width, and clears what a sweep starts from.
-    CV_EXPORTS void prepare(int width);
+    //! Provides the memory for a layer of this width and number of disparities, and clears what a sweep starts from.
+    CV_EXPORTS void prepare(int width, int numDisparities);
 
     std::vector<uchar> costs, fromRight, fromAbove;            // CandidateWindow::candidates per pixel of a block
     std::vector<Column> columns;                               // of the layer above
     std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // CandidateWindow::candidates per such column
     std::vector<short> first[CandidateWindow::runs];           // by column
-    std::vector<uchar> edges;                                  // large penalties of a block, two per pixel
+    // Which lanes have the candidates of a run that begins i disparities after one of these, in the middle and i on: 255
+    // for those that it does not have
+    std::vector<uchar> orders[CandidateWindow::runs];
+    std::vector<uchar> edges; // large penalties of a block, two per pixel
     // Of the winners of a block: their lanes, sums, each with those of the lanes before and behind, and costs
     std::vector<uchar> winners, winnerCosts;
     std::vector<unsigned> winnerSums;

@@ -65,7 +65,10 @@ public:
           entersUpperRow_(false), isUpward_(isUpward)
     {
         for (int run = 0; run < Window::runs; ++run)
+        {
             first_[run] = scratch.first[run].data();
+            orders_[run] = scratch.orders[run].data() + scratch.orders[run].size() / 2;
+        }
         for (int r = 0; r < groups; ++r)
         {
             const size_t row = r * (2 * (size_t)pairs_ + 2 * margin) + margin;
@@ -75,13 +78,12 @@ public:
             edges_[r] = scratch.edges.data() + 2 * row;
         }
         preparePriorTable();
-        prepareOrderTables();
     }
 
     //! The vertical direction alone, over a block of rows from y on; followed: where to store it, if it is needed
     void follow(int y, uchar* followed)
     {
-        enterRows(y);
+        enterRows(y, true);
         switch (p_.cost->planes())
         {
         case 1:
@@ -97,7 +99,7 @@ public:
     //! stored, if there is one
     void run(int y, int end, const uchar* fromBelow, Mat& disparity, Mat& residual)
     {
-        enterRows(y);
+        enterRows(y, false);
         switch (p_.cost->planes())
         {
         case 1:
@@ -124,12 +126,12 @@ private:
     static_assert(groups <= (int)ScanlineScratch::maxBlock, "the scratch memory is for larger blocks");
     typedef ScanlineScratch::Column Column;
 
-    //! The prior of a run, or of two runs that follow one another, by the distance of its first candidate from the
-    //! predicted disparity; with the large penalty, which is a part of all costs in a sweep.
+    //! The prior of a run, by the distance of its first candidate from the predicted disparity; with the large penalty,
+    //! which is a part of all costs in a sweep.
     void preparePriorTable()
     {
         for (int distance = -priorRange; distance < priorRange; ++distance)
-            for (int i = 0; i < Window::candidates; ++i)
+            for (int i = 0; i < Window::runLength; ++i)
                 priorTable_[distance + priorRange][i] =
                     (uchar)(p_.penalties.large +
                             p_.penalties.prior * std::abs(distance + i * subpixelScale) / (2 * subpixelScale));
@@ -141,47 +143,23 @@ private:
         return priorTable_[std::min(std::max(distance, -priorRange), priorRange - 1) + priorRange];
     }
 
-    //! Which lanes have the candidates of a run, or of two that follow one another, that begins `shift` disparities
-    //! after another one of the same length: 255 for those that do not exist
-    void prepareOrderTables()
-    {
-        for (int i = 0; i < 3 * Window::candidates; ++i)
-        {
-            const int lane = i - Window::candidates, high = i - 2 * Window::runLength;
-            pairOrder_[i] = lane >= 0 && lane < Window::candidates ? (uchar)lane : (uchar)255;
-            for (int run = 0; run < Window::runs; ++run)
-                runOrder_[run][i] =
-                    high >= 0 && high < Window::runLength ? (uchar)(run * Window::runLength + high) : (uchar)255;
-        }
-    }
-
-    static int clampShift(int shift, int length) { return std::min(std::max(shift, -length), length); }
-
     //! Which lanes of `from` have the candidates of `to`
-    void transition(const Window& from, const Window& to, uchar* order) const
+    static void transition(const uchar* const (&orders)[Window::runs], const Window& from, const Window& to,
+                           uchar* order)
     {
-        if (from.isContiguous() && to.isContiguous())
-        {
-            const int shift = clampShift(to.first[0] - from.first[0], Window::candidates);
-            std::memcpy(order, pairOrder_ + Window::candidates + shift, Window::candidates);
-            return;
-        }
         for (int run = 0; run < Window::runs; ++run)
         {
             uint64 lanesOf[Window::runs];
             for (int other = 0; other < Window::runs; ++other)
-            {
-                const int shift = clampShift(to.first[run] - from.first[other], Window::runLength);
-                std::memcpy(&lanesOf[other], runOrder_[other] + 2 * Window::runLength + shift, Window::runLength);
-            }
+                std::memcpy(&lanesOf[other], orders[other] + to.first[run] - from.first[other], Window::runLength);
             lanesOf[0] &= lanesOf[1]; // runs do not overlap: at least one of the two is 255
             std::memcpy(order + run * Window::runLength, &lanesOf[0], Window::runLength);
         }
     }
 
     //! Prepares a block of rows, y in the first group: what follows from the windows, if they are new, from the grey
-    //! levels, and the rows' pointers.
-    void enterRows(int y)
+    //! levels, and the rows' pointers. isFollowed: for the vertical direction alone
+    void enterRows(int y, bool isFollowed)
     {
         const int upperRow = std::min(y / 2, p_.windows->rows - 1);
         entersUpperRow_ = upperRow != upperRow_ && windows_;
@@ -190,7 +168,7 @@ private:
             const Window* above = windows_;
             windows_ = p_.windows->ptr<Window>(upperRow);
             upperRow_ = upperRow;
-            enterWindows(above);
+            enterWindows(above, isFollowed);
         }
         const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
         for (int r = 0; r < groups; ++r)
@@ -229,10 +207,11 @@ private:
         return ByteLanes::repeatByte<at>(edges);
     }
 
-    void enterWindows(const Window* above)
+    void enterWindows(const Window* above, bool isFollowed)
     {
         // Bytes may alias everything but what is local.
         const Window* const windows = windows_;
+        const uchar* const orders[Window::runs] = { orders_[0], orders_[1] };
         // An odd last column belongs to the pixel of the layer above that the one before belongs to.
         const int pairs = pairs_, lastWindow = p_.windows->cols - 1;
         const int lanesUsed = p_.validCandidates();
@@ -252,16 +231,18 @@ private:
             firstOfLow[0] = firstOfLow[1] = own.first[0];
             firstOfHigh[0] = firstOfHigh[1] = own.first[1];
 
-            std::memcpy(prior, priorOf(own, 0), Window::candidates);
-            if (!isContiguous || own.predicted[0] != own.predicted[1])
-                std::memcpy(prior + Window::runLength, priorOf(own, 1), Window::runLength);
+            for (int run = 0; run < Window::runs; ++run)
+                std::memcpy(prior + run * Window::runLength, priorOf(own, run), Window::runLength);
             for (int i = lanesUsed; i < Window::candidates; ++i)
                 prior[i] = 255;
 
-            transition(before, own, intoRight);
-            transition(own, before, intoLeft);
+            if (!isFollowed)
+            {
+                transition(orders, before, own, intoRight);
+                transition(orders, own, before, intoLeft);
+            }
             if (above)
-                transition(above[std::min(x, lastWindow)], own, intoBelow);
+                transition(orders, above[std::min(x, lastWindow)], own, intoBelow);
 
             ++column;
             firstOfLow += 2;
@@ -524,8 +505,8 @@ private:
     bool entersUpperRow_;   // whether it is not that of the block before
     const bool isUpward_;
     const uchar *left_[groups], *right_[groups];
-    uchar priorTable_[2 * priorRange][Window::candidates];
-    uchar pairOrder_[3 * Window::candidates], runOrder_[Window::runs][3 * Window::candidates];
+    uchar priorTable_[2 * priorRange][Window::runLength];
+    const uchar* orders_[Window::runs];
 };
 
 } // namespace
@@ -540,12 +521,12 @@ void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& strip
     };
     if (problem.hasFromBelow)
     {
-        scratch.prepare(width);
+        scratch.prepare(width, problem.numDisparities);
         Sweep upward(problem, true, scratch);
         for (int y = (reach.end + 1) / 2 * 2 - block; y >= rows.start; y -= block)
             upward.follow(y + block - 1, y < rows.end ? ofBlock(y) : nullptr);
     }
-    scratch.prepare(width);
+    scratch.prepare(width, problem.numDisparities);
     Sweep downward(problem, false, scratch);
     for (int y = reach.start; y < rows.start; y += block)
         downward.follow(y, nullptr);
