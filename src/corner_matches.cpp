@@ -56,11 +56,11 @@ double cornerness(int xx, int xy, int yy)
 }
 
 //! The best corner of every cell
-void findCorners(const Mat& image, std::vector<CornerMatch>& matches)
+void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matches)
 {
     const int margin = CornerMatching::searchSide / 2 + CornerMatching::searchRadius;
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
-    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / CornerMatching::points)), 4);
+    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / CornerMatching::points)), spacing);
     const Size grid(inside.width / cell, inside.height / cell);
     const int count = grid.width * cell, radius = CornerMatching::tensorSide / 2;
     matches.assign(grid.area(), CornerMatch());
@@ -240,9 +240,10 @@ int buildCoarse(const std::vector<Mat>& layers, std::vector<Mat>& pyramid)
 
 } // namespace
 
-void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, std::vector<CornerMatch>& matches)
+void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, int spacing,
+                       std::vector<CornerMatch>& matches)
 {
-    findCorners(left, matches);
+    findCorners(left, spacing, matches);
     parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
         Correlations correlations;
         for (int i = range.start; i < range.end; ++i)
@@ -268,7 +269,9 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
     const Mat &coarseLeft = coarse.left[coarse.layer], &coarseRight = coarse.right[coarse.layer];
     if (std::min(coarseLeft.rows, coarseLeft.cols) < CornerMatching::leastSide)
         return;
-    findCornerMatches(coarseLeft, coarseRight, layerDisparities(numDisparities, coarse.layer, true), coarse.matches);
+    const int spacing = std::max(CornerMatching::spacing >> coarse.layer, (int)CornerMatching::leastSpacing);
+    findCornerMatches(coarseLeft, coarseRight, layerDisparities(numDisparities, coarse.layer, true), spacing,
+                      coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
 }
 

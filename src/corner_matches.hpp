@@ -16,6 +16,8 @@ struct CornerMatching
     enum
     {
         points = 500,     // at most so many, one per cell of a grid
+        spacing = 10,     // side of a cell, in pixels of the image, at least: windows of nearer corners see the same
+        leastSpacing = 4, // the same in pixels of the coarse layer
         tensorSide = 7,   // of the window that tells how much of a corner a pixel is
         searchRadius = 2, // rows above and below that are searched on the coarse layer
         searchSide = 9,   // of the window there
@@ -41,8 +43,9 @@ struct CornerMatch
 @param left CV_16UC1, values up to 1023.
 @param right Of the same size and type.
 @param numDisparities Of the layer.
+@param spacing Side of a cell of the grid, at least.
 @param matches Receives one match per corner, to whole pixels. */
-CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, int numDisparities,
+CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, int spacing,
                                   std::vector<CornerMatch>& matches);
 
 /** Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.

@@ -168,7 +168,7 @@ TEST(HDPStereo_RowAlignment, matches_correlate_best)
     hdp::greyLevels(pair.left, 8, left);
     hdp::greyLevels(misalign(pair.right, makeModel(1)), 8, right);
     std::vector<hdp::CornerMatch> matches;
-    hdp::findCornerMatches(left, right, 25, matches);
+    hdp::findCornerMatches(left, right, 25, hdp::CornerMatching::leastSpacing, matches);
     int valid = 0, oneRow = 0;
     for (const hdp::CornerMatch& match : matches)
     {
