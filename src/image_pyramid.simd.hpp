@@ -6,6 +6,8 @@
 #include "image_pyramid.hpp"
 #include "vectorized.hpp"
 
+#include <cstring>
+
 namespace cv {
 namespace stereo {
 namespace hdp {
@@ -27,12 +29,17 @@ void halveRow(const uchar* upper, const uchar* lower, int width, int channels, u
             (uchar)((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1]) / 4);
         return;
     }
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    // Also where no pixel begins, for vectors; then every second one is taken.
+    const int block = 64;
+    uchar all[6 * block];
+    for (int begin = 0; begin < width; begin += block)
     {
-        const uchar *a = upper + 6 * x, *b = lower + 6 * x;
-        means[3 * x] = (uchar)((a[0] + a[3] + b[0] + b[3]) / 4);
-        means[3 * x + 1] = (uchar)((a[1] + a[4] + b[1] + b[4]) / 4);
-        means[3 * x + 2] = (uchar)((a[2] + a[5] + b[2] + b[5]) / 4);
+        const int count = std::min(block, width - begin);
+        const uchar *a = upper + 6 * begin, *b = lower + 6 * begin;
+        HDP_VECTORIZED for (int i = 0; i < 6 * count - 3; ++i) all[i] =
+            (uchar)((a[i] + a[i + 3] + b[i] + b[i + 3]) / 4);
+        for (int x = 0; x < count; ++x)
+            std::memcpy(means + 3 * (begin + x), all + 6 * x, 3);
     }
 }
 
