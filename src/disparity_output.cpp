@@ -30,6 +30,16 @@ Mat enlarge(const Mat& finest, const PairSettings& settings, Size size, std::vec
     return upper;
 }
 
+//! As Mat::convertTo(), by all threads
+void convert(const Mat& map, int depth, double scale, double shift, Mat& converted)
+{
+    converted.create(map.size(), depth);
+    parallel_for_(Range(0, map.rows), [&](const Range& rows) {
+        Mat part = converted.rowRange(rows);
+        map.rowRange(rows).convertTo(part, depth, scale, shift);
+    });
+}
+
 void removeSpeckles(Mat& disparity, const MatcherParameters& p, short invalid, Mat& speckles)
 {
     // One byte more than cv::filterSpeckles allocates: it writes there if no two pixels belong together.
@@ -49,18 +59,18 @@ bool outputDisparity(const Mat& finest, const MatcherParameters& p, const PairSe
     Mat extended = enlarge(finest, settings, extendedSize, buffers.enlarged);
     if (!p.useSubpixel)
     {
-        extended.convertTo(buffers.whole, CV_16U, 1. / unit);
-        buffers.whole.convertTo(buffers.whole, CV_16U, unit);
+        convert(extended, CV_16U, 1. / unit, 0, buffers.whole);
+        convert(buffers.whole, CV_16U, unit, 0, buffers.whole);
         extended = buffers.whole;
     }
     const Mat map = extended.colRange(settings.extension, extended.cols);
     const bool isFloat = disparity.depth() == CV_32F;
     const bool isFiltered = p.disp12MaxDiff > 0 || p.speckleWindowSize > 0;
     if (isFloat)
-        map.convertTo(disparity, CV_32F, 1. / unit, p.minDisparity);
+        convert(map, CV_32F, 1. / unit, p.minDisparity, disparity);
     Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
     if (!isFloat || isFiltered)
-        map.convertTo(fixedPoint, CV_16S, 1, (double)p.minDisparity * unit);
+        convert(map, CV_16S, 1, (double)p.minDisparity * unit, fixedPoint);
     if (!isFiltered)
         return false;
 
