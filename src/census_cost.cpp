@@ -16,8 +16,8 @@ namespace {
 // Bytes before and behind a row of the census that may be read; they mean nothing.
 const int censusMargin = 16;
 
-// Columns of a census row are computed in groups of this many.
-const int censusColumns = 32;
+// Columns of a census row are computed in groups of this many, and rows from a copy of so many that stays in the caches.
+const int censusColumns = 32, censusRows = 16;
 
 void dispatchLeftCensus(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels)
 {
@@ -48,29 +48,34 @@ void CensusCost::prepareImage(const Mat& image, int radius, bool isRight, int af
 {
     const int width = image.cols, planes = planes_.count, rows = image.rows;
     const int cols = (int)alignSize(width, censusColumns); // what is computed past the width is overwritten or not read
-    grey_.create(rows + 2 * radius, cols + 2 * radius, CV_16S); // all levels are below 32768
-    copyBordered(image, 0, radius, radius, radius + cols - width, isRight, grey_);
     if (isRight)
         right_.create((planes + 1) * rows, censusMargin + std::max(width + after, cols) + censusMargin, CV_8U);
     else
         left_.create(rows, censusMargin + cols + censusMargin, CV_8UC4);
-    const ptrdiff_t step = (ptrdiff_t)grey_.step1();
-    parallel_for_(Range(0, rows), [&](const Range& range) {
+    parallel_for_(Range(0, (rows + censusRows - 1) / censusRows), [&](const Range& range) {
+        Mat bordered(censusRows + 2 * radius, cols + 2 * radius, CV_16S); // all levels are below 32768
+        const ptrdiff_t step = (ptrdiff_t)bordered.step1();
         std::vector<uchar> leftPlanes(isRight ? 0 : 3 * cols);
-        for (int y = range.start; y < range.end; ++y)
+        for (int i = range.start; i < range.end; ++i)
         {
-            const short* grey = grey_.ptr<short>(y + radius) + radius;
-            if (!isRight)
+            const int first = i * censusRows, end = std::min(first + censusRows, rows);
+            copyBordered(image, 0, first - radius, radius, radius + cols - width, isRight,
+                         bordered.rowRange(0, end - first + 2 * radius));
+            for (int y = first; y < end; ++y)
             {
-                dispatchLeftCensus(grey, step, radius, cols, leftPlanes.data(), left_.ptr(y) + 4 * censusMargin);
-                continue;
-            }
-            dispatchRightCensus(grey, step, radius, cols, right_.ptr(y) + censusMargin, right_.step * rows);
-            for (int plane = 0; plane <= planes; ++plane)
-            {
-                uchar* row = right_.ptr(plane * rows + y) + censusMargin;
-                std::fill(row - censusMargin, row, row[0]);
-                std::fill(row + width, right_.ptr(plane * rows + y) + right_.cols, row[width - 1]);
+                const short* grey = bordered.ptr<short>(y - first + radius) + radius;
+                if (!isRight)
+                {
+                    dispatchLeftCensus(grey, step, radius, cols, leftPlanes.data(), left_.ptr(y) + 4 * censusMargin);
+                    continue;
+                }
+                dispatchRightCensus(grey, step, radius, cols, right_.ptr(y) + censusMargin, right_.step * rows);
+                for (int plane = 0; plane <= planes; ++plane)
+                {
+                    uchar* row = right_.ptr(plane * rows + y) + censusMargin;
+                    std::fill(row - censusMargin, row, row[0]);
+                    std::fill(row + width, right_.ptr(plane * rows + y) + right_.cols, row[width - 1]);
+                }
             }
         }
     });

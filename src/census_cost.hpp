@@ -74,7 +74,6 @@ private:
     CensusPlanes planes_;
     Mat left_;  // CV_8UC4, see leftPixels()
     Mat right_; // CV_8UC1, the planes of the census and the grey levels below one another, see rightPlane()
-    Mat grey_;
 };
 
 } // namespace hdp

@@ -89,8 +89,8 @@ void ColorGradientCost::prepareImage(const Mat& image, bool mirrored, int after,
     color.create(planes_.count * rows, image.cols + 2 * radius + after, CV_8U);
     gradient.create(rows, color.cols, CV_16S);
     for (int c = 0; c < planes_.count; ++c)
-        copyBordered(image, c, radius, radius, radius + after, mirrored, color.rowRange(c * rows, (c + 1) * rows));
-    copyBordered(gradient_, 0, radius, radius, radius + after, mirrored, gradient);
+        copyBordered(image, c, -radius, radius, radius + after, mirrored, color.rowRange(c * rows, (c + 1) * rows));
+    copyBordered(gradient_, 0, -radius, radius, radius + after, mirrored, gradient);
 }
 
 void ColorGradientCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const

@@ -26,13 +26,13 @@ template <typename T> void copyColumns(const T* from, int step, int width, T* to
 }
 
 template <typename T>
-void copyRows(const Mat& image, int channel, int radius, int before, int after, bool mirrored, Mat& bordered)
+void copyRows(const Mat& image, int channel, int first, int before, int after, bool mirrored, Mat& bordered)
 {
     const int step = image.channels(), width = image.cols;
     parallel_for_(Range(0, bordered.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
-            const T* from = image.ptr<T>(std::min(std::max(y - radius, 0), image.rows - 1)) + channel;
+            const T* from = image.ptr<T>(std::min(std::max(first + y, 0), image.rows - 1)) + channel;
             T* to = bordered.ptr<T>(y);
             copyColumns(mirrored ? from + (width - 1) * step : from, mirrored ? -step : step, width, to + before);
             std::fill(to, to + before, to[before]);
@@ -45,12 +45,12 @@ void copyRows(const Mat& image, int channel, int radius, int before, int after, 
 
 MatchingCost::~MatchingCost() {}
 
-void copyBordered(const Mat& image, int channel, int radius, int before, int after, bool mirrored, Mat bordered)
+void copyBordered(const Mat& image, int channel, int first, int before, int after, bool mirrored, Mat bordered)
 {
     if (image.elemSize1() == 1)
-        copyRows<uchar>(image, channel, radius, before, after, mirrored, bordered);
+        copyRows<uchar>(image, channel, first, before, after, mirrored, bordered);
     else
-        copyRows<ushort>(image, channel, radius, before, after, mirrored, bordered);
+        copyRows<ushort>(image, channel, first, before, after, mirrored, bordered);
 }
 
 } // namespace hdp

@@ -31,15 +31,15 @@ public:
 //! Columns behind the last candidate that evaluate() may read
 const int costPadding = 32;
 
-/** Copies a channel and adds borders, whose pixels are the nearest ones of the image.
+/** Copies rows of a channel and adds borders, whose pixels are the nearest ones of the image.
 @param image Of 8 or 16 bits.
 @param channel Its channel.
-@param radius Rows added above and below.
+@param first The row to copy first; those above and below the image are borders.
 @param before Columns added on the left of the copy.
 @param after Columns added on its right.
 @param mirrored Whether the copy has the columns from right to left.
-@param bordered Receives the copy; it has its size already. */
-void copyBordered(const Mat& image, int channel, int radius, int before, int after, bool mirrored, Mat bordered);
+@param bordered Receives the copy, as many rows as it has. */
+void copyBordered(const Mat& image, int channel, int first, int before, int after, bool mirrored, Mat bordered);
 
 //! y of pixel y * width + x; rowsPerPixel: 1. / width. Exact: the error of the product is far less than half a pixel.
 CV_ALWAYS_INLINE int rowOf(int pixel, double rowsPerPixel) { return (int)((pixel + 0.5) * rowsPerPixel); }
