@@ -25,7 +25,7 @@ OUTPUTS = {
     'CV_OUT std::vector<String>&': ('std::vector<cv::String>', 'List[str]'),
 }
 
-WORDS = (  # from Doxygen and C++ to Python
+DOXYGEN_WORDS = (  # to plain text
     (r'[^.]*cv::noArray\(\)[^.]*\.', ''),
     (r'(?<=[.] )@ref tutorial_\w+', 'The tutorial'),
     (r'@ref tutorial_\w+', 'the tutorial'),
@@ -36,6 +36,9 @@ WORDS = (  # from Doxygen and C++ to Python
     (r'\\(\w+) ?\{(.*?)\}', r'\1(\2)'),
     (r'\\([a-zA-Z]+)', r'\1'),
     (r'[{}]', ''),
+)
+
+WORDS = DOXYGEN_WORDS + (  # and from C++ to Python
     (r'\bHDPTreeMatcher::', 'HDPTreeMatcher.'),
     (r'\bDisparityPredictionModel::', 'DisparityPredictionModel.'),
     (r'cv::Mat_<float>', 'a numpy array of float32'),
@@ -50,10 +53,14 @@ WORDS = (  # from Doxygen and C++ to Python
 )
 
 
-def in_python_words(text):
-    for pattern, replacement in WORDS:
+def in_words(text, words):
+    for pattern, replacement in words:
         text = re.sub(pattern, replacement, text, flags=re.S)
     return '\n'.join(line.strip() for line in text.strip().splitlines())
+
+
+def in_python_words(text):
+    return in_words(text, WORDS)
 
 
 class Header:
