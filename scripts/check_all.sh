@@ -9,6 +9,7 @@
 #     in-tree    scripts/build_in_tree.sh
 #     projects   a program that builds the module by FetchContent, as a static library
 #     dask       samples/hdp_dask.py on a cluster that loses a worker
+#     web        scripts/check_web.sh: the web page, in Chromium
 #     ros        ROS 1's stereo_image_proc under hdpstereo-run
 #     arm64, i386, riscv64, s390x   scripts/check_machine.sh: the same maps there, and unit tests
 #     clang      unit tests of a build by Clang
@@ -22,7 +23,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 fuzz_seconds=1800
-all_steps=(warnings widths threads memory fuzz in-tree projects dask ros arm64 i386 riscv64 s390x clang mingw bookworm
+all_steps=(warnings widths threads memory fuzz in-tree projects dask web ros arm64 i386 riscv64 s390x clang mingw bookworm
     trixie packages-bookworm packages-trixie)
 steps=()
 for argument in "$@"; do
@@ -108,6 +109,13 @@ check_dask()
     install_packages python3-distributed python3-opencv
     "$checkout/scripts/test.sh" -R sample_dask
     ! ctest --test-dir "$build/release" -R sample_dask | grep Skipped
+}
+
+check_web()
+{
+    install_packages build-essential cmake libopencv-dev emscripten chromium
+    build_tests "$build/release" all
+    "$checkout/scripts/check_web.sh" "$build/release"
 }
 
 check_ros()

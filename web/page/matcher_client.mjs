@@ -1,0 +1,104 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// The worker, as seen from the page. A run that is not wanted any more ends with its worker; the next one takes its place.
+
+export class Cancelled extends Error {}
+
+export class MatcherClient {
+    async start() {
+        // Threads share memory, which browsers allow if the host isolates the page from others.
+        const threads = globalThis.crossOriginIsolated ? navigator.hardwareConcurrency : 1;
+        const name = threads > 1 ? 'hdpstereo-threads' : 'hdpstereo', file = `${name}.wasm`;
+        const [module, documentation] = await Promise.all([
+            WebAssembly.compileStreaming(fetch(file)).catch(async () =>
+                // a server that does not know the type of the file
+                WebAssembly.compile(await (await fetch(file)).arrayBuffer())),
+            fetch('parameters.json').then(response => response.json()),
+        ]);
+        this.engine = { name, module, documentation, threads };
+        return { documentation, ...await this.#startWorker() };
+    }
+
+    // Of the next match()
+    async setPair(left, right) {
+        this.pair = { left, right };
+        this.cancel();
+        await this.#request('setPair', this.pair);
+    }
+
+    decode(file) {
+        return this.#request('decode', { file });
+    }
+
+    encode(request) {
+        return this.#request('encode', request);
+    }
+
+    // A run that has not ended is cancelled.
+    async match(settings) {
+        this.cancel();
+        return this.#request('match', { settings }, true);
+    }
+
+    setVideo(settings) {
+        this.cancel();
+        return this.#request('setVideo', { settings });
+    }
+
+    frame(frame) {
+        return this.#request('frame', { frame }, false, [frame.data.buffer]);
+    }
+
+    get isMatching() {
+        return [...this.#waiting.values()].some(({ mayBeCancelled }) => mayBeCancelled);
+    }
+
+    cancel() {
+        if (!this.isMatching)
+            return;
+        this.#worker.terminate();
+        const ended = [...this.#waiting.values()];
+        this.#waiting.clear();
+        this.#startWorker();
+        if (this.pair)
+            this.#request('setPair', this.pair);
+        for (const { reject } of ended)
+            reject(new Cancelled('cancelled'));
+    }
+
+    #worker = null;
+    #waiting = new Map();
+    #lastId = 0;
+
+    #startWorker() {
+        this.#worker = new Worker(new URL('worker.mjs', import.meta.url), { type: 'module' });
+        this.#worker.onmessage = ({ data: { id, answer, error } }) => {
+            const { resolve, reject } = this.#waiting.get(id) ?? {};
+            this.#waiting.delete(id);
+            if (error !== undefined)
+                reject?.(new Error(error));
+            else
+                resolve?.(answer);
+        };
+        this.#worker.onerror = event => {
+            const ended = [...this.#waiting.values()];
+            this.#waiting.clear();
+            this.#startWorker();
+            if (this.pair)
+                this.#request('setPair', this.pair);
+            for (const { reject } of ended)
+                reject(new Error(event.message || 'The matcher stopped.'));
+        };
+        return this.#request('start', this.engine);
+    }
+
+    #request(action, request, mayBeCancelled = false, transfer = []) {
+        const id = ++this.#lastId;
+        return new Promise((resolve, reject) => {
+            this.#waiting.set(id, { resolve, reject, mayBeCancelled });
+            this.#worker.postMessage({ id, action, ...request }, transfer);
+        });
+    }
+}

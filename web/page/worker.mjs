@@ -1,0 +1,166 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Everything that takes time: reads images, and matches them. Each message has an id, and so has its answer.
+
+import { decodeImage } from './images.mjs';
+import { encodeDownload } from './downloads.mjs';
+
+let hdp = null;
+let parameters = []; // as parameters.json has them
+let pair = null;
+let video = null; // a matcher, from frame to frame
+
+function presetNumber(name) {
+    return hdp[`PRESET_${name}`];
+}
+
+function readParameters(matcher) {
+    const values = { treeStrategy: matcher.getTreeStrategy() };
+    for (const { name, method } of parameters)
+        values[name] = matcher[`get${method}`]();
+    return values;
+}
+
+// What each preset amounts to
+function presetValues(names) {
+    const values = {};
+    for (const name of names) {
+        const matcher = hdp.HDPTreeMatcher.create(0, 64, presetNumber(name));
+        values[name] = readParameters(matcher);
+        matcher.delete();
+    }
+    return values;
+}
+
+function applySettings(matcher, { minDisparity, numDisparities, changes }) {
+    matcher.setMinDisparity(minDisparity);
+    matcher.setNumDisparities(numDisparities);
+    for (const [name, value] of Object.entries(changes)) {
+        const parameter = parameters.find(p => p.name === name);
+        matcher[`set${parameter ? parameter.method : 'TreeStrategy'}`](value);
+    }
+}
+
+function createMatcher(settings) {
+    const matcher = hdp.HDPTreeMatcher.create(settings.minDisparity, settings.numDisparities,
+        presetNumber(settings.preset));
+    try {
+        applySettings(matcher, settings);
+    } catch (error) {
+        matcher.delete();
+        throw error;
+    }
+    return matcher;
+}
+
+function findings(matcher) {
+    const rows = matcher.getRowAlignment(), light = matcher.getLightAlignment();
+    return {
+        noise: matcher.getNoiseLevel(),
+        noiseThreshold: matcher.getNoiseThreshold(),
+        rows: { moved: rows.result, model: rows.model },
+        light: { changed: light.result, model: light.model },
+        ratios: matcher.getSearchRatios(),
+        times: matcher.getStageTimes(),
+    };
+}
+
+function resultOf(matcher, disparity, start) {
+    const confidence = matcher.getConfidence();
+    return {
+        width: disparity.width,
+        height: disparity.height,
+        disparity: disparity.data,
+        confidence: confidence.data,
+        milliseconds: disparity.milliseconds,
+        elapsed: performance.now() - start,
+        found: findings(matcher),
+    };
+}
+
+// Halves of a picture with both images side by side
+function splitFrame({ width, height, data }) {
+    const half = width >> 1, halves = [];
+    for (const first of [0, width - half]) {
+        const part = new Uint8ClampedArray(4 * half * height);
+        for (let y = 0; y < height; y++)
+            part.set(data.subarray(4 * (y * width + first), 4 * (y * width + first + half)), 4 * y * half);
+        halves.push({ width: half, height, data: part });
+    }
+    return halves;
+}
+
+const transferable = result => [result.disparity.buffer, result.confidence.buffer];
+
+const actions = {
+    async start({ name, module, documentation, threads }) {
+        parameters = documentation.parameters;
+        const { default: createHDPStereo } = await import(`./${name}.mjs`);
+        hdp = await createHDPStereo({
+            instantiateWasm(imports, receive) {
+                WebAssembly.instantiate(module, imports).then(instance => receive(instance, module));
+                return {};
+            },
+        });
+        hdp.setNumThreads(threads);
+        const presets = documentation.enumerations.Preset.map(({ name }) => name.replace('PRESET_', ''));
+        return [{ presets: presetValues(presets), version: hdp.openCVVersion, threads: hdp.getNumThreads() }];
+    },
+
+    async decode({ file }) {
+        const image = await decodeImage(file);
+        return [image, [image.data.buffer]];
+    },
+
+    setPair({ left, right }) {
+        pair = { left, right };
+        return [{}];
+    },
+
+    match({ settings }) {
+        const start = performance.now(), matcher = createMatcher(settings);
+        try {
+            const result = resultOf(matcher, matcher.compute(pair.left, pair.right), start);
+            return [result, transferable(result)];
+        } finally {
+            matcher.delete();
+        }
+    },
+
+    // A matcher for a video, or none
+    setVideo({ settings }) {
+        video?.delete();
+        video = null;
+        if (settings)
+            video = createMatcher(settings);
+        return [{}];
+    },
+
+    frame({ frame }) {
+        const start = performance.now(), [left, right] = splitFrame(frame);
+        const result = { ...resultOf(video, video.compute(left, right), start), left };
+        return [result, [...transferable(result), left.data.buffer]];
+    },
+
+    encode(request) {
+        const bytes = encodeDownload(request);
+        return [bytes, [bytes.buffer]];
+    },
+};
+
+async function answer({ id, action, ...request }) {
+    try {
+        const [result, transfer = []] = await actions[action](request);
+        postMessage({ id, answer: result }, transfer);
+    } catch (error) {
+        postMessage({ id, error: error.message || String(error) });
+    }
+}
+
+// One after the other, also those that wait for something
+let last = Promise.resolve();
+onmessage = ({ data }) => {
+    last = last.then(() => answer(data));
+};
