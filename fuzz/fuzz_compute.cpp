@@ -475,7 +475,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         case 26:
             return m.setUseSubpixel(input.ConsumeBool());
         case 27:
-            return m.setAggregation(upTo(1));
+            return m.setAggregation(upTo(2));
         case 28:
             return m.setP1(upTo(100));
         case 29:
@@ -491,7 +491,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         case 34:
             return m.setMaxTopDisparities(upTo(100));
         case 35:
-            return m.setTopAggregation(upTo(1));
+            return m.setTopAggregation(2 * upTo(1));
         case 36:
             return m.setMaxRowOffset(upTo(100));
         case 37:

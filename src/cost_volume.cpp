@@ -10,19 +10,45 @@ namespace cv {
 namespace stereo {
 namespace hdp {
 
-void CostVolume::create(Size size_, int numDisparities_)
+void CostVolume::create(const DisparityForest& forest)
 {
-    size = size_;
-    numDisparities = numDisparities_;
-    pitch = (int)alignSize(numDisparities, pitchFactor);
-    costs.create(size.height, size.width * pitch, CV_8U);
-    if (pitch == numDisparities)
-        return;
-    parallel_for_(Range(0, size.height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            for (int x = 0; x < size.width; ++x)
-                std::memset(costs.ptr(y) + x * pitch + numDisparities, 255, pitch - numDisparities);
-    });
+    size = forest.links.size();
+    candidates.resize(forest.links.total());
+    numDisparities = 1;
+    rows = 0;
+    for (const DisparityTree& tree : forest.trees)
+    {
+        rows += (size_t)tree.size * rowsOf(tree.interval);
+        if (!tree.interval.empty())
+            numDisparities = std::max(numDisparities, tree.interval.last + 1);
+    }
+    usualRows_ = (int)(rows / candidates.size());
+    rows = candidates.size() * usualRows_;
+    firstRows_.resize(forest.trees.size());
+    for (size_t t = 0; t < forest.trees.size(); ++t)
+    {
+        const DisparityTree& tree = forest.trees[t];
+        firstRows_[t] = (unsigned)rows;
+        if (rowsOf(tree.interval) > usualRows_)
+            rows += (size_t)tree.size * rowsOf(tree.interval);
+    }
+    if (costs.size() < rows * row)
+        costs.resize(rows * row);
+}
+
+void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pixels)
+{
+    const int count = forest.trees[tree].size, ownRows = rowsOf(forest.trees[tree].interval);
+    Candidates own = { firstRows_[tree], forest.trees[tree].interval };
+    if (ownRows <= usualRows_)
+        for (int i = 0; i < count; ++i)
+        {
+            own.firstRow = (unsigned)pixels[i] * usualRows_;
+            candidates[pixels[i]] = own;
+        }
+    else
+        for (int i = 0; i < count; ++i, own.firstRow += ownRows)
+            candidates[pixels[i]] = own;
 }
 
 } // namespace hdp

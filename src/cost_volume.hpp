@@ -4,27 +4,49 @@
 #ifndef OPENCV_HDPSTEREO_COST_VOLUME_HPP
 #define OPENCV_HDPSTEREO_COST_VOLUME_HPP
 
-#include "opencv2/core.hpp"
+#include "disparity_forest.hpp"
 
 namespace cv {
 namespace stereo {
 namespace hdp {
 
-//! Costs of all candidates of all pixels: that of candidate d of pixel (x, y) is at costs.ptr(y)[x * pitch + d].
+//! Costs of the candidates of all pixels, those of TreeIntv of a pixel's tree
 struct CV_EXPORTS CostVolume
 {
     enum
     {
-        scale = 8,       // of the costs, for their fractions
-        pitchFactor = 16 // of which pitch is a multiple
+        scale = 8, // of the costs, for their fractions
+        row = 16   // costs that are stored together
     };
-    Size size;
-    int numDisparities = 0;
-    int pitch = 0; // from a pixel to the next
-    Mat costs;     // CV_8UC1, continuous; 255 behind the last candidate
+    struct Candidates // of a pixel
+    {
+        unsigned firstRow; // of costs
+        DisparityInterval interval;
 
-    //! Provides the memory. The costs of the candidates are not set.
-    void create(Size size, int numDisparities);
+        int rows() const { return rowsOf(interval); }
+        size_t start() const { return (size_t)firstRow * row; }
+    };
+    static int rowsOf(const DisparityInterval& interval)
+    {
+        return interval.empty() ? 0 : (interval.size() + row - 1) / row;
+    }
+
+    Size size;
+    int numDisparities = 0;             // all candidates are less
+    std::vector<Candidates> candidates; // of pixel y * width + x
+    size_t rows = 0;                    // of costs
+    std::vector<uchar> costs;           // that of disparity interval.first + k at [start() + k]; it only ever grows
+
+    //! Provides the memory for the trees of a forest.
+    void create(const DisparityForest& forest);
+    //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.
+    void place(const DisparityForest& forest, size_t tree, const int* pixels);
+
+private:
+    // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in the
+    // order of the trees.
+    int usualRows_ = 0;
+    std::vector<unsigned> firstRows_; // of the others, by tree
 };
 
 } // namespace hdp

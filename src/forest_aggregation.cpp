@@ -22,9 +22,6 @@ const int64 costsAtOnce = 1 << 22;
 // Smaller trees are aggregated by one thread each.
 const int largeTree = 1 << 15;
 
-// With no more candidates, a large tree is a task like others.
-const int smallRun = 8;
-
 // Groups of candidates that a large tree's are divided into
 const int maxGroups = 4;
 
@@ -207,7 +204,8 @@ void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, con
     for (int t = 0; t < (int)forest.trees.size(); ++t)
     {
         const DisparityTree& tree = forest.trees[t];
-        if (tree.size >= largeTree && tree.interval.size() > smallRun)
+        const int candidates = tree.interval.size();
+        if (tree.size >= largeTree && candidates > countLanes(candidates, tree.size)) // several runs, side by side
         {
             processLarge(tree);
             work = taskWork;
@@ -239,6 +237,8 @@ struct MeanAggregation
     const EdgeSimilarity similarity;
     CostVolume& volume;
 
+    size_t numberOf(const DisparityTree& tree) const { return &tree - forest.trees.data(); }
+
     //! CostVolume::scale / sum of S(p, q) over the tree, by the same two passes as C
     void findFactors(const TreeWalk& walk, int size, std::vector<float>& memory) const
     {
@@ -269,11 +269,15 @@ struct MeanAggregation
     void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
     {
         walkTree(forest, tree, scratch.walk);
+        volume.place(forest, numberOf(tree), scratch.walk.pixels.data());
+        if (tree.interval.empty())
+            return;
         findFactors(scratch.walk, tree.size, scratch.factors);
-        for (int first = 0; first < volume.numDisparities;)
+        const int end = tree.interval.last + 1;
+        for (int first = tree.interval.first; first < end;)
         {
-            const int lanes = countLanes(volume.numDisparities - first, tree.size);
-            const Range run(first, std::min(first + lanes, volume.numDisparities));
+            const int lanes = countLanes(end - first, tree.size);
+            const Range run(first, std::min(first + lanes, end));
             takeMeans(scratch.walk, tree.size, scratch.factors, run, lanes, scratch.costs);
             first = run.end;
         }
@@ -285,14 +289,16 @@ struct MeanAggregation
         ScratchLoan whole(buffers, mutex);
         const TreeWalk& walk = (*whole).walk;
         walkTree(forest, tree, (*whole).walk);
+        volume.place(forest, numberOf(tree), walk.pixels.data());
         findFactors(walk, tree.size, (*whole).factors);
-        const int lanes = countLanes(volume.numDisparities, tree.size);
-        const int runs = (volume.numDisparities + lanes - 1) / lanes, groups = std::min(runs, maxGroups);
+        const int first = tree.interval.first, end = tree.interval.last + 1;
+        const int lanes = countLanes(end - first, tree.size);
+        const int runs = (end - first + lanes - 1) / lanes, groups = std::min(runs, maxGroups);
         const auto takeGroups = [&](const Range& range) {
             ScratchLoan scratch(buffers, mutex);
             for (int i = runs * range.start / groups; i < runs * range.end / groups; ++i)
             {
-                const Range run(i * lanes, std::min((i + 1) * lanes, volume.numDisparities));
+                const Range run(first + i * lanes, std::min(first + (i + 1) * lanes, end));
                 takeMeans(walk, tree.size, (*whole).factors, run, lanes, (*scratch).costs);
             }
         };
@@ -335,10 +341,10 @@ void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, do
     takeWinners(forest, Matching(cost, subpixel), gamma, buffers, disparity);
 }
 
-void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, int numDisparities, double gamma,
-                    AggregationBuffers& buffers, CostVolume& volume)
+void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, double gamma, AggregationBuffers& buffers,
+                    CostVolume& volume)
 {
-    volume.create(forest.links.size(), numDisparities);
+    volume.create(forest);
     const MeanAggregation aggregation = { forest, cost, EdgeSimilarity(gamma), volume };
     forEachTree(
         forest, buffers, [&](const DisparityTree& tree) { aggregation.processLarge(tree, buffers); },

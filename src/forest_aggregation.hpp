@@ -96,12 +96,11 @@ CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCos
 between pixels, of other trees as well.
 @param forest The forest.
 @param cost The layer's matching cost.
-@param numDisparities Of the layer; all are candidates, whatever TreeIntv is.
 @param gamma Of the similarity.
 @param buffers Memory to work in.
 @param volume Receives the means, times CostVolume::scale, rounded and at most 255. */
-CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, int numDisparities,
-                               double gamma, AggregationBuffers& buffers, CostVolume& volume);
+CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, double gamma,
+                               AggregationBuffers& buffers, CostVolume& volume);
 
 } // namespace hdp
 } // namespace stereo

@@ -138,18 +138,19 @@ template <int lanes>
 void storeMeans(const float* costs, const int* pixels, int size, const float* factors, const Range& run,
                 CostVolume& volume)
 {
-    uchar* const first = volume.costs.ptr() + run.start;
+    uchar* const stored = volume.costs.data();
     const size_t count = run.end - run.start;
     for (int i = 0; i < size; ++i, costs += lanes)
     {
         const float factor = factors[i];
         uchar means[lanes];
         HDP_FOR_LANES(k, lanes) means[k] = (uchar)std::min((int)(costs[k] * factor + 0.5f), 255);
-        uchar* const stored = first + (size_t)pixels[i] * volume.pitch;
+        const CostVolume::Candidates& own = volume.candidates[pixels[i]];
+        uchar* const first = stored + own.start() + (run.start - own.interval.first);
         if (count == lanes) // the usual one, of a size that the compiler knows
-            std::memcpy(stored, means, lanes);
+            std::memcpy(first, means, lanes);
         else
-            std::memcpy(stored, means, count);
+            std::memcpy(first, means, count);
     }
 }
 

@@ -101,20 +101,21 @@ void growForest(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& match
                 buffers.forest);
 }
 
-bool hasTopScanlines(const MatcherParameters& p)
+bool hasTreeScanlines(const LayerInput& in)
 {
-    return p.usePrediction && p.aggregation == HDPTreeMatcher::AGGREGATION_SCANLINES &&
-           p.topAggregation == HDPTreeMatcher::AGGREGATION_SCANLINES;
+    const MatcherParameters& p = in.parameters;
+    const int aggregation =
+        in.isTop() && p.aggregation == HDPTreeMatcher::AGGREGATION_SCANLINES ? p.topAggregation : p.aggregation;
+    return p.usePrediction && aggregation == HDPTreeMatcher::AGGREGATION_TREE_SCANLINES;
 }
 
-//! Over the full range, from the means of the costs over the layer's forest
-void aggregateVolume(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
+//! Scanlines over the means of the costs in the layer's trees
+void aggregateTreeScanlines(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 {
     const MatcherParameters& p = in.parameters;
     const int scale = CostVolume::scale;
     const VolumePenalties penalties = { scale * p.P1 / 2, scale * p.P2, p.gamma }; // means of costs are smoother
-    aggregateMeans(buffers.forest, matched.cost(), disparitiesOf(in), p.gamma * meanGamma, buffers.aggregation,
-                   buffers.volume);
+    aggregateMeans(buffers.forest, matched.cost(), p.gamma * meanGamma, buffers.aggregation, buffers.volume);
     aggregateVolume(buffers.volume, buffers.forest.weights, penalties, buffers.volumeScanlines, matched.winner);
 }
 
@@ -128,8 +129,8 @@ void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clo
     clock.run("disparity forest", [&] { growForest(in, buffers, matched); });
     matched.searchRatio = searchRatio(buffers.forest, disparitiesOf(in));
     clock.run("cost aggregation", [&] {
-        if (hasTopScanlines(p))
-            return aggregateVolume(in, buffers, matched);
+        if (hasTreeScanlines(in))
+            return aggregateTreeScanlines(in, buffers, matched);
         aggregateForest(buffers.forest, matched.cost(), p.gamma, in.settings.subpixel, buffers.aggregation,
                         matched.winner);
     });
@@ -208,13 +209,13 @@ void filter(const LayerInput& in, MatchedLayer& matched)
 void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
 {
     matched.prior.clear();
-    const bool hasTrees = in.parameters.aggregation == HDPTreeMatcher::AGGREGATION_TREES;
+    const int aggregation = in.parameters.aggregation;
     clock.run("matching cost", [&] { prepareCost(in, matched); });
-    if (in.isTop() || hasTrees)
+    if (in.isTop() || aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES)
         aggregateTrees(in, buffers, clock, matched);
     else
         aggregateScanlines(in, buffers, clock, matched);
-    if (in.parameters.useNonLocalRefinement && hasTrees)
+    if (in.parameters.useNonLocalRefinement && aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES)
         clock.run("non-local refinement", [&] { refine(in, buffers, matched); });
     if (in.temporal && in.isFinest())
         clock.run("temporal prediction", [&] { joinLastFrame(matched.census, *in.temporal, matched.winner); });

@@ -73,10 +73,10 @@ template <typename Visitor> void visitParameters(Visitor&& visit)
           [](int v) { return v == M::PRIOR_SUPPORT_POINTS || v == M::PRIOR_UPPER_LAYER; });
     visit("intervalMargin", &P::intervalMargin, "in 0..64", [](int v) { return isIn(v, 0, 64); });
     visit("useSubpixel", &P::useSubpixel);
-    visit("aggregation", &P::aggregation, "AGGREGATION_TREES or AGGREGATION_SCANLINES",
-          [](int v) { return v == M::AGGREGATION_TREES || v == M::AGGREGATION_SCANLINES; });
-    visit("topAggregation", &P::topAggregation, "AGGREGATION_TREES or AGGREGATION_SCANLINES",
-          [](int v) { return v == M::AGGREGATION_TREES || v == M::AGGREGATION_SCANLINES; });
+    visit("aggregation", &P::aggregation, "AGGREGATION_TREES, AGGREGATION_SCANLINES or AGGREGATION_TREE_SCANLINES",
+          [](int v) { return isIn(v, M::AGGREGATION_TREES, M::AGGREGATION_TREE_SCANLINES); });
+    visit("topAggregation", &P::topAggregation, "AGGREGATION_TREES or AGGREGATION_TREE_SCANLINES",
+          [](int v) { return v == M::AGGREGATION_TREES || v == M::AGGREGATION_TREE_SCANLINES; });
     visit("P1", &P::P1, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
     visit("P2", &P::P2, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
     visit("finestLayer", &P::finestLayer, "in 0..15", [](int v) { return isIn(v, 0, 15); });
@@ -195,8 +195,9 @@ void checkCombinations(const MatcherParameters& p, Size size)
                                               "(minDisparity + numDisparities - 1) * %d in CV_16S",
                                               (int)M::DISP_SCALE, (int)M::DISP_SCALE));
 
-    if (p.aggregation == M::AGGREGATION_SCANLINES && p.matchingCost != M::COST_CENSUS)
-        CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for AGGREGATION_SCANLINES");
+    if (p.aggregation != M::AGGREGATION_TREES && p.matchingCost != M::COST_CENSUS)
+        CV_Error(Error::StsBadArg, format("matchingCost must be COST_CENSUS for AGGREGATION_%sSCANLINES",
+                                          p.aggregation == M::AGGREGATION_SCANLINES ? "" : "TREE_"));
 
     if (p.fillOcclusions && p.matchingCost != M::COST_CENSUS)
         CV_Error(Error::StsBadArg, "matchingCost must be COST_CENSUS for fillOcclusions");
@@ -230,8 +231,11 @@ MatcherParameters presetParameters(int preset)
     p.fillOcclusions = true;
     if (preset == M::PRESET_TREE)
     {
+        p.numLayers = 2;
+        p.maxTopDisparities = 64;
+        p.aggregation = M::AGGREGATION_TREE_SCANLINES;
         p.disparityPrior = M::PRIOR_UPPER_LAYER;
-        p.intervalMargin = 1;
+        p.intervalMargin = 2;
         p.delta0 = 0.02;
         p.beta = 0.9;
         return p;
@@ -239,7 +243,7 @@ MatcherParameters presetParameters(int preset)
 
     p.aggregation = M::AGGREGATION_SCANLINES;
     p.treeStrategy = createSegmentTree();
-    p.topAggregation = M::AGGREGATION_SCANLINES;
+    p.topAggregation = M::AGGREGATION_TREE_SCANLINES;
     p.maxTopDisparities = 32;
     if (preset == M::PRESET_ULTRAFAST)
         p.finestLayer = 1;
@@ -303,7 +307,7 @@ MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ow
     return p;
 }
 
-int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities)
+int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int mostLayers)
 {
     if (maxTopDisparities == 0)
         return numLayers;
@@ -311,7 +315,8 @@ int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities)
     const auto topDisparities = [&](int count) { return layerDisparities(numDisparities, count - 1, false); };
     while (layers > 2 && topDisparities(layers) < leastTopDisparities)
         --layers;
-    while (topDisparities(layers) > maxTopDisparities && topDisparities(layers + 1) >= leastTopDisparities)
+    while (layers < mostLayers && topDisparities(layers) > maxTopDisparities &&
+           topDisparities(layers + 1) >= leastTopDisparities)
         ++layers;
     return layers;
 }
@@ -321,8 +326,15 @@ PairSettings resolve(const MatcherParameters& p, const Mat& left)
     const Size size = left.size();
     checkCombinations(p, size);
     PairSettings settings;
-    settings.layers =
-        p.usePrediction ? countLayers(size, chooseLayers(p.numDisparities, p.numLayers, p.maxTopDisparities)) : 1;
+    const bool isLarge = size.width >= largeImageWidth;
+    settings.model = p.predictionModel;
+    if (!settings.model)
+        settings.model = DisparityPredictionModel::createPublished(isLarge ? DisparityPredictionModel::PUBLISHED_LARGE
+                                                                           : DisparityPredictionModel::PUBLISHED_SMALL);
+    const bool predictsIntervals = p.aggregation != M::AGGREGATION_SCANLINES;
+    const int mostLayers = predictsIntervals ? settings.model->getNumLayers() + 1 : INT_MAX;
+    const int layers = chooseLayers(p.numDisparities, p.numLayers, p.maxTopDisparities, mostLayers);
+    settings.layers = p.usePrediction ? countLayers(size, layers) : 1;
     settings.finestLayer = std::min(p.finestLayer, settings.layers - 1);
     settings.windowSide = windowSide(p);
     settings.extension = p.minDisparity < 0 ? (int)alignSize(-p.minDisparity, 1 << (settings.layers - 1)) : 0;
@@ -331,14 +343,9 @@ PairSettings resolve(const MatcherParameters& p, const Mat& left)
         CV_Error(Error::StsOutOfRange,
                  format("minDisparity must not be %d for an image of %d x %d: as many columns are added to it",
                         p.minDisparity, size.width, size.height));
-    settings.subpixel = p.useSubpixel || p.aggregation == M::AGGREGATION_SCANLINES;
+    settings.subpixel = p.useSubpixel || p.aggregation != M::AGGREGATION_TREES;
 
-    const bool isLarge = size.width >= largeImageWidth;
-    settings.model = p.predictionModel;
-    if (!settings.model)
-        settings.model = DisparityPredictionModel::createPublished(isLarge ? DisparityPredictionModel::PUBLISHED_LARGE
-                                                                           : DisparityPredictionModel::PUBLISHED_SMALL);
-    if (p.aggregation == M::AGGREGATION_TREES && settings.model->getNumLayers() < settings.layers - 1)
+    if (predictsIntervals && settings.model->getNumLayers() < settings.layers - 1)
         CV_Error(Error::StsOutOfRange, format("predictionModel must have numLayers - 1 = %d layers, not %d",
                                               settings.layers - 1, settings.model->getNumLayers()));
     // The values of the authors' program; the paper's text has those of large and of small images the other way round.

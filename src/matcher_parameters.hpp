@@ -72,9 +72,9 @@ void writeParameters(const MatcherParameters& parameters, FileStorage& fs);
 MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ownStrategy);
 
 /** Number of pyramid layers for so many disparities, in images of any size: numLayers or more, until the top layer has
-maxTopDisparities or less. A layer that would leave it less than 16 is left out, but for the first two. See
+maxTopDisparities or less or there are mostLayers. A layer that would leave it less than 16 is left out, but for the first two. See
 HDPTreeMatcher::setMaxTopDisparities(). */
-CV_EXPORTS int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities);
+CV_EXPORTS int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int mostLayers);
 
 //! What the parameters amount to for a pair
 struct PairSettings

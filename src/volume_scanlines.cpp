@@ -14,9 +14,11 @@ namespace hdp {
 
 namespace {
 
-// Scanlines that are followed side by side; more columns than rows, as those are side by side in memory, too
+// Scanlines that are followed side by side. Columns are side by side in memory, too: as many of them as leave work for
+// all threads.
 const int blockRows = 8;
-const int blockColumns = VolumeProblem::maxScanlines;
+
+int blockColumns(int width) { return std::min(std::max(width / 2, 16), +VolumeProblem::maxScanlines); }
 
 void dispatchRows(const VolumeProblem& problem, const Range& rows, short* lines)
 {
@@ -47,25 +49,26 @@ void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumeP
 {
     CV_DbgAssert(std::max(penalties.small, penalties.large) <= VolumePenalties::largest);
     const Size size = volume.size;
-    buffers.sums.create(volume.costs.size(), CV_16S);
+    if (buffers.sums.size() < volume.rows * CostVolume::row)
+        buffers.sums.resize(volume.rows * CostVolume::row);
     disparity.create(size, CV_16U);
 
     VolumeProblem problem;
-    problem.costs = volume.costs.ptr();
+    problem.costs = volume.costs.data();
+    problem.candidates = volume.candidates.data();
     problem.weights = weights.ptr();
     problem.size = size;
     problem.numDisparities = volume.numDisparities;
-    problem.pitch = volume.pitch;
     problem.small = (short)penalties.small;
     const EdgeSimilarity similarity(penalties.gamma);
     for (int w = 0; w < 256; ++w)
         problem.large[w] = (short)std::max(penalties.small, cvRound(penalties.large * similarity.table[w]));
-    problem.sums = buffers.sums.ptr<short>();
+    problem.sums = buffers.sums.data();
     problem.disparity = disparity.ptr<ushort>();
 
     runBlocks(problem, size.height, blockRows, buffers.lines,
               [&](const Range& rows, short* lines) { dispatchRows(problem, rows, lines); });
-    runBlocks(problem, size.width, blockColumns, buffers.lines,
+    runBlocks(problem, size.width, blockColumns(size.width), buffers.lines,
               [&](const Range& columns, short* lines) { dispatchColumns(problem, columns, lines); });
 }
 

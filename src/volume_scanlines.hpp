@@ -24,37 +24,43 @@ struct VolumePenalties
 
 struct VolumeScanlineBuffers
 {
-    Mat sums;  // CV_16SC1, those of the directions so far, in the order of the volume
-    Mat lines; // L of the pixels before, a row per block of scanlines
+    std::vector<short> sums; // those of the directions so far, in the order of the volume; it only ever grows
+    Mat lines;               // L of the pixels before, a row per block of scanlines
 };
 
 //! What is aggregated, see aggregateVolume(), and where to
 struct VolumeProblem
 {
-    const uchar* costs; // candidate d of pixel p = y * width + x at [p * pitch + d]
+    const uchar* costs;
+    const CostVolume::Candidates* candidates;
     const uchar* weights;
     Size size;
-    int numDisparities, pitch;
+    int numDisparities;
     short small, large[256]; // penalties; large: by the edge's weight
     short* sums;             // of the directions, in the order of the costs
     ushort* disparity;
 
     enum
     {
-        maxScanlines = 16,               // that are followed side by side
-        margin = CostVolume::pitchFactor // before and behind the candidates of a pixel, for the first and the last one
-                                         // to have neighbours
+        maxScanlines = 512,      // that are followed side by side
+        margin = CostVolume::row // before and behind the candidates of a pixel, for the first and the last one to have
+                                 // neighbours
     };
+    //! Memory for a pixel, by disparity: an interval may begin at the last one.
+    int lineLength() const { return margin + numDisparities + CostVolume::row + margin; }
     //! Memory for scanlines that are followed side by side: two pixels of each, and the sums of one
-    int lineMemory(int scanlines) const { return 2 * scanlines * (pitch + 2 * margin) + pitch; }
+    int lineMemory(int scanlines) const { return (2 * scanlines + 1) * lineLength(); }
 };
 
-/** Semi-global matching over all candidates, from the left, from the right, from above and from below. With L(p, d) of
-a direction and q the pixel before p,
+/** Semi-global matching over the candidates of each pixel, from the left, from the right, from above and from below.
+With L(p, d) of a direction and q the pixel before p,
 L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
-large(p, q) = max(small, round(large * exp(-w(p, q) / gamma))).
+large(p, q) = max(small, round(large * exp(-w(p, q) / gamma))),
+where disparities that are not candidates of q are left out. L = C where there is no q, or none with candidates.
 The winner has the lowest sum of the directions, the lowest disparity if there are several; the tip of the V through its
-sum and those of both candidates beside it gives the sub-pixel part.
+sum and those of both candidates beside it gives the sub-pixel part. Of the first candidate and of the last one, the
+tip may lie towards the others: the sum beyond it is that of the slope between those next to it, or that which leaves the
+tip where it is. Pixels without candidates get 0.
 @param volume The costs C.
 @param weights w, CV_8UC2, see weighEdges().
 @param penalties The penalties.

@@ -55,6 +55,7 @@ struct WordLanes
     WordLanes operator+(const WordLanes& b) const { return v_add_wrap(v, b.v); }
     WordLanes operator-(const WordLanes& b) const { return v_sub_wrap(v, b.v); }
     WordLanes min(const WordLanes& b) const { return v_min(v, b.v); }
+    WordLanes max(const WordLanes& b) const { return v_max(v, b.v); }
     //! Of numbers that are not negative
     int minimum() const
     {
@@ -80,8 +81,7 @@ struct WordLanes
 A cost is at most 255, and L(p, d) - C(p, d) at most large(p, q), so L is at most 255 + VolumePenalties::largest = 1055,
 L + small at most 1855, and the sum of four directions at most 4220.
 
-The candidates from the last one to the end of the vector have the cost 255, no less than that of the last. By induction
-along the scanline they never have a lower L than it: so they change neither it nor the minimum, and never win. */
+Behind the last candidate, to the end of the vector, and before and behind the vectors, L is more than that. */
 class LineBlock
 {
 public:
@@ -99,92 +99,163 @@ public:
     };
 
     LineBlock(const VolumeProblem& problem, int scanlines, int length, short* lines)
-        : p_(problem), scanlines_(scanlines), length_(length), pitch_(problem.pitch + 2 * margin)
+        : padding_(), p_(problem), scanlines_(scanlines), length_(length), lineLength_(problem.lineLength()),
+          before_(lines + margin), here_(before_ + scanlines * (ptrdiff_t)lineLength_),
+          total_(lines + 2 * scanlines * (ptrdiff_t)lineLength_)
     {
-        const WordLanes none = WordLanes::repeat(0x4000); // more than any L, with a penalty still a 16-bit number
-        for (int k = 0; k < 2 * scanlines; ++k, lines += pitch_)
-            for (int i = 0; i < margin; i += WordLanes::count)
-            {
-                none.store(lines + i);
-                none.store(lines + margin + p_.pitch + i);
-            }
-        total_ = lines;
-        before_ = lines - 2 * scanlines * (ptrdiff_t)pitch_ + margin;
-        here_ = before_ + scanlines * (ptrdiff_t)pitch_;
+        std::fill(padding_ + WordLanes::count, padding_ + 2 * WordLanes::count, +none);
     }
 
     template <int role> void follow(const Direction& direction)
     {
-        // Before the first pixels all L are 0: then it is L = C there, whatever the penalties.
-        const WordLanes zero = WordLanes::repeat(0);
-        for (int k = 0; k < scanlines_; ++k)
-        {
-            for (int i = 0; i < p_.pitch; i += WordLanes::count)
-                zero.store(before_ + k * (ptrdiff_t)pitch_ + i);
-            lowest_[k] = 0;
-        }
-        for (int i = 0; i < length_; ++i)
+        // Local, as stores may alias all else
+        const CostVolume::Candidates* const candidates = p_.candidates;
+        const uchar *const weights = p_.weights, *const costs = p_.costs;
+        short *const sums = p_.sums, *const total = total_;
+        ushort* const disparity = p_.disparity;
+        const ptrdiff_t lineLength = lineLength_;
+        const int scanlines = scanlines_, length = length_;
+        const WordLanes small = WordLanes::repeat(p_.small);
+        short *before = before_, *here = here_;
+        LastPixel last[VolumeProblem::maxScanlines];
+
+        for (int i = 0; i < length; ++i)
         {
             ptrdiff_t pixel = direction.first + i * direction.along;
-            for (int k = 0; k < scanlines_; ++k, pixel += direction.across)
+            for (int k = 0; k < scanlines; ++k, pixel += direction.across)
             {
-                const int large = i > 0 ? p_.large[p_.weights[2 * pixel + direction.edge]] : 0;
-                const ptrdiff_t line = k * (ptrdiff_t)pitch_;
-                lowest_[k] = step<role>(pixel, before_ + line, lowest_[k], large, here_ + line);
+                const DisparityInterval interval = candidates[pixel].interval;
+                const int rows = candidates[pixel].rows();
+                if (rows == 0)
+                {
+                    last[k] = LastPixel();
+                    if (role == LAST)
+                        disparity[pixel] = 0;
+                    continue;
+                }
+                const size_t start = candidates[pixel].start();
+                int large = p_.large[weights[i > 0 ? 2 * pixel + direction.edge : 0]];
+                const Pixel own = { interval.first, interval.size(), rows * CostVolume::row,
+                                    costs + start,  sums + start,    role == LAST ? total : sums + start };
+                if (!last[k].reaches(own))
+                    large = enter(own, large, last[k], before + k * lineLength);
+                const int lowest =
+                    rows == 1
+                        ? step<role, true>(own, small, large, before + k * lineLength, here + k * lineLength, last[k])
+                        : step<role, false>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
+                if (role == LAST)
+                    disparity[pixel] = disparityOf(total, interval, lowest);
             }
-            std::swap(before_, here_);
+            std::swap(before, here);
         }
     }
 
 private:
-    //! L of a pixel, from that of the pixel before and its minimum; returns the minimum.
-    template <int role> int step(ptrdiff_t pixel, const short* before, int lowest, int large, short* here) const
+    struct Pixel
     {
-        const uchar* const costs = p_.costs + pixel * p_.pitch;
-        short* const sums = p_.sums + pixel * p_.pitch;
-        const WordLanes small = WordLanes::repeat(p_.small), least = WordLanes::repeat(lowest),
-                        jump = WordLanes::repeat(lowest + large), none = WordLanes::repeat(SHRT_MAX);
-        WordLanes minimum = none, lowestSum = none;
-        for (int d = 0; d < p_.pitch; d += WordLanes::count)
+        int first, size, count; // candidates, and their number with the padding
+        const uchar* costs;
+        const short* sums;
+        short* into; // the new sums
+    };
+
+    //! The pixel before: candidates [first, end), and the minimum of L
+    struct LastPixel
+    {
+        int first = 0, end = 0, minimum = 0;
+
+        bool isNone() const { return end == 0; }
+        //! Whether its margins reach those of the next one
+        bool reaches(const Pixel& next) const
+        {
+            return (end != 0) & (next.first - 1 >= first - margin) & (next.first + next.count + 1 <= end + margin);
+        }
+    };
+
+    //! Of a disparity that is no candidate: more than any L, and four of them and a penalty are a 16-bit number.
+    static const short none = 0x1f00;
+
+    //! Lets the L of the pixel before be read at candidates of another pixel and beside them; returns the large penalty.
+    static int enter(const Pixel& own, int large, const LastPixel& last, short* before)
+    {
+        const int first = own.first - 1, end = own.first + own.count + 1;
+        if (last.isNone()) // L = C, whatever the penalties
+        {
+            std::fill(before + first, before + end, (short)0);
+            return 0;
+        }
+        const auto clear = [&](int begin, int finish) {
+            std::fill(before + begin, before + std::max(begin, finish), +none);
+        };
+        clear(first, std::min(last.first, end));
+        clear(std::max(last.end, first), end);
+        return large;
+    }
+
+    //! L of a pixel, from that of the pixel before; returns the lowest sum.
+    template <int role, bool isShort>
+    CV_ALWAYS_INLINE int step(const Pixel& own, const WordLanes& small, int large, const short* before, short* here,
+                              LastPixel& last) const
+    {
+        const WordLanes least = WordLanes::repeat(last.minimum), jump = WordLanes::repeat(last.minimum + large),
+                        noCandidate = WordLanes::repeat(none);
+        const int count = isShort ? CostVolume::row + 0 : own.count;
+        before += own.first;
+        here += own.first;
+        WordLanes minimum = noCandidate, lowestSum = WordLanes::repeat(SHRT_MAX);
+        for (int d = 0; d < count; d += WordLanes::count)
         {
             const WordLanes beside = WordLanes::load(before + d - 1).min(WordLanes::load(before + d + 1)) + small;
             const WordLanes best = WordLanes::load(before + d).min(beside).min(jump);
-            const WordLanes l = WordLanes::load(costs + d) + (best - least);
+            WordLanes l = WordLanes::load(own.costs + d) + (best - least);
+            if (d + WordLanes::count > own.size)
+                l = l.max(WordLanes::load(padding_ + WordLanes::count - std::max(own.size - d, 0)));
             l.store(here + d);
             minimum = minimum.min(l);
-            const WordLanes sum = role == FIRST ? l : WordLanes::load(sums + d) + l;
-            sum.store((role == LAST ? total_ : sums) + d);
+            const WordLanes sum = role == FIRST ? l : WordLanes::load(own.sums + d) + l;
+            sum.store(own.into + d);
             if (role == LAST)
                 lowestSum = lowestSum.min(sum);
         }
-        if (role == LAST)
-            p_.disparity[pixel] = disparityOf(total_, lowestSum.minimum());
-        return minimum.minimum();
+        for (int d = 0; d < margin; d += WordLanes::count)
+        {
+            noCandidate.store(here - margin + d);
+            noCandidate.store(here + count + d);
+        }
+        last.first = own.first;
+        last.end = own.first + count;
+        last.minimum = minimum.minimum();
+        return role == LAST ? lowestSum.minimum() : 0;
     }
 
     //! The disparity of the first candidate with the lowest sum
-    ushort disparityOf(const short* sums, int lowest) const
+    ushort disparityOf(const short* sums, const DisparityInterval& interval, int lowest) const
     {
         const WordLanes searched = WordLanes::repeat(lowest);
         int first = 0;
         while (!v_check_any(WordLanes::load(sums + first).equals(searched)))
             first += WordLanes::count;
-        const int d = first + v_scan_forward(WordLanes::load(sums + first).equals(searched));
-        if (d == 0 || d + 1 >= p_.numDisparities)
-            return (ushort)(d * subpixelScale);
-        const int before = sums[d - 1], after = sums[d + 1], slope = std::max(std::max(before, after) - lowest, 1);
-        return (ushort)(d * subpixelScale + cvRound((before - after) * (subpixelScale / 2) / (float)slope));
+        const int k = first + v_scan_forward(WordLanes::load(sums + first).equals(searched));
+        const int whole = (interval.first + k) * subpixelScale, last = interval.size() - 1;
+        if (last < 2)
+            return (ushort)whole;
+        // Beyond the first and the last candidate: the slope beside them, or that which leaves the tip at the end
+        const int before = k > 0 ? sums[k - 1] : lowest + std::max(sums[2] - sums[1], sums[1] - lowest);
+        const int after =
+            k < last ? sums[k + 1] : lowest + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - lowest);
+        const int slope = std::max(std::max(before, after) - lowest, 1);
+        return (ushort)(whole + cvRound((before - after) * (subpixelScale / 2) / (float)slope));
     }
 
     enum
     {
         margin = VolumeProblem::margin
     };
+    short padding_[2 * WordLanes::count]; // zeros, then none
     const VolumeProblem& p_;
-    const int scanlines_, length_, pitch_;
-    short *before_, *here_; // L of a pixel of each scanline
-    short* total_;          // the sums of a pixel over all directions
-    int lowest_[VolumeProblem::maxScanlines];
+    const int scanlines_, length_, lineLength_;
+    short *const before_, *const here_; // L of a pixel of each scanline, by disparity
+    short* const total_;                // the sums of a pixel over all directions
 };
 
 } // namespace

@@ -787,33 +787,41 @@ private:
 };
 
 //! L(p, d) of a direction in a volume of costs, see aggregateVolume(): from the pixel that is step away. costs: C, rows
-//! pixels, columns disparities; weights: of the edges.
-inline Mat_<int> scanlineCosts(const Mat_<uchar>& costs, const Mat& weights, const hdp::VolumePenalties& penalties,
-                               Point step)
+//! pixels, columns disparities, those of the candidates are used; weights: of the edges; intervals: CV_16UC2, the
+//! candidates.
+inline Mat_<int> scanlineCosts(const Mat_<uchar>& costs, const Mat& weights, const Mat& intervals,
+                               const hdp::VolumePenalties& penalties, Point step)
 {
     const Size size = weights.size();
-    const int n = costs.cols;
+    const auto isCandidate = [&](const Point& pixel, int d) {
+        const Vec2w interval = intervals.at<Vec2w>(pixel);
+        return interval[0] <= d && d <= interval[1];
+    };
     Mat_<int> all(costs.size());
     for (int i = 0; i < size.area(); ++i)
     {
         const int p = step.x + step.y < 0 ? i : size.area() - 1 - i; // after the pixel before
         const Point here(p % size.width, p / size.width), before = here + step;
-        for (int d = 0; d < n; ++d)
+        for (int d = 0; d < costs.cols; ++d)
             all(p, d) = costs(p, d);
         if (!Rect(Point(), size).contains(before))
+            continue;
+        const int* of = all[before.y * size.width + before.x];
+        int least = INT_MAX;
+        for (int d = 0; d < costs.cols; ++d)
+            if (isCandidate(before, d))
+                least = std::min(least, of[d]);
+        if (least == INT_MAX)
             continue;
         const Point edge(std::min(here.x, before.x), std::min(here.y, before.y));
         const int w = weights.at<Vec2b>(edge)[step.x == 0];
         const int large = std::max(penalties.small, cvRound(penalties.large * std::exp(-w / penalties.gamma)));
-        const int* of = all[before.y * size.width + before.x];
-        const int least = *std::min_element(of, of + n);
-        for (int d = 0; d < n; ++d)
+        for (int d = 0; d < costs.cols; ++d)
         {
-            int best = std::min(of[d], least + large);
-            if (d > 0)
-                best = std::min(best, of[d - 1] + penalties.small);
-            if (d + 1 < n)
-                best = std::min(best, of[d + 1] + penalties.small);
+            int best = least + large;
+            for (int other : { d - 1, d, d + 1 })
+                if (isCandidate(before, other))
+                    best = std::min(best, of[other] + (other == d ? 0 : penalties.small));
             all(p, d) += best - least;
         }
     }
@@ -821,25 +829,34 @@ inline Mat_<int> scanlineCosts(const Mat_<uchar>& costs, const Mat& weights, con
 }
 
 //! aggregateVolume(), CV_16UC1
-inline Mat volumeDisparity(const Mat_<uchar>& costs, const Mat& weights, const hdp::VolumePenalties& penalties)
+inline Mat volumeDisparity(const Mat_<uchar>& costs, const Mat& weights, const Mat& intervals,
+                           const hdp::VolumePenalties& penalties)
 {
     Mat_<int> sums(costs.size(), 0);
     for (const Point& step : { Point(-1, 0), Point(1, 0), Point(0, -1), Point(0, 1) })
-        sums += scanlineCosts(costs, weights, penalties, step);
-    Mat disparity(weights.size(), CV_16UC1);
+        sums += scanlineCosts(costs, weights, intervals, penalties, step);
+    Mat disparity(weights.size(), CV_16UC1, Scalar(0));
     for (int p = 0; p < sums.rows; ++p)
     {
-        const int* sum = sums[p];
-        const int d = (int)(std::min_element(sum, sum + sums.cols) - sum); // the first one
+        const Point pixel(p % disparity.cols, p / disparity.cols);
+        const int first = intervals.at<Vec2w>(pixel)[0], count = intervals.at<Vec2w>(pixel)[1] - first + 1;
+        if (count <= 0)
+            continue;
+        const int* sum = sums[p] + first;
+        const int k = (int)(std::min_element(sum, sum + count) - sum); // the first one
         double offset = 0;
-        if (d > 0 && d + 1 < sums.cols)
+        if (count > 2)
         {
+            // At an end the next slope goes on behind it, or one that leaves the tip there.
+            const int after = k + 1 < count ? sum[k + 1] - sum[k] : 0, before = k > 0 ? sum[k - 1] - sum[k] : 0;
+            const int beyondFirst = std::max(after, sum[2] - sum[1]);
+            const int beyondLast = std::max(before, sum[count - 3] - sum[count - 2]);
+            const int left = k > 0 ? before : beyondFirst, right = k + 1 < count ? after : beyondLast;
             // The steeper side of the V has its slope, the other one the opposite.
-            const int slope = std::max(sum[d - 1], sum[d + 1]) - sum[d];
-            if (slope > 0)
-                offset = (sum[d - 1] - sum[d + 1]) / (2. * slope);
+            if (std::max(left, right) > 0)
+                offset = (left - right) / (2. * std::max(left, right));
         }
-        disparity.at<ushort>(p / disparity.cols, p % disparity.cols) = (ushort)(16 * d + cvRound(16 * offset));
+        disparity.at<ushort>(pixel) = (ushort)(16 * (first + k) + cvRound(16 * offset));
     }
     return disparity;
 }

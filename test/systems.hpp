@@ -77,16 +77,19 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     const bool isQuality = preset == HDPTreeMatcher::PRESET_QUALITY;
     matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : isQuality ? 7 : 5);
     matcher.setDisparityMedianPasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
-    matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
-    matcher.setTopAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES : HDPTreeMatcher::AGGREGATION_TREES);
-    matcher.setNumLayers(isQuality ? 2 : 3);
-    matcher.setMaxTopDisparities(isQuality ? 48 : hasScanlines ? 32 : 0);
+    matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES
+                           : isTree     ? HDPTreeMatcher::AGGREGATION_TREE_SCANLINES
+                                        : HDPTreeMatcher::AGGREGATION_TREES);
+    matcher.setTopAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_TREE_SCANLINES
+                                           : HDPTreeMatcher::AGGREGATION_TREES);
+    matcher.setNumLayers(isQuality || isTree ? 2 : 3);
+    matcher.setMaxTopDisparities(isPaper ? 0 : isTree ? 64 : isQuality ? 48 : 32);
     matcher.setMaxRowOffset(isPaper ? 0 : 64);
     matcher.setUseLightAlignment(!isPaper);
     matcher.setNoiseThreshold(isPaper ? 0 : 3);
     matcher.setFinestLayer(preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 1 : 0);
     matcher.setDisparityPrior(isTree ? HDPTreeMatcher::PRIOR_UPPER_LAYER : HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
-    matcher.setIntervalMargin(isTree ? 1 : 0);
+    matcher.setIntervalMargin(isTree ? 2 : 0);
     matcher.setDelta0(isTree ? 0.02 : (double)HDPTreeMatcher::AUTO);
     matcher.setBeta(isTree ? 0.9 : (double)HDPTreeMatcher::AUTO);
     matcher.setP1(18);

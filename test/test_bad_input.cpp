@@ -146,9 +146,14 @@ TEST(HDPStereo_BadInput, setters)
     {
         expectBadValue([bad](HDPTreeMatcher& m) { m.setMatchingCost(bad); }, "matchingCost");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityPrior(bad); }, "disparityPrior");
+    }
+    for (int bad : { -1, 3, INT_MAX, INT_MIN })
+    {
         expectBadValue([bad](HDPTreeMatcher& m) { m.setAggregation(bad); }, "aggregation");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setTopAggregation(bad); }, "topAggregation");
     }
+    expectBadValue([](HDPTreeMatcher& m) { m.setTopAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES); },
+                   "topAggregation");
     for (int bad : { -1, 65, INT_MAX, INT_MIN })
         expectBadValue([bad](HDPTreeMatcher& m) { m.setIntervalMargin(bad); }, "intervalMargin");
     for (double bad : { -0.5, 1., 2., infinity, -infinity, notANumber })
@@ -200,9 +205,11 @@ TEST(HDPStereo_BadInput, scanlines_without_census)
 {
     const Mat image(12, 16, CV_8UC1, Scalar(7));
     const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, 8);
-    matcher->setTopAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
     matcher->setMatchingCost(HDPTreeMatcher::COST_COLOR_GRADIENT);
-    expectRejected([&] { match(*matcher, image, image); }, "matchingCost");
+    expectRejected([&] { match(*matcher, image, image); },
+                   "matchingCost must be COST_CENSUS for AGGREGATION_SCANLINES");
+    matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREE_SCANLINES);
+    expectRejected([&] { match(*matcher, image, image); }, "for AGGREGATION_TREE_SCANLINES");
     matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREES);
     expectRejected([&] { match(*matcher, image, image); }, "fillOcclusions");
     matcher->setFillOcclusions(false);

@@ -160,26 +160,40 @@ void expectWinners(const Layer& layer, double gamma, bool subpixel, hdp::Aggrega
     EXPECT_LE(rounded, compared / 5) << "too many winners depend on rounding to say anything";
 }
 
-//! Each mean of the volume is that of the explicit sums, rounded, and behind the candidates there is the padding.
-void expectMeans(const Layer& layer, int disparities, double gamma, hdp::AggregationBuffers& buffers, int step = 1)
+//! Each mean of the volume is that of the explicit sums, rounded, and each pixel has a place of its own.
+void expectMeans(const Layer& layer, double gamma, hdp::AggregationBuffers& buffers, int step = 1)
 {
     hdp::CostVolume volume;
-    hdp::aggregateMeans(layer.forest, layer.cost, disparities, gamma, buffers, volume);
-    ASSERT_EQ(disparities, volume.numDisparities);
+    hdp::aggregateMeans(layer.forest, layer.cost, gamma, buffers, volume);
     ASSERT_EQ(layer.left.size(), volume.size);
-    for (int p = 0; p < layer.left.size().area(); p += step)
+    std::vector<char> isTaken(volume.rows);
+    for (int p = 0; p < layer.left.size().area(); ++p)
     {
-        const uchar* means = volume.costs.ptr() + (size_t)p * volume.pitch;
+        const oracle::Tree& tree = layer.expectedForest.trees[layer.expectedForest.treeOf[p]];
+        const hdp::CostVolume::Candidates& own = volume.candidates[p];
+        ASSERT_EQ(tree.empty(), own.interval.empty()) << "pixel " << p;
+        if (tree.empty())
+            continue;
+        ASSERT_EQ(tree.first, own.interval.first) << "pixel " << p;
+        ASSERT_EQ(tree.last, own.interval.last) << "pixel " << p;
+        ASSERT_LT(tree.last, volume.numDisparities);
+        for (int i = 0; i < own.rows(); ++i)
+        {
+            ASSERT_LT(own.firstRow + i, volume.rows);
+            ASSERT_FALSE(isTaken[own.firstRow + i]) << "pixel " << p;
+            isTaken[own.firstRow + i] = true;
+        }
+        if (p % step != 0)
+            continue;
+        const uchar* means = volume.costs.data() + own.start();
         const std::vector<double> sums =
-            oracle::aggregated(layer.expectedForest.neighbours, p, gamma, layer.costTable, 0, disparities - 1);
+            oracle::aggregated(layer.expectedForest.neighbours, p, gamma, layer.costTable, tree.first, tree.last);
         double similarity = 0;
         for (const std::pair<int, double>& other : oracle::similarities(layer.expectedForest.neighbours, p, gamma))
             similarity += other.second;
-        for (int d = 0; d < disparities; ++d)
-            ASSERT_NEAR(std::min(hdp::CostVolume::scale * sums[d] / similarity, 255.), means[d], 0.501)
-                << "pixel " << p << ", disparity " << d;
-        for (int d = disparities; d < volume.pitch; ++d)
-            ASSERT_EQ(255, means[d]);
+        for (int k = 0; k < own.interval.size(); ++k)
+            ASSERT_NEAR(std::min(hdp::CostVolume::scale * sums[k] / similarity, 255.), means[k], 0.501)
+                << "pixel " << p << ", candidate " << k;
     }
 }
 
@@ -192,10 +206,9 @@ TEST(HDPStereo_ForestAggregation, means_over_trees)
         {
             SCOPED_TRACE(testing::Message() << size << ", gamma " << gamma);
             const Mat fullRange(size, CV_16UC2, Scalar(0, numDisparities - 1));
-            expectMeans(Layer(rng, size, *createSegmentTree(20), fullRange, 0.95, false), numDisparities, gamma,
+            expectMeans(Layer(rng, size, *createSegmentTree(20), fullRange, 0.95, false), gamma, buffers);
+            expectMeans(Layer(rng, size, *createMinimumSpanningTree(), stripedIntervals(size), 0.6, false), gamma,
                         buffers);
-            expectMeans(Layer(rng, size, *createMinimumSpanningTree(), stripedIntervals(size), 0.6, false),
-                        numDisparities, gamma, buffers); // whatever the intervals are
         }
 }
 
@@ -208,11 +221,11 @@ TEST(HDPStereo_ForestAggregation, means_of_any_number_of_disparities)
     {
         const Mat fullRange(size, CV_16UC2, Scalar(0, disparities - 1));
         const Layer layer(rng, size, *createMinimumSpanningTree(), fullRange, 0.95, true, disparities);
-        expectMeans(layer, disparities, 5, buffers);
+        expectMeans(layer, 5, buffers);
     }
     const Size large(210, 160); // a tree whose candidates are in groups side by side
     const Mat fullRange(large, CV_16UC2, Scalar(0, 149));
-    expectMeans(Layer(rng, large, *createMinimumSpanningTree(), fullRange, 0.95, true, 150), 150, 4, buffers,
+    expectMeans(Layer(rng, large, *createMinimumSpanningTree(), fullRange, 0.95, true, 150), 4, buffers,
                 large.area() / 12 | 1);
 }
 

@@ -246,7 +246,7 @@ TEST(HDPStereo_ImageTypes, dark_images_gain_contrast)
 //! contrast: 1 has about all levels, less the brightest ones.
 Vec2d errorsOf12And8Bits(const System& system, double contrast)
 {
-    const int pairs = 8;
+    const int pairs = 24;
     const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
     Vec2d errors;
     for (int i = 0; i < pairs; ++i)
@@ -272,7 +272,7 @@ TEST(HDPStereo_ImageTypes, bits_below_the_eighth)
         const Vec2d full = errorsOf12And8Bits(system, 1), faint = errorsOf12And8Bits(system, 0.025); // of 6 levels
         EXPECT_LE(full[0], full[1] + 0.15); // percent of the pixels
         const double limit = system.preset == HDPTreeMatcher::PRESET_PAPER       ? 1
-                             : system.preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 0.95
+                             : system.preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 1.05 // half of the pixels are wrong
                              : system.preset == HDPTreeMatcher::PRESET_TREE      ? 0.95 // edge weights have 8 bits
                                                                                  : 0.5;
         EXPECT_LE(faint[0], limit * faint[1]);

@@ -144,8 +144,8 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS(matcher, IntervalMargin, 64, 1, 0);
     EXPECT_KEEPS(matcher, UseSubpixel, true, false);
     EXPECT_KEEPS(matcher, Aggregation, (int)HDPTreeMatcher::AGGREGATION_SCANLINES,
-                 (int)HDPTreeMatcher::AGGREGATION_TREES);
-    EXPECT_KEEPS(matcher, TopAggregation, (int)HDPTreeMatcher::AGGREGATION_SCANLINES,
+                 (int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES, (int)HDPTreeMatcher::AGGREGATION_TREES);
+    EXPECT_KEEPS(matcher, TopAggregation, (int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES,
                  (int)HDPTreeMatcher::AGGREGATION_TREES);
     EXPECT_KEEPS(matcher, P1, 0, 100, 18);
     EXPECT_KEEPS(matcher, P2, 0, 100, 65);
@@ -209,7 +209,7 @@ const Change commonChanges[] = {
 const Change treeChanges[] = {
     { "delta0", [](HDPTreeMatcher& m) { m.setDelta0(0.3); } },
     { "beta", [](HDPTreeMatcher& m) { m.setBeta(0.1); } },
-    { "intervalMargin", [](HDPTreeMatcher& m) { m.setIntervalMargin(2); } },
+    { "intervalMargin", [](HDPTreeMatcher& m) { m.setIntervalMargin(5); } },
     { "disparityPrior", [](HDPTreeMatcher& m) { m.setDisparityPrior(1 - m.getDisparityPrior()); } },
     { "predictionModel", [](HDPTreeMatcher& m) {
         m.setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE));
@@ -218,7 +218,7 @@ const Change treeChanges[] = {
 };
 
 const Change topChanges[] = {
-    { "topAggregation", [](HDPTreeMatcher& m) { m.setTopAggregation(1 - m.getTopAggregation()); } },
+    { "topAggregation", [](HDPTreeMatcher& m) { m.setTopAggregation(2 - m.getTopAggregation()); } },
 };
 
 const Change colorAndGradientChanges[] = {
@@ -231,8 +231,11 @@ const Change colorAndGradientChanges[] = {
 const Change scanlineChanges[] = {
     { "P1", [](HDPTreeMatcher& m) { m.setP1(3); } },
     { "P2", [](HDPTreeMatcher& m) { m.setP2(90); } },
-    { "scanlinePasses", [](HDPTreeMatcher& m) { m.setScanlinePasses(3); } },
     { "aggregation", [](HDPTreeMatcher& m) { m.setAggregation(HDPTreeMatcher::AGGREGATION_TREES); } },
+};
+
+const Change passesChanges[] = {
+    { "scanlinePasses", [](HDPTreeMatcher& m) { m.setScanlinePasses(3); } },
 };
 // clang-format on
 
@@ -261,8 +264,11 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
         expectEffects(preset, topChanges, hasScanlines);
         if (matcher->getMatchingCost() == HDPTreeMatcher::COST_COLOR_GRADIENT)
             expectEffects(preset, colorAndGradientChanges, true);
-        if (hasScanlines && matcher->getFinestLayer() == 0) // else the top layer alone is matched
+        // Otherwise the top layer alone is matched.
+        const bool hasLayers = matcher->getFinestLayer() == 0;
+        if (matcher->getAggregation() != HDPTreeMatcher::AGGREGATION_TREES && hasLayers)
             expectEffects(preset, scanlineChanges, true);
+        expectEffects(preset, passesChanges, hasScanlines && hasLayers);
     }
 }
 
@@ -525,7 +531,7 @@ TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
             const Mat difference = disparity.colRange(inside) - expected.colRange(inside);
             // The columns that only one of the pairs has, or that are added, count in P(D_l), and so reach every pixel.
             // The squares of the sparse matches begin with the added columns.
-            const int tolerance = matcher->getAggregation() == HDPTreeMatcher::AGGREGATION_SCANLINES ? 8 : 0;
+            const int tolerance = matcher->getAggregation() == HDPTreeMatcher::AGGREGATION_TREES ? 0 : 8;
             const int share = !system.usePrediction ? 200 : matcher->getUseSubpixel() ? 25 : 33;
             EXPECT_LE(cv::countNonZero(cv::abs(difference - 16 * k) > tolerance), (int)difference.total() / share);
         }
@@ -756,7 +762,7 @@ TEST(HDPStereo_MatcherContract, search_ratios)
     EXPECT_EQ(std::vector<double>(1, 1.), ratios);
 }
 
-//! At least two, or three that leave the top one 16 disparities or more, and so many that it has 32 or less, or 48
+//! At least two, or three that leave the top one 16 disparities or more, and so many that it has 32 or less, 48 or 64
 TEST(HDPStereo_MatcherContract, number_of_layers)
 {
     for (const System& preset : presets)
@@ -764,25 +770,31 @@ TEST(HDPStereo_MatcherContract, number_of_layers)
         {
             const Ptr<HDPTreeMatcher> matcher = createSystem(preset, numDisparities);
             int expected = 3;
-            if (preset.preset != HDPTreeMatcher::PRESET_PAPER && preset.preset != HDPTreeMatcher::PRESET_TREE)
+            if (preset.preset != HDPTreeMatcher::PRESET_PAPER)
             {
                 const bool isQuality = preset.preset == HDPTreeMatcher::PRESET_QUALITY;
-                expected = !isQuality && numDisparities > 60 ? 3 : 2;
-                for (int limit = (isQuality ? 48 : 32) << (expected - 1); numDisparities > limit; limit *= 2)
+                const bool isTree = preset.preset == HDPTreeMatcher::PRESET_TREE;
+                expected = !isQuality && !isTree && numDisparities > 60 ? 3 : 2;
+                for (int limit = (isTree      ? 64
+                                  : isQuality ? 48
+                                              : 32)
+                                 << (expected - 1);
+                     numDisparities > limit; limit *= 2)
                     ++expected;
             }
-            ASSERT_EQ(expected,
-                      hdp::chooseLayers(numDisparities, matcher->getNumLayers(), matcher->getMaxTopDisparities()))
+            const int numLayers = matcher->getNumLayers(), limit = matcher->getMaxTopDisparities();
+            ASSERT_EQ(expected, hdp::chooseLayers(numDisparities, numLayers, limit, 16))
                 << preset.name << ", " << numDisparities << " disparities";
+            ASSERT_EQ(std::min(expected, 4), hdp::chooseLayers(numDisparities, numLayers, limit, 4));
         }
     for (int numLayers : { 1, 2, 16 })
-        EXPECT_EQ(numLayers, hdp::chooseLayers(1024, numLayers, 0)) << "no limit";
-    EXPECT_EQ(1, hdp::chooseLayers(64, 1, 64));
-    EXPECT_EQ(2, hdp::chooseLayers(65, 1, 64));
-    EXPECT_EQ(3, hdp::chooseLayers(64, 1, 1)) << "16 disparities";
-    EXPECT_EQ(2, hdp::chooseLayers(60, 1, 1));
-    EXPECT_EQ(1, hdp::chooseLayers(30, 1, 1)) << "15 in a second layer";
-    EXPECT_EQ(2, hdp::chooseLayers(1, 16, INT_MAX));
+        EXPECT_EQ(numLayers, hdp::chooseLayers(1024, numLayers, 0, 16)) << "no limit";
+    EXPECT_EQ(1, hdp::chooseLayers(64, 1, 64, 16));
+    EXPECT_EQ(2, hdp::chooseLayers(65, 1, 64, 16));
+    EXPECT_EQ(3, hdp::chooseLayers(64, 1, 1, 16)) << "16 disparities";
+    EXPECT_EQ(2, hdp::chooseLayers(60, 1, 1, 16));
+    EXPECT_EQ(1, hdp::chooseLayers(30, 1, 1, 16)) << "15 in a second layer";
+    EXPECT_EQ(2, hdp::chooseLayers(1, 16, INT_MAX, 16));
 }
 
 //! The image has so many layers, and no more than it has pixels for; without prediction one.
@@ -795,7 +807,7 @@ TEST(HDPStereo_MatcherContract, layers_of_an_image)
             SCOPED_TRACE(testing::Message() << system.name << ", " << numDisparities << " disparities");
             const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
             const int layers =
-                hdp::chooseLayers(numDisparities, matcher->getNumLayers(), matcher->getMaxTopDisparities());
+                hdp::chooseLayers(numDisparities, matcher->getNumLayers(), matcher->getMaxTopDisparities(), 16);
             std::vector<double> ratios, ofLayers(layers, 1.);
             for (int layer = 0; layer < layers - 1; ++layer) // 16 candidates
                 ofLayers[layer] = layer < matcher->getFinestLayer()

@@ -41,7 +41,7 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setIntervalMargin(2);
     matcher->setUseSubpixel(true);
     matcher->setAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
-    matcher->setTopAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
+    matcher->setTopAggregation(HDPTreeMatcher::AGGREGATION_TREE_SCANLINES);
     matcher->setP1(9);
     matcher->setP2(44);
     matcher->setScanlinePasses(3);
@@ -98,7 +98,7 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(2, read->getIntervalMargin());
             EXPECT_TRUE(read->getUseSubpixel());
             EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_SCANLINES, read->getAggregation());
-            EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_SCANLINES, read->getTopAggregation());
+            EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES, read->getTopAggregation());
             EXPECT_EQ(9, read->getP1());
             EXPECT_EQ(44, read->getP2());
             EXPECT_EQ(3, read->getScanlinePasses());
@@ -251,8 +251,8 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "disparityPrior", { "-1", "2", "2147483647", "0.5", 0 } },
         { "intervalMargin", { "-1", "65", "2147483647", "0.5", 0 } },
         { "useSubpixel", { "0.5", 0 } },
-        { "aggregation", { "-1", "2", "2147483647", "0.5", 0 } },
-        { "topAggregation", { "-1", "2", "2147483647", "0.5", 0 } },
+        { "aggregation", { "-1", "3", "2147483647", "0.5", 0 } },
+        { "topAggregation", { "-1", "1", "3", "2147483647", "0.5", 0 } },
         { "P1", { "-1", "101", "2147483647", "0.5", 0 } },
         { "P2", { "-1", "101", "2147483647", "0.5", 0 } },
         { "scanlinePasses", { "0", "-1", "5", "2147483647", "0.5", 0 } },

@@ -22,32 +22,79 @@ namespace {
 const int unit = hdp::CostVolume::scale;
 const hdp::VolumePenalties usualPenalties = { 12 * unit, 50 * unit, 20 };
 
+//! The trees are the given groups of pixels; nothing else of the forest counts.
+hdp::CostVolume createVolume(const Mat& intervals)
+{
+    std::map<std::pair<int, int>, std::vector<int>> pixels; // by interval
+    for (int p = 0; p < (int)intervals.total(); ++p)
+    {
+        const Vec2w interval = intervals.at<Vec2w>(p / intervals.cols, p % intervals.cols);
+        pixels[std::make_pair(interval[0], interval[1])].push_back(p);
+    }
+    hdp::DisparityForest forest;
+    forest.links.create(intervals.size(), CV_8U);
+    for (const auto& group : pixels)
+    {
+        const hdp::DisparityInterval interval = { (ushort)group.first.first, (ushort)group.first.second };
+        const hdp::DisparityTree tree = { group.second[0], (int)group.second.size(), interval };
+        forest.trees.push_back(tree);
+    }
+    hdp::CostVolume volume;
+    volume.create(forest);
+    size_t tree = 0;
+    for (const auto& group : pixels)
+        volume.place(forest, tree++, group.second.data());
+    return volume;
+}
+
+//! Rectangles of one interval each: the full range, one candidate, few, none, and so far apart that they do not meet
+Mat patchyIntervals(RNG& rng, Size size, int numDisparities)
+{
+    Mat intervals(size, CV_16UC2, Scalar(0, numDisparities - 1));
+    for (int i = 0; i < 12; ++i)
+    {
+        const Point a(rng.uniform(0, size.width), rng.uniform(0, size.height));
+        const Point b(rng.uniform(0, size.width), rng.uniform(0, size.height));
+        const int first = rng.uniform(0, numDisparities), length = rng.uniform(1, 20);
+        const Scalar none(1, 0), some(first, std::min(first + length, numDisparities) - 1);
+        intervals(Rect(a, b)).setTo(i % 6 == 5 ? none : some);
+    }
+    return intervals;
+}
+
 //! A volume of random costs, and edges
 struct Layer
 {
     Mat_<uchar> costs; // rows pixels, columns disparities
-    Mat weights;
+    Mat weights, intervals;
     hdp::CostVolume volume;
 
     //! Costs below a limit. With a small one there are ties and long flat stretches; every fourth pixel has one
     //! candidate that stands out.
-    Layer(RNG& rng, Size size, int numDisparities, int limit = 256)
+    Layer(RNG& rng, Size size, int numDisparities, int limit = 256, bool isFull = true)
         : costs(randomImage(rng, Size(numDisparities, size.area()), CV_8UC1, limit)),
-          weights(oracle::edgeWeights(patchyImage(rng, size, CV_8UC3)))
+          weights(oracle::edgeWeights(patchyImage(rng, size, CV_8UC3))),
+          intervals(isFull ? Mat(size, CV_16UC2, Scalar(0, numDisparities - 1))
+                           : patchyIntervals(rng, size, numDisparities)),
+          volume(createVolume(intervals))
     {
         for (int p = 0; p < costs.rows; p += 4)
         {
             costs.row(p).setTo(limit - 1);
             costs(p, rng.uniform(0, numDisparities)) = 0;
         }
-        volume.create(size, numDisparities);
         for (int p = 0; p < costs.rows; ++p)
-            std::copy(costs[p], costs[p] + numDisparities, volume.costs.ptr() + (size_t)p * volume.pitch);
+        {
+            const hdp::CostVolume::Candidates& own = volume.candidates[p];
+            if (!own.interval.empty())
+                std::copy(costs[p] + own.interval.first, costs[p] + own.interval.last + 1,
+                          volume.costs.data() + own.start());
+        }
     }
 
     Mat expected(const hdp::VolumePenalties& penalties) const
     {
-        return oracle::volumeDisparity(costs, weights, penalties);
+        return oracle::volumeDisparity(costs, weights, intervals, penalties);
     }
 
     Mat aggregate(const hdp::VolumePenalties& penalties, hdp::VolumeScanlineBuffers& buffers) const
@@ -88,6 +135,20 @@ TEST(HDPStereo_VolumeScanlines, formula_for_any_number_of_disparities)
         }
 }
 
+TEST(HDPStereo_VolumeScanlines, formula_for_candidates_of_each_pixel)
+{
+    RNG rng(67);
+    hdp::VolumeScanlineBuffers buffers;
+    for (int numDisparities : { 1, 2, 3, 5, 16, 17, 40, 100 })
+        for (int limit : { 3, 256 })
+            for (int i = 0; i < 6; ++i)
+            {
+                SCOPED_TRACE(testing::Message() << numDisparities << " disparities, costs below " << limit);
+                const Layer layer(rng, Size(23 + 20 * i, 19), numDisparities, limit, false);
+                expectIdentical(layer.expected(usualPenalties), layer.aggregate(usualPenalties, buffers));
+            }
+}
+
 //! Of the largest, sums must not overflow.
 TEST(HDPStereo_VolumeScanlines, any_penalties)
 {
@@ -96,7 +157,7 @@ TEST(HDPStereo_VolumeScanlines, any_penalties)
     const int largest = hdp::VolumePenalties::largest;
     for (int numDisparities : { 3, 33 })
     {
-        const Layer layer(rng, Size(43, 38), numDisparities);
+        const Layer layer(rng, Size(43, 38), numDisparities, 256, numDisparities == 3);
         for (int small : { 0, 1, 40, 400, largest })
             for (int large : { 0, 1, 100, largest })
                 for (double gamma : { 1e-300, 1., 20., 1e300 })
@@ -124,7 +185,7 @@ TEST(HDPStereo_VolumeScanlines, any_number_of_threads)
 {
     RNG rng(65);
     hdp::VolumeScanlineBuffers buffers;
-    const Layer layer(rng, Size(75, 61), 29);
+    const Layer layer(rng, Size(75, 61), 29, 256, false);
     const int threads = cv::getNumThreads();
     const Mat expected = layer.aggregate(usualPenalties, buffers);
     for (int count : { 1, 2, 3, 8 })
@@ -142,19 +203,20 @@ TEST(HDPStereo_VolumeScanlines, lanes_without_vectors)
     for (int numDisparities : { 1, 16, 50 })
     {
         const Size size(14, 8); // one block of scanlines
-        const Layer layer(rng, size, numDisparities);
+        const Layer layer(rng, size, numDisparities, 256, numDisparities == 16);
         hdp::VolumeProblem problem;
-        problem.costs = layer.volume.costs.ptr();
+        problem.costs = layer.volume.costs.data();
+        problem.candidates = layer.volume.candidates.data();
         problem.weights = layer.weights.ptr();
         problem.size = size;
         problem.numDisparities = numDisparities;
-        problem.pitch = layer.volume.pitch;
         problem.small = 30;
         for (short& large : problem.large)
             large = 300;
         const hdp::VolumePenalties penalties = { 30, 300, 1e9 };
-        Mat sums(layer.volume.costs.size(), CV_16SC1), disparity(size, CV_16UC1);
-        problem.sums = sums.ptr<short>();
+        std::vector<short> sums(layer.volume.rows * hdp::CostVolume::row);
+        Mat disparity(size, CV_16UC1);
+        problem.sums = sums.data();
         problem.disparity = disparity.ptr<ushort>();
         std::vector<short> lines(problem.lineMemory(std::max(size.width, size.height)));
         hdp::opt_emulated::aggregateRows(problem, Range(0, size.height), lines.data());

@@ -37,9 +37,7 @@ void expectWholeRange(const System& preset, int numDisparities)
 {
     const Size size(numDisparities + 640, 400);
     const int last = numDisparities - 1;
-    const double limit = preset.preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 2
-                         : preset.preset == HDPTreeMatcher::PRESET_TREE    ? 0.6 // beside the left border
-                                                                           : 0.5;
+    const double limit = preset.preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 2 : 0.5;
     for (int minDisparity : { 0, -16, 7 })
         for (int d : { 0, 1, 2, numDisparities / 2, last - 2, last - 1, last })
         {
@@ -55,26 +53,17 @@ void expectWholeRange(const System& preset, int numDisparities)
         }
 }
 
-//! With up to 60 disparities ULTRAFAST matches the top layer alone, at half the resolution, and finds no fractions at the
-//! ends of the range.
-bool hasScanlines(const System& preset, int numDisparities)
-{
-    return preset.preset != HDPTreeMatcher::PRESET_ULTRAFAST || numDisparities > 60;
-}
-
 TEST(HDPStereo_WholeRange, each_disparity_of_a_small_range_is_found)
 {
     for (const System& preset : presets)
-        if (hasScanlines(preset, 16))
-            expectWholeRange(preset, 16);
+        expectWholeRange(preset, 16);
 }
 
 TEST(HDPStereo_SlowWholeRange, each_disparity_is_found)
 {
     for (const System& preset : presets)
         for (int numDisparities : { 48, 64, 65, 100, 128, 256 })
-            if (hasScanlines(preset, numDisparities))
-                expectWholeRange(preset, numDisparities);
+            expectWholeRange(preset, numDisparities);
 }
 
 //! A background at the smallest disparity behind a square

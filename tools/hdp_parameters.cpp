@@ -86,8 +86,9 @@ static std::vector<Variant> variantsOf(int preset)
     else
     {
         variants[0].name = "PRESET_TREE";
+        add<int>(variants, "aggregation", &M::setAggregation, { M::AGGREGATION_TREES });
         add<bool>(variants, "useNonLocalRefinement", &M::setUseNonLocalRefinement, { true });
-        add<int>(variants, "numLayers", &M::setNumLayers, { 2, 4 });
+        add<int>(variants, "maxTopDisparities", &M::setMaxTopDisparities, { 32, 128 });
         add<double>(variants, "delta0", &M::setDelta0, { 0.005, 0.08 });
         add<double>(variants, "beta", &M::setBeta, { 0.6, 0.98 });
         add<int>(variants, "intervalMargin", &M::setIntervalMargin, { 0, 4 });
@@ -98,7 +99,8 @@ static std::vector<Variant> variantsOf(int preset)
                              [](M& m) {
             m.setMatchingCost(M::COST_COLOR_GRADIENT);
             m.setBlockSize(1);
-            m.setFillOcclusions(false); // needs the census
+            m.setAggregation(M::AGGREGATION_TREES); // the others need the census
+            m.setFillOcclusions(false);
                             },
                              0, 0, 0 });
     }

@@ -116,7 +116,7 @@ class Interface(Test):
     def test_enumerations(self):
         self.assertIs(HDPTreeMatcher.Preset.PRESET_FAST, HDPTreeMatcher.PRESET_FAST)
         self.assertIs(HDPTreeMatcher.COST_CENSUS, HDPTreeMatcher().getMatchingCost())
-        self.assertIs(HDPTreeMatcher.AGGREGATION_SCANLINES, HDPTreeMatcher().getTopAggregation())
+        self.assertIs(HDPTreeMatcher.AGGREGATION_TREE_SCANLINES, HDPTreeMatcher().getTopAggregation())
         for enumeration in (HDPTreeMatcher.Preset, HDPTreeMatcher.MatchingCost, DisparityPredictionModel.Published):
             for value in enumeration:
                 self.assertIs(value, pickle.loads(pickle.dumps(value)))

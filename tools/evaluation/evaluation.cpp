@@ -55,7 +55,7 @@ static void evaluateMethod(const Method& method, const Pair& pair, const Evaluat
         scene.maps +=
             figure(resultPicture(disparity, pair), method.name + ": " + printScore(result.score, pair.protocol) +
                                                        cv::format(", %.3f s", result.seconds));
-        if (hdp && hdp->getUsePrediction() && hdp->getAggregation() == HDPTreeMatcher::AGGREGATION_TREES)
+        if (hdp && hdp->getUsePrediction() && hdp->getAggregation() != HDPTreeMatcher::AGGREGATION_SCANLINES)
             scene.predictions += "<div class=\"figures\">\n" + predictionFigures(method.name, *hdp, pair) + "</div>\n";
     }
     result.done = true;

@@ -68,16 +68,16 @@ Where the presets differ:
 | useLightAlignment | false | true | true | true | true |
 | noiseThreshold | 0 | 3 | 3 | 3 | 3 |
 | treeStrategy | MST | MST | ST | ST | ST |
-| numLayers | 3 | 3 | 3 | 3 | 2 |
-| maxTopDisparities | 0 | 0 | 32 | 32 | 48 |
+| numLayers | 3 | 2 | 3 | 3 | 2 |
+| maxTopDisparities | 0 | 64 | 32 | 32 | 48 |
 | finestLayer | 0 | 0 | 0 | 1 | 0 |
 | matchingCost | COLOR_GRADIENT | CENSUS | CENSUS | CENSUS | CENSUS |
-| aggregation | TREES | TREES | SCANLINES | SCANLINES | SCANLINES |
-| topAggregation | without effect | without effect | SCANLINES | SCANLINES | SCANLINES |
+| aggregation | TREES | TREE_SCANLINES | SCANLINES | SCANLINES | SCANLINES |
+| topAggregation | without effect | without effect | TREE_SCANLINES | TREE_SCANLINES | TREE_SCANLINES |
 | gamma | 25.5 | 20 | 20 | 20 | 20 |
 | disparityPrior | SUPPORT_POINTS | UPPER_LAYER | without effect | without effect | without effect |
 | delta0, beta | AUTO | 0.02, 0.9 | without effect | without effect | without effect |
-| intervalMargin | 0 | 1 | without effect | without effect | without effect |
+| intervalMargin | 0 | 2 | without effect | without effect | without effect |
 | useSubpixel | false | true | true | true | true |
 | disparityMedianSize | AUTO | 5 | 5 | 5 | 7 |
 | disparityMedianPasses | 1 | 1 | 1 | 1 | 2 |
@@ -93,7 +93,7 @@ parameters or on the images is checked by compute(), before any work. compute() 
   wider or higher than 32767 pixels, or have 2^31 bytes and more, with the columns that a negative minDisparity adds;
 - speckleWindowSize is > 0 and the images have more than 238609294 pixels;
 - minDisparity and numDisparities give disparities that CV_16S cannot hold;
-- the cost is not COST_CENSUS with AGGREGATION_SCANLINES or fillOcclusions;
+- the cost is not COST_CENSUS with AGGREGATION_SCANLINES, AGGREGATION_TREE_SCANLINES or fillOcclusions;
 - the prediction model has too few layers, see setPredictionModel();
 - the output array has a fixed type other than CV_16SC1 and CV_32FC1;
 - a TreeStrategy throws, or does not leave a permutation of the edges. Only this is found while matching; the matcher
@@ -114,14 +114,15 @@ public:
         PRESET_FAST = 1,      //!< the default: scanlines, on the top layer over means of trees
         PRESET_ULTRAFAST = 2, //!< PRESET_FAST at half the resolution
         PRESET_QUALITY = 3,   //!< slower and more accurate than PRESET_FAST
-        PRESET_TREE = 4       //!< trees on every layer, as in the paper; census cost, sub-pixel disparities
+        PRESET_TREE = 4       //!< trees on every layer, as in the paper, and scanlines over the means in them
     };
 
     //! Cost aggregation, see setAggregation() and setTopAggregation()
     enum Aggregation
     {
-        AGGREGATION_TREES = 0,    //!< the paper's disparity trees
-        AGGREGATION_SCANLINES = 1 //!< semi-global matching; below the top layer over 16 predicted candidates per pixel
+        AGGREGATION_TREES = 0,         //!< the paper's: sums over disparity trees
+        AGGREGATION_SCANLINES = 1,     //!< semi-global matching over 16 predicted candidates per pixel
+        AGGREGATION_TREE_SCANLINES = 2 //!< semi-global matching over the means of the costs in disparity trees
     };
 
     //! Matching cost, see setMatchingCost()
@@ -173,7 +174,7 @@ public:
     /** @brief Number of pyramid layers, including the image (section 2.1, L + 1).
 
     Each layer has half the width, the height and the disparities of the one below.
-    @param numLayers 1..16; 2 in PRESET_QUALITY, 3 in the others. setMaxTopDisparities() may change it, and layers
+    @param numLayers 1..16; 2 in PRESET_QUALITY and PRESET_TREE, 3 in the others. setMaxTopDisparities() may change it, and layers
     without a pixel are left out. With 3 instead of 2, images of less than a megapixel take less time and lose some fine
     structures. Without effect if prediction is off. */
     CV_WRAP virtual void setNumLayers(int numLayers) = 0;
@@ -181,9 +182,10 @@ public:
     CV_WRAP virtual int getNumLayers() const = 0;
 
     /** @brief Largest number of disparities of the top layer, which searches all of them.
-    @param maxTopDisparities 0 (PRESET_PAPER, PRESET_TREE): no limit, there are numLayers layers. Otherwise (48 in
-    PRESET_QUALITY, 32 in the others) layers are added until the top one has at most this many disparities; of those
-    beyond the second, one that would leave it fewer than 16 is not used. Without effect if prediction is off. */
+    @param maxTopDisparities 0 (PRESET_PAPER): no limit, there are numLayers layers. Otherwise (64 in PRESET_TREE, 48 in
+    PRESET_QUALITY, 32 in the others) layers are added until the top one has at most this many disparities, but with
+    trees below it no more than the prediction model is for. Of those beyond the second, one that would leave the top
+    layer fewer than 16 is not used. Without effect if prediction is off. */
     CV_WRAP virtual void setMaxTopDisparities(int maxTopDisparities) = 0;
     /** @copybrief setMaxTopDisparities @sa setMaxTopDisparities */
     CV_WRAP virtual int getMaxTopDisparities() const = 0;
@@ -288,7 +290,7 @@ public:
     CV_WRAP virtual int getDisparityPrior() const = 0;
 
     /** @brief Number of candidates added on both sides of each predicted interval.
-    @param margin 0..64; 1 in PRESET_TREE, because a sub-pixel winner needs neighbours, and 0 in the others. Without
+    @param margin 0..64; 2 in PRESET_TREE, because a sub-pixel winner needs neighbours, and 0 in the others. Without
     effect with HDPTreeMatcher::AGGREGATION_SCANLINES. */
     CV_WRAP virtual void setIntervalMargin(int margin) = 0;
     /** @copybrief setIntervalMargin @sa setIntervalMargin */
@@ -303,31 +305,36 @@ public:
     CV_WRAP virtual bool getUseSubpixel() const = 0;
 
     /** @brief Cost aggregation of the layers below the top one; for that one see setTopAggregation().
-    @param aggregation HDPTreeMatcher::AGGREGATION_TREES (PRESET_PAPER, PRESET_TREE): section 3.
-    HDPTreeMatcher::AGGREGATION_SCANLINES (the others): semi-global matching @cite Hirschmuller2008SGM from the left,
+    @param aggregation HDPTreeMatcher::AGGREGATION_TREES (PRESET_PAPER): section 3.
+
+    HDPTreeMatcher::AGGREGATION_TREE_SCANLINES (PRESET_TREE): the costs become weighted means over each pixel's
+    disparity tree, of its few candidates, with a fifth of \f$\gamma\f$. Over these, semi-global matching
+    @cite Hirschmuller2008SGM from the left, from the right, from above and from below: trees carry faint texture to
+    where there is none, scanlines follow slanted surfaces. P1 is half as large here; P2 is multiplied by the similarity
+    of the two neighbours, see setGamma(), but never becomes less than P1. It takes 3 bytes per candidate, and 16
+    candidates or more per pixel.
+
+    HDPTreeMatcher::AGGREGATION_SCANLINES (the others): semi-global matching of the costs themselves, from the left,
     from the right and from above, in the layers before the finest one and in later passes from below, too, over 16
     candidates per pixel around the disparity of the layer above and, if there may be one, that of another surface. It
-    needs HDPTreeMatcher::COST_CENSUS, and has no use for the prediction model,
-    delta0, beta, the margin and the prior. */
+    has no use for the prediction model, delta0, beta, the margin and the prior.
+
+    Both need HDPTreeMatcher::COST_CENSUS. */
     CV_WRAP virtual void setAggregation(int aggregation) = 0;
     /** @copybrief setAggregation @sa setAggregation */
     CV_WRAP virtual int getAggregation() const = 0;
 
     /** @brief Cost aggregation of the top layer, with HDPTreeMatcher::AGGREGATION_SCANLINES below it.
-    @param aggregation HDPTreeMatcher::AGGREGATION_TREES: sums over its trees, as in section 3.3.
-    HDPTreeMatcher::AGGREGATION_SCANLINES (PRESET_FAST, ULTRAFAST, QUALITY): the costs become weighted means over each
-    pixel's tree, with a fifth of \f$\gamma\f$; then semi-global matching @cite Hirschmuller2008SGM from the left, from
-    the right, from above and from below searches the full range. P1 is half as large there; P2 is multiplied by the
-    similarity of the two neighbours, see setGamma(), but never becomes less than P1. Surfaces without texture get
-    better disparities. It takes 3 bytes per pixel and disparity of the top layer. Without effect with AGGREGATION_TREES
-    below or without prediction. */
+    @param aggregation HDPTreeMatcher::AGGREGATION_TREES, or HDPTreeMatcher::AGGREGATION_TREE_SCANLINES (PRESET_FAST,
+    ULTRAFAST, QUALITY): surfaces without texture get better disparities. See setAggregation(). Here all disparities are
+    candidates. Without effect with another aggregation below, and without prediction. */
     CV_WRAP virtual void setTopAggregation(int aggregation) = 0;
     /** @copybrief setTopAggregation @sa setTopAggregation */
     CV_WRAP virtual int getTopAggregation() const = 0;
 
     /** @brief Penalty for a step of one disparity between neighbours on a scanline.
-    @param P1 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 18 by default. Used by
-    HDPTreeMatcher::AGGREGATION_SCANLINES only. */
+    @param P1 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 18 by default. Without
+    effect with HDPTreeMatcher::AGGREGATION_TREES. */
     CV_WRAP virtual void setP1(int P1) = 0;
     /** @copybrief setP1 @sa setP1 */
     CV_WRAP virtual int getP1() const = 0;
@@ -335,7 +342,7 @@ public:
     /** @brief Penalty for a larger step between neighbours on a scanline.
     @param P2 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 65 by default. It is for neighbours
     of one grey level; others cost 1.5 less for each level between them, as surfaces end where the image has an edge,
-    but not less than P1. Used by HDPTreeMatcher::AGGREGATION_SCANLINES only. */
+    but not less than P1. Without effect with HDPTreeMatcher::AGGREGATION_TREES. */
     CV_WRAP virtual void setP2(int P2) = 0;
     /** @copybrief setP2 @sa setP2 */
     CV_WRAP virtual int getP2() const = 0;
