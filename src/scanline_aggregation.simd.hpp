@@ -9,6 +9,7 @@
 #include <cstring>
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "byte_lanes.simd.hpp"
+#include "scanline_windows.simd.hpp"
 #endif
 
 namespace cv {
@@ -59,16 +60,9 @@ public:
         : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
           planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)),
           zero_(ByteLanes::repeat(0)), blockCosts_(scratch.costs.data()), fromRight_(scratch.fromRight.data()),
-          fromAbove_(scratch.fromAbove.data() + margin * Window::candidates), columns_(scratch.columns.data() + margin),
-          priors_(firstStep(scratch.priors)), intoRight_(firstStep(scratch.intoRight)),
-          intoLeft_(firstStep(scratch.intoLeft)), intoBelow_(firstStep(scratch.intoBelow)), windows_(0), upperRow_(-1),
-          entersUpperRow_(false), isUpward_(isUpward)
+          fromAbove_(scratch.fromAbove.data() + margin * Window::candidates), tables_(problem, groups, scratch),
+          windows_(0), upperRow_(-1), entersUpperRow_(false), isUpward_(isUpward)
     {
-        for (int run = 0; run < Window::runs; ++run)
-        {
-            first_[run] = scratch.first[run].data();
-            orders_[run] = scratch.orders[run].data() + scratch.orders[run].size() / 2;
-        }
         for (int r = 0; r < groups; ++r)
         {
             const size_t row = r * (2 * (size_t)pairs_ + 2 * margin) + margin;
@@ -77,7 +71,6 @@ public:
             costs_[r] = scratch.winnerCosts.data() + row;
             edges_[r] = scratch.edges.data() + 2 * row;
         }
-        preparePriorTable();
     }
 
     //! The vertical direction alone, over a block of rows from y on; followed: where to store it, if it is needed
@@ -126,37 +119,6 @@ private:
     static_assert(groups <= (int)ScanlineScratch::maxBlock, "the scratch memory is for larger blocks");
     typedef ScanlineScratch::Column Column;
 
-    //! The prior of a run, by the distance of its first candidate from the predicted disparity; with the large penalty,
-    //! which is a part of all costs in a sweep.
-    void preparePriorTable()
-    {
-        for (int distance = -priorRange; distance < priorRange; ++distance)
-            for (int i = 0; i < Window::runLength; ++i)
-                priorTable_[distance + priorRange][i] =
-                    (uchar)(p_.penalties.large +
-                            p_.penalties.prior * std::abs(distance + i * subpixelScale) / (2 * subpixelScale));
-    }
-
-    const uchar* priorOf(const Window& own, int run) const
-    {
-        const int distance = own.first[run] * subpixelScale - own.predicted[run];
-        return priorTable_[std::min(std::max(distance, -priorRange), priorRange - 1) + priorRange];
-    }
-
-    //! Which lanes of `from` have the candidates of `to`
-    static void transition(const uchar* const (&orders)[Window::runs], const Window& from, const Window& to,
-                           uchar* order)
-    {
-        for (int run = 0; run < Window::runs; ++run)
-        {
-            uint64 lanesOf[Window::runs];
-            for (int other = 0; other < Window::runs; ++other)
-                std::memcpy(&lanesOf[other], orders[other] + to.first[run] - from.first[other], Window::runLength);
-            lanesOf[0] &= lanesOf[1]; // runs do not overlap: at least one of the two is 255
-            std::memcpy(order + run * Window::runLength, &lanesOf[0], Window::runLength);
-        }
-    }
-
     //! Prepares a block of rows, y in the first group: what follows from the windows, if they are new, from the grey
     //! levels, and the rows' pointers. isFollowed: for the vertical direction alone
     void enterRows(int y, bool isFollowed)
@@ -168,7 +130,7 @@ private:
             const Window* above = windows_;
             windows_ = p_.windows->ptr<Window>(upperRow);
             upperRow_ = upperRow;
-            enterWindows(above, isFollowed);
+            tables_.enter(windows_, above, isFollowed);
         }
         const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
         for (int r = 0; r < groups; ++r)
@@ -207,79 +169,20 @@ private:
         return ByteLanes::repeatByte<at>(edges);
     }
 
-    void enterWindows(const Window* above, bool isFollowed)
-    {
-        // Bytes may alias everything but what is local.
-        const Window* const windows = windows_;
-        const uchar* const orders[Window::runs] = { orders_[0], orders_[1] };
-        // An odd last column belongs to the pixel of the layer above that the one before belongs to.
-        const int pairs = pairs_, lastWindow = p_.windows->cols - 1;
-        const int lanesUsed = p_.validCandidates();
-        Column* column = columns_;
-        short *firstOfLow = first_[0], *firstOfHigh = first_[1];
-        uchar *prior = priors_, *intoRight = intoRight_, *intoLeft = intoLeft_ + Window::candidates,
-              *intoBelow = intoBelow_;
-        Window before = windows[0];
-        bool wasContiguous = false; // the window before
-        for (int x = 0; x < pairs; ++x)
-        {
-            const Window own = windows[std::min(x, lastWindow)];
-            const bool isContiguous = own.isContiguous();
-            column->first[0] = own.first[0];
-            column->first[1] = own.first[1];
-            column->isContiguous = isContiguous & (groups == 1 || wasContiguous);
-            firstOfLow[0] = firstOfLow[1] = own.first[0];
-            firstOfHigh[0] = firstOfHigh[1] = own.first[1];
-
-            for (int run = 0; run < Window::runs; ++run)
-                std::memcpy(prior + run * Window::runLength, priorOf(own, run), Window::runLength);
-            for (int i = lanesUsed; i < Window::candidates; ++i)
-                prior[i] = 255;
-
-            if (!isFollowed)
-            {
-                transition(orders, before, own, intoRight);
-                transition(orders, own, before, intoLeft);
-            }
-            if (above)
-                transition(orders, above[std::min(x, lastWindow)], own, intoBelow);
-
-            ++column;
-            firstOfLow += 2;
-            firstOfHigh += 2;
-            prior -= Window::candidates;
-            intoRight -= Window::candidates;
-            intoLeft -= Window::candidates;
-            intoBelow -= Window::candidates;
-            before = own;
-            wasContiguous = isContiguous;
-        }
-    }
-
-    //! What is stored for the pixels of the layer above lies from right to left, as in the groups of a step.
-    uchar* firstStep(std::vector<uchar>& stored) const
-    {
-        return stored.data() + (ptrdiff_t)(pairs_ - 1 + margin) * Window::candidates;
-    }
-    static const uchar* ofStep(const uchar* firstStep, int step)
-    {
-        return firstStep - (ptrdiff_t)step * Window::candidates;
-    }
-
     //! The candidates' costs C(p, d) + large at both columns of a step
     template <int planes> CV_ALWAYS_INLINE void costs(int step, ByteLanes (&cost)[2]) const
     {
         const uchar *left[groups], *low[groups], *high[groups];
         for (int r = 0; r < groups; ++r)
         {
-            const Column& column = columns_[step - r];
+            const Column& column = tables_.column(step - r);
             const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
             left[r] = left_[r] + 4 * x;
             low[r] = right_[r] - x + column.first[0];
             high[r] = right_[r] - x + column.first[1];
         }
-        const ByteLanes prior = ByteLanes::load(ofStep(priors_, step));
-        if (columns_[step].isContiguous)
+        const ByteLanes prior = ByteLanes::load(tables_.prior(step));
+        if (tables_.column(step).isContiguous)
         {
             const auto load = [&](ptrdiff_t offset) { return ByteLanes::load(low, offset); };
             cost[0] = prior + costs<planes, 0>(left, load);
@@ -349,7 +252,7 @@ private:
             costs<planes>(t, cost);
             uchar* costs = blockCosts_ + (size_t)t * 2 * lanes;
             uchar* directions = fromRight_ + (size_t)t * 2 * lanes;
-            h = h.permute(ByteLanes::load(ofStep(intoLeft_, t)));
+            h = h.permute(ByteLanes::load(tables_.intoLeft(t)));
             const ByteLanes large[2] = { largePenalty<0>(t), largePenalty<2>(t) };
             for (int column = 1; column >= 0; --column)
             {
@@ -368,7 +271,7 @@ private:
         uchar* above = fromAbove_ + (ptrdiff_t)(2 * t + column) * Window::candidates;
         ByteLanes h = ByteLanes::shiftIn(above, before);
         if (entersUpperRow_) // only the block's first row may
-            h = h.permute(ByteLanes::first(ofStep(intoBelow_, t)));
+            h = h.permute(ByteLanes::first(tables_.intoBelow(t)));
         const ByteLanes direction = advance(h, cost, large);
         before = h;
         h.storeLast(above - 2 * (groups - 1) * Window::candidates);
@@ -401,7 +304,7 @@ private:
         {
             const uchar* costs = blockCosts_ + (size_t)t * 2 * lanes;
             const uchar* directions = fromRight_ + (size_t)t * 2 * lanes;
-            h = h.permute(ByteLanes::load(ofStep(intoRight_, t)));
+            h = h.permute(ByteLanes::load(tables_.intoRight(t)));
             const ByteLanes toRight[2] = { largePenalty<2>(t), largePenalty<4>(t) };
             const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
             for (int column = 0; column < 2; ++column)
@@ -462,7 +365,7 @@ private:
     {
         const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers, rounded to the nearest
         const int last = p_.validCandidates() - 1, large = p_.penalties.large, largest = p_.largest;
-        const short *firstOfLow = first_[0], *firstOfHigh = first_[1];
+        const short *firstOfLow = tables_.first(0), *firstOfHigh = tables_.first(1);
         const uchar *winners = winners_[group], *costs = costs_[group];
         const unsigned* sums = sums_[group];
         const int toBefore = shiftOfByte(0), toSum = shiftOfByte(1), toAfter = shiftOfByte(2);
@@ -484,29 +387,20 @@ private:
         HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - large);
     }
 
-    enum
-    {
-        priorRange = 3 * Window::candidates / 2 * subpixelScale
-    };
-
     const ScanlineProblem& p_;
     const int width_, pairs_, steps_; // columns, pairs of them, and steps over all groups
     const size_t planeStride_;        // from a plane of the cost to the next
     const ByteLanes small_, zero_;
     // The scratch memory, from column or step 0 on
     uchar *const blockCosts_, *const fromRight_, *const fromAbove_;
-    Column* const columns_;
-    uchar *const priors_, *const intoRight_, *const intoLeft_, *const intoBelow_;
-    short* first_[Window::runs];
     uchar *winners_[groups], *costs_[groups], *edges_[groups];
     unsigned* sums_[groups];
+    ScanlineWindows tables_;
     const Window* windows_; // of the block's row of the upper layer
     int upperRow_;          // that row
     bool entersUpperRow_;   // whether it is not that of the block before
     const bool isUpward_;
     const uchar *left_[groups], *right_[groups];
-    uchar priorTable_[2 * priorRange][Window::runLength];
-    const uchar* orders_[Window::runs];
 };
 
 } // namespace
