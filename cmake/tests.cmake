@@ -4,7 +4,7 @@
 #   instruction-sets  unit tests, and the maps to the bit, without the wider instruction sets; the objects for those
 #   preload           programs under hdpstereo-run, and what it puts in the place of StereoSGBM
 #   samples, python   programs of samples/ and of OpenCV's own samples; both Python modules
-#   packages          projects that build with the module, in all of the ways that README names
+#   packages          projects that build with the module, in all of the ways that INSTALL.md names
 #   performance       one round of the performance tests: that they run, not how fast
 #   documentation     the reference and the tutorials, without a warning
 #   web               the web page, in Chromium

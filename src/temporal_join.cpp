@@ -179,18 +179,11 @@ void findSources(TemporalState& s)
     });
 }
 
-//! The cost of a pixel in bits; half of them if the right image does not show its match
-int costOf(const CensusCost& cost, Point pixel, int disparity, int width)
+//! The cost of a pixel; half of the bits if the right image does not show its match
+int costOf(const CensusCost& cost, const Point& pixel, int disparity)
 {
     const int candidate = wholeDisparity(disparity);
-    if (candidate > pixel.x)
-        return cost.comparisons() / 2;
-    const uchar* left = cost.leftPixels(pixel.y) + 4 * pixel.x;
-    const uchar* right = cost.rightPlane(0, pixel.y) + width - 1 - pixel.x + candidate;
-    unsigned bits = 0;
-    for (int plane = 0; plane < cost.planes(); ++plane, right += cost.planeStride())
-        bits |= (unsigned)(left[plane] ^ *right) << (8 * plane);
-    return countCensusBits(bits);
+    return candidate > pixel.x ? cost.comparisons() / 2 : cost.at(pixel, candidate);
 }
 
 //! Memory for a row
@@ -227,16 +220,16 @@ void compareCell(const CensusCost& cost, Point cell, const Mat& measured, const 
     for (int i = 0; i < V::cell * V::cell; ++i)
     {
         const Point pixel(V::cell * cell.x + i % V::cell, V::cell * cell.y + i / V::cell);
-        const int here = costOf(cost, pixel, measured.at<ushort>(pixel), measured.cols);
+        const int here = costOf(cost, pixel, measured.at<ushort>(pixel));
         if (sources & SAME_PLACE)
         {
-            const int there = costOf(cost, pixel, last.at<ushort>(pixel), measured.cols);
+            const int there = costOf(cost, pixel, last.at<ushort>(pixel));
             evidence[COST_UNMOVED] = (short)(evidence[COST_UNMOVED] + there - here);
             evidence[SCALE_UNMOVED] = (short)(evidence[SCALE_UNMOVED] + here + offset);
         }
         if (sources & MOVED_PLACE)
         {
-            const int there = costOf(cost, pixel, moved, measured.cols);
+            const int there = costOf(cost, pixel, moved);
             evidence[COST_MOVED] = (short)(evidence[COST_MOVED] + there - here);
             evidence[SCALE_MOVED] = (short)(evidence[SCALE_MOVED] + here + offset);
         }
