@@ -12,6 +12,7 @@
 // Which instructions may stand beside the universal intrinsics: none if these are OpenCV's emulation.
 #define HDP_LANES_AVX2 (CV_AVX2 && !CV_SIMD128_CPP)
 #define HDP_LANES_SSE2 (CV_SSE2 && !CV_AVX2 && !CV_SIMD128_CPP)
+#define HDP_LANES_WASM (CV_WASM_SIMD && !CV_SIMD128_CPP)
 #if CV_NEON && !CV_SIMD128_CPP && (defined(__aarch64__) || defined(_M_ARM64))
 #define HDP_LANES_NEON 1
 #else
@@ -27,8 +28,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 the result for a pixel does not depend on the number of groups.
 
 It is OpenCV's universal intrinsics, under operators that all versions of OpenCV have in common, and what they lack:
-shuffles inside a group, and the minimum of each group. These are written for AVX2, SSE2 and 64-bit NEON; the last
-branch of each is for all others, OpenCV's emulation without vectors among them. */
+shuffles inside a group, and the minimum of each group. These are written for AVX2, SSE2, 64-bit NEON and WebAssembly;
+the last branch of each is for all others, OpenCV's emulation without vectors among them. */
 struct ByteLanes
 {
 #if HDP_LANES_AVX2
@@ -122,6 +123,8 @@ struct ByteLanes
     {
 #if HDP_LANES_AVX2 && CV_AVX512_ICL
         return _mm256_popcnt_epi8(v.val);
+#elif HDP_LANES_WASM
+        return Vector(wasm_i8x16_popcnt(v.val));
 #else
         return v_popcount(v);
 #endif
@@ -173,6 +176,8 @@ struct ByteLanes
         return Vector(_mm_shuffle_epi8(v.val, order.v.val));
 #elif HDP_LANES_NEON
         return Vector(vqtbl1q_u8(v.val, order.v.val));
+#elif HDP_LANES_WASM
+        return Vector(wasm_i8x16_swizzle(v.val, order.v.val));
 #else
         if (v_check_all(order.equals(laneNumbers()))) // as it is for most pixels
             return *this;
@@ -205,6 +210,12 @@ struct ByteLanes
         return Vector(_mm_min_epu8(m, _mm_or_si128(_mm_slli_epi16(m, 8), _mm_srli_epi16(m, 8))));
 #elif HDP_LANES_NEON
         return Vector(vdupq_n_u8(vminvq_u8(v.val)));
+#elif HDP_LANES_WASM
+        v128_t m = wasm_u8x16_min(v.val, wasm_i64x2_shuffle(v.val, v.val, 1, 0));
+        m = wasm_u8x16_min(m, wasm_i32x4_shuffle(m, m, 1, 0, 3, 2));
+        m = wasm_u8x16_min(m, wasm_i16x8_shuffle(m, m, 1, 0, 3, 2, 5, 4, 7, 6));
+        return Vector(
+            wasm_u8x16_min(m, wasm_i8x16_shuffle(m, m, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14)));
 #else
         return repeat(v_reduce_min(v));
 #endif
@@ -222,6 +233,8 @@ struct ByteLanes
         lanes[1] = _mm_extract_epi8(_mm_minpos_epu16(_mm256_extracti128_si256(words, 1)), 0);
 #elif HDP_LANES_NEON
         lanes[0] = vminvq_u8(vornq_u8(laneNumbers().val, equals(minimum()).val));
+#elif HDP_LANES_WASM
+        lanes[0] = (unsigned)__builtin_ctz(wasm_i8x16_bitmask(equals(minimum()).val));
 #else
         lanes[0] = (unsigned)v_scan_forward(equals(minimum()));
 #endif
