@@ -1,14 +1,14 @@
 #!/bin/bash
-# Builds the web page, a folder for any static host, in build/web/page: OpenCV's core and imgproc and this module by Debian's
-# emscripten, and the page around them. Installs what is missing. About ten minutes of processor time the first time,
-# seconds when nothing has changed.
+# Builds the web page, a folder for any static host, in build/web/page: OpenCV's core and imgproc and this module by
+# Debian's emscripten, and the page around them. Installs what is missing. A quarter of an hour of processor time the
+# first time, seconds when nothing has changed.
 #   scripts/build_web.sh           builds it
 #   scripts/build_web.sh --serve   and serves it on the loopback address, to look at it
 # OPENCV_SOURCE_DIR=<OpenCV's source> in the environment: builds that one instead of Debian's source package.
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-packages=(cmake emscripten libopencv-dev ninja-build python3)
+packages=(cmake emscripten libopencv-dev ninja-build python3 xz-utils)
 command -v npm >/dev/null || packages+=(npm)
 install_packages "${packages[@]}"
 command -v emcc >/dev/null || fail "nothing can be built without emscripten"
@@ -39,16 +39,19 @@ OPENCV_SOURCE_DIR=$(realpath "$OPENCV_SOURCE_DIR")
 # Its v_round() for WebAssembly adds a half and cuts off: wrong by one below 0, and halves do not become even.
 intrinsics=$OPENCV_SOURCE_DIR/modules/core/include/opencv2/core/hal/intrin_wasm.hpp
 if grep -q 'wasm_f32x4_add(a.val, h)' "$intrinsics"; then
-    sed -i '/v_round(const v_float32x4/,/^}/{/splat(0.5)/d; s/wasm_f32x4_add(a.val, h)/wasm_f32x4_nearest(a.val)/}' "$intrinsics"
+    sed -i '/v_round(const v_float32x4/,/^}/{/splat(0.5)/d; s/wasm_f32x4_add(a.val, h)/wasm_f32x4_nearest(a.val)/}' \
+        "$intrinsics"
 fi
 
-# OpenCV with nothing that those two modules do not need. Its tests of the compiler do without links, which take a second each.
+# OpenCV with nothing that those two modules do not need. Its tests of the compiler do without links, which take a
+# second each.
 # shellcheck disable=SC2054  # a list of modules
 opencv_options=(-DBUILD_LIST=core,imgproc -DBUILD_SHARED_LIBS=OFF -DENABLE_PIC=OFF -DCPU_BASELINE= -DCPU_DISPATCH=
     -DCV_ENABLE_INTRINSICS=ON -DCV_TRACE=OFF -DENABLE_CCACHE=OFF -DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY
     -DBUILD_ZLIB=OFF "-DZLIB_INCLUDE_DIR=$checkout/web/no_zlib" -DZLIB_LIBRARY=m)
-for part in BUILD_{TESTS,PERF_TESTS,EXAMPLES,DOCS,JAVA,opencv_apps} WITH_{IPP,ITT,QUIRC,ADE,PROTOBUF,CAROTENE,OPENCL,LAPACK,EIGEN} \
-    WITH_{TBB,VA,VULKAN,WEBNN,OPENGL,1394,FFMPEG,GSTREAMER,V4L,GTK,JPEG,PNG,TIFF,WEBP,JASPER,OPENJPEG,OPENEXR}; do
+for part in BUILD_{TESTS,PERF_TESTS,EXAMPLES,DOCS,JAVA,opencv_apps} \
+    WITH_{IPP,ITT,QUIRC,ADE,PROTOBUF,CAROTENE,OPENCL,LAPACK,EIGEN,TBB,VA,VULKAN,WEBNN,OPENGL,1394,FFMPEG,GSTREAMER} \
+    WITH_{V4L,GTK,JPEG,PNG,TIFF,WEBP,JASPER,OPENJPEG,OPENEXR}; do
     opencv_options+=("-D$part=OFF")
 done
 
@@ -63,23 +66,24 @@ configure()
         "-DCMAKE_C_FLAGS=$flags" "-DCMAKE_CXX_FLAGS=$flags" "$@"
 }
 
-# build_matcher NAME FLAGS [OPTION of OpenCV...]: hdpstereo.mjs and hdpstereo.wasm in matcher-NAME. Exceptions and SIMD of
-# WebAssembly are in all browsers since 2023.
+# build_matcher NAME FLAGS [OPTION of OpenCV...]: NAME.mjs and NAME.wasm in build/web/NAME/matcher. Exceptions and SIMD
+# of WebAssembly are in all browsers since 2023.
 build_matcher()
 {
     local name=$1 flags="-msimd128 -fwasm-exceptions $2"
     shift 2
-    say "Building OpenCV and the matcher: $name"
-    configure "$directory/opencv-$name" "$OPENCV_SOURCE_DIR" "$flags" "${opencv_options[@]}" "$@"
-    run "build OpenCV" ninja -C "$directory/opencv-$name" -j "$jobs" opencv_core opencv_imgproc
-    configure "$directory/matcher-$name" "$checkout/web" "$flags" "-DOpenCV_DIR=$directory/opencv-$name" \
-        "-DOPENCV_MODULES=$OPENCV_SOURCE_DIR/modules" "-DPython3_EXECUTABLE=$python" -DHDPSTEREO_INSTALL=OFF
-    run "build the matcher" ninja -C "$directory/matcher-$name" -j "$jobs"
+    say "Building OpenCV and $name"
+    configure "$directory/$name/opencv" "$OPENCV_SOURCE_DIR" "-w $flags" "${opencv_options[@]}" "$@"
+    run "build OpenCV" ninja -C "$directory/$name/opencv" -j "$jobs" opencv_core opencv_imgproc
+    configure "$directory/$name/matcher" "$checkout/web" "$flags" "-DOpenCV_DIR=$directory/$name/opencv" \
+        "-DOPENCV_MODULES=$OPENCV_SOURCE_DIR/modules" "-DPython3_EXECUTABLE=$python" -DHDPSTEREO_INSTALL=OFF \
+        "-DHDPSTEREO_WEB_NAME=$name"
+    run "build the matcher" ninja -C "$directory/$name/matcher" -j "$jobs"
 }
 
-build_matcher simd ""
+build_matcher hdpstereo "" -DWITH_PTHREADS_PF=OFF
 
-# Packages from npm: three.js and fast-png for the page, esbuild to put each into one file, playwright-core for the tests
+# From npm: three.js and fast-png for the page, esbuild to put each into one file, playwright-core for the tests
 npm_directory=$directory/npm
 if ! cmp -s "$checkout/web/package-lock.json" "$npm_directory/.installed"; then
     say "Installing packages from npm"
@@ -92,8 +96,8 @@ fi
 # bundle FILE TARGET: with the packages that it imports
 bundle()
 {
-    run "bundle $1" env "NODE_PATH=$npm_directory/node_modules" "$npm_directory/node_modules/.bin/esbuild" "$1" --bundle \
-        --format=esm --minify --legal-comments=none "--outfile=$2"
+    run "bundle $1" env "NODE_PATH=$npm_directory/node_modules" "$npm_directory/node_modules/.bin/esbuild" "$1" \
+        --bundle --format=esm --minify --legal-comments=none "--outfile=$2"
 }
 
 page=$directory/page
@@ -118,7 +122,7 @@ if ! cmp -s "$checkout/web/tools/scene.mjs" "$directory/pair/scene.mjs"; then
 fi
 mkdir "$page.part/pair"
 cp "$directory"/pair/{left,right}.png "$page.part/pair"
-cp "$directory"/matcher-simd/{hdpstereo.mjs,hdpstereo.wasm,parameters.json} "$page.part"
+cp "$directory"/hdpstereo/matcher/{hdpstereo.mjs,hdpstereo.wasm,parameters.json} "$page.part"
 rm -rf "$page"
 mv "$page.part" "$page"
 

@@ -12,14 +12,16 @@ const scale = 16; // of the disparities
 // 256 times the disparity, 0 where there is none
 function encodePng({ width, height, disparity, invalid }) {
     const data = Uint16Array.from(disparity, value =>
-        value === invalid || value < 0 || value >= 256 * scale ? 0 : Math.max(value * 256 / scale, 1));
+        value === invalid || value < 0 || value >= 256 * scale ? 0 : Math.max((value * 256) / scale, 1),
+    );
     return encode({ width, height, data, channels: 1, depth: 16 });
 }
 
 // Floating point, the last row first, infinite where there is none
 function encodePfm({ width, height, disparity, invalid }) {
     const header = new TextEncoder().encode(`Pf\n${width} ${height}\n-1.0\n`);
-    const bytes = new Uint8Array(header.length + 4 * width * height), view = new DataView(bytes.buffer);
+    const bytes = new Uint8Array(header.length + 4 * width * height),
+        view = new DataView(bytes.buffer);
     bytes.set(header);
     let at = header.length;
     for (let y = height - 1; y >= 0; y--)
@@ -31,28 +33,41 @@ function encodePfm({ width, height, disparity, invalid }) {
 }
 
 // What point(x, y, z, i) gets of each pixel i with a depth; x to the right, y down, z away from the camera
-export function forEachPoint({ width, height, disparity, confidence, invalid, threshold, focal, baseline }, point, step = 1) {
-    const centerX = 0.5 * (width - 1), centerY = 0.5 * (height - 1);
+export function forEachPoint(result, point, step = 1) {
+    const { width, height, disparity, confidence, invalid, threshold, focal, baseline } = result;
+    const centerX = 0.5 * (width - 1),
+        centerY = 0.5 * (height - 1);
     for (let y = 0; y < height; y += step)
         for (let x = 0; x < width; x += step) {
-            const i = y * width + x, value = disparity[i] / scale;
+            const i = y * width + x,
+                value = disparity[i] / scale;
             if (disparity[i] !== invalid && value > 0 && confidence[i] >= threshold)
-                point((x - centerX) * baseline / value, (y - centerY) * baseline / value, focal * baseline / value, i);
+                point(
+                    ((x - centerX) * baseline) / value,
+                    ((y - centerY) * baseline) / value,
+                    (focal * baseline) / value,
+                    i,
+                );
         }
 }
 
 export function colorReader(image) {
-    const { data } = image, channels = channelsOf(image), level = levelsOf(image);
+    const { data } = image,
+        channels = channelsOf(image),
+        level = levelsOf(image);
     return (i, c) => level(data[channels === 1 ? i : channels * i + c]);
 }
 
 function encodePly(result) {
     let count = 0;
     forEachPoint(result, () => count++);
-    const header = new TextEncoder().encode(`ply\nformat binary_little_endian 1.0\nelement vertex ${count}\n` +
-        'property float x\nproperty float y\nproperty float z\n' +
-        'property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n');
-    const bytes = new Uint8Array(header.length + 15 * count), view = new DataView(bytes.buffer);
+    const header = new TextEncoder().encode(
+        `ply\nformat binary_little_endian 1.0\nelement vertex ${count}\n` +
+            'property float x\nproperty float y\nproperty float z\n' +
+            'property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n',
+    );
+    const bytes = new Uint8Array(header.length + 15 * count),
+        view = new DataView(bytes.buffer);
     bytes.set(header);
     let at = header.length;
     const color = colorReader(result.left);
@@ -60,8 +75,7 @@ function encodePly(result) {
         view.setFloat32(at, x, true);
         view.setFloat32(at + 4, y, true);
         view.setFloat32(at + 8, z, true);
-        for (let c = 0; c < 3; c++)
-            bytes[at + 12 + c] = color(i, c);
+        for (let c = 0; c < 3; c++) bytes[at + 12 + c] = color(i, c);
         at += 15;
     });
     return bytes;

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// From files to pixels: { width, height, data }, with grey levels, RGB or RGBA of 8 bits, or of 16 bits of a PNG that has them
+// From files to pixels: { width, height, data }, with grey levels, RGB or RGBA of 8 bits, or of 16 bits of a PNG
 
 import { decode, hasPngSignature } from './vendor/png.mjs';
 
@@ -11,8 +11,10 @@ export const largestImage = 60 * megapixel;
 
 export function checkSize(width, height, name) {
     if (width * height > largestImage)
-        throw new Error(`${name} has ${Math.round(width * height / megapixel)} megapixels. This page takes up to ` +
-            `${largestImage / megapixel}: make it smaller first.`);
+        throw new Error(
+            `${name} has ${Math.round((width * height) / megapixel)} megapixels. This page takes up to ` +
+                `${largestImage / megapixel}: make it smaller first.`,
+        );
 }
 
 function sizeOfPng(bytes) {
@@ -24,22 +26,22 @@ function sizeOfPng(bytes) {
 function withoutPalette({ width, height, data, channels, depth, palette }) {
     const pixels = width * height;
     if (palette) {
-        const colors = new Uint8Array(3 * pixels), bits = depth, perByte = 8 / bits, stride = Math.ceil(width / perByte);
+        const colors = new Uint8Array(3 * pixels),
+            bits = depth,
+            perByte = 8 / bits;
+        const stride = Math.ceil(width / perByte);
         for (let y = 0; y < height; y++)
             for (let x = 0; x < width; x++) {
                 const byte = data[y * stride + Math.floor(x / perByte)];
-                const index = (byte >> (8 - bits * (x % perByte + 1))) & ((1 << bits) - 1);
+                const index = (byte >> (8 - bits * ((x % perByte) + 1))) & ((1 << bits) - 1);
                 colors.set((palette[index] ?? [0, 0, 0]).slice(0, 3), 3 * (y * width + x));
             }
         return { width, height, data: colors };
     }
-    if (depth < 8)
-        throw new Error('less than 8 bits'); // for the browser
-    if (channels !== 2)
-        return { width, height, data };
+    if (depth < 8) throw new Error('less than 8 bits'); // for the browser
+    if (channels !== 2) return { width, height, data };
     const grey = new data.constructor(pixels);
-    for (let i = 0; i < pixels; i++)
-        grey[i] = data[2 * i];
+    for (let i = 0; i < pixels; i++) grey[i] = data[2 * i];
     return { width, height, data: grey };
 }
 
@@ -60,7 +62,8 @@ async function decodeByBrowser(file, name) {
 }
 
 export async function decodeImage(file) {
-    const name = file.name || 'The image', bytes = new Uint8Array(await file.arrayBuffer());
+    const name = file.name || 'The image',
+        bytes = new Uint8Array(await file.arrayBuffer());
     if (bytes.length >= 24 && hasPngSignature(bytes)) {
         checkSize(...sizeOfPng(bytes), name);
         try {

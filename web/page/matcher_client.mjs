@@ -2,23 +2,35 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The worker, as seen from the page. A run that is not wanted any more ends with its worker; the next one takes its place.
+// The worker, as seen from the page. A run that is not wanted any more ends with its worker, and another one takes its
+// place.
 
 export class Cancelled extends Error {}
 
+async function compile(file) {
+    const response = await fetch(file);
+    if (!response.ok) throw new Error(`there is no ${file}`);
+    return WebAssembly.compile(await response.arrayBuffer()); // whatever type the host says that it has
+}
+
 export class MatcherClient {
+    // Threads share memory, which browsers allow if the host isolates the page from others.
     async start() {
-        // Threads share memory, which browsers allow if the host isolates the page from others.
+        const documentation = await (await fetch('parameters.json')).json();
         const threads = globalThis.crossOriginIsolated ? navigator.hardwareConcurrency : 1;
-        const name = threads > 1 ? 'hdpstereo-threads' : 'hdpstereo', file = `${name}.wasm`;
-        const [module, documentation] = await Promise.all([
-            WebAssembly.compileStreaming(fetch(file)).catch(async () =>
-                // a server that does not know the type of the file
-                WebAssembly.compile(await (await fetch(file)).arrayBuffer())),
-            fetch('parameters.json').then(response => response.json()),
-        ]);
-        this.engine = { name, module, documentation, threads };
-        return { documentation, ...await this.#startWorker() };
+        const start = async (name, count) => {
+            this.engine = { name, module: await compile(`${name}.wasm`), documentation, threads: count };
+            return { documentation, ...(await this.#startWorker()) };
+        };
+        if (threads > 1) {
+            try {
+                return await start('hdpstereo-threads', threads);
+            } catch (error) {
+                console.warn(`Without threads: ${error.message}`);
+                this.#worker?.terminate();
+            }
+        }
+        return start('hdpstereo', 1);
     }
 
     // Of the next match()
@@ -56,16 +68,13 @@ export class MatcherClient {
     }
 
     cancel() {
-        if (!this.isMatching)
-            return;
+        if (!this.isMatching) return;
         this.#worker.terminate();
         const ended = [...this.#waiting.values()];
         this.#waiting.clear();
         this.#startWorker();
-        if (this.pair)
-            this.#request('setPair', this.pair);
-        for (const { reject } of ended)
-            reject(new Cancelled('cancelled'));
+        if (this.pair) this.#request('setPair', this.pair);
+        for (const { reject } of ended) reject(new Cancelled('cancelled'));
     }
 
     #worker = null;
@@ -77,19 +86,15 @@ export class MatcherClient {
         this.#worker.onmessage = ({ data: { id, answer, error } }) => {
             const { resolve, reject } = this.#waiting.get(id) ?? {};
             this.#waiting.delete(id);
-            if (error !== undefined)
-                reject?.(new Error(error));
-            else
-                resolve?.(answer);
+            if (error !== undefined) reject?.(new Error(error));
+            else resolve?.(answer);
         };
         this.#worker.onerror = event => {
             const ended = [...this.#waiting.values()];
             this.#waiting.clear();
             this.#startWorker();
-            if (this.pair)
-                this.#request('setPair', this.pair);
-            for (const { reject } of ended)
-                reject(new Error(event.message || 'The matcher stopped.'));
+            if (this.pair) this.#request('setPair', this.pair);
+            for (const { reject } of ended) reject(new Error(event.message || 'The matcher stopped.'));
         };
         return this.#request('start', this.engine);
     }

@@ -10,8 +10,10 @@ const greyed = [120, 124, 132];
 const rejected = [20, 22, 26];
 
 const colors = Uint8Array.from({ length: 3 * 256 }, (_, i) => {
-    const place = Math.floor(i / 3) / 255 * (turbo.length - 1), first = Math.min(Math.floor(place), turbo.length - 2);
-    const shift = 16 - 8 * (i % 3), channel = color => (color >> shift) & 255;
+    const place = (Math.floor(i / 3) / 255) * (turbo.length - 1),
+        first = Math.min(Math.floor(place), turbo.length - 2);
+    const shift = 16 - 8 * (i % 3),
+        channel = color => (color >> shift) & 255;
     return channel(turbo[first]) + (channel(turbo[first + 1]) - channel(turbo[first])) * (place - first);
 });
 
@@ -25,10 +27,14 @@ export function reduction(width, height) {
 
 // Draws what color(i, pixels, at) sets for each pixel i of an image
 function draw(canvas, width, height, color) {
-    const step = reduction(width, height), columns = Math.floor(width / step), rows = Math.floor(height / step);
+    const step = reduction(width, height),
+        columns = Math.floor(width / step),
+        rows = Math.floor(height / step);
     canvas.width = columns;
     canvas.height = rows;
-    const context = canvas.getContext('2d'), image = context.createImageData(columns, rows), pixels = image.data;
+    const context = canvas.getContext('2d'),
+        image = context.createImageData(columns, rows),
+        pixels = image.data;
     for (let y = 0, at = 0; y < rows; y++)
         for (let x = 0; x < columns; x++, at += 4) {
             color(y * step * width + x * step, pixels, at);
@@ -39,13 +45,10 @@ function draw(canvas, width, height, color) {
 
 // To 8 bits: 16-bit images from black to their brightest pixel
 export function levelsOf({ data }) {
-    if (!(data instanceof Uint16Array))
-        return level => level;
+    if (!(data instanceof Uint16Array)) return level => level;
     let brightest = 1;
-    for (const level of data)
-        if (level > brightest)
-            brightest = level;
-    return level => 255 * level / brightest;
+    for (const level of data) if (level > brightest) brightest = level;
+    return level => (255 * level) / brightest;
 }
 
 export function channelsOf({ width, height, data }) {
@@ -53,23 +56,23 @@ export function channelsOf({ width, height, data }) {
 }
 
 export function drawImage(canvas, image) {
-    const { data } = image, channels = channelsOf(image), level = levelsOf(image);
+    const { data } = image,
+        channels = channelsOf(image),
+        level = levelsOf(image);
     draw(canvas, image.width, image.height, (i, pixels, at) => {
-        for (let c = 0; c < 3; c++)
-            pixels[at + c] = level(data[channels === 1 ? i : channels * i + c]);
+        for (let c = 0; c < 3; c++) pixels[at + c] = level(data[channels === 1 ? i : channels * i + c]);
     });
 }
 
 // The range of colours: that of the disparities, but for one in 200 at each end
 export function colorRange({ disparity }, invalid) {
-    const sorted = [], step = Math.max(1, Math.floor(disparity.length / 50000));
-    for (let i = 0; i < disparity.length; i += step)
-        if (disparity[i] !== invalid)
-            sorted.push(disparity[i]);
+    const sorted = [],
+        step = Math.max(1, Math.floor(disparity.length / 50000));
+    for (let i = 0; i < disparity.length; i += step) if (disparity[i] !== invalid) sorted.push(disparity[i]);
     sorted.sort((a, b) => a - b);
-    if (sorted.length === 0)
-        return [0, 16];
-    const low = sorted[Math.floor(0.005 * sorted.length)], high = sorted[Math.floor(0.995 * (sorted.length - 1))];
+    if (sorted.length === 0) return [0, 16];
+    const low = sorted[Math.floor(0.005 * sorted.length)],
+        high = sorted[Math.floor(0.995 * (sorted.length - 1))];
     return [low, Math.max(high, low + 16)];
 }
 
@@ -79,7 +82,8 @@ export function colorOf(disparity, [low, high]) {
 }
 
 export function drawDisparity(canvas, { width, height, disparity, confidence }, { range, invalid, threshold }) {
-    const [low, high] = range, scale = 255 / (high - low);
+    const [low, high] = range,
+        scale = 255 / (high - low);
     draw(canvas, width, height, (i, pixels, at) => {
         const value = disparity[i];
         if (value === invalid) {
@@ -103,9 +107,9 @@ export function drawConfidence(canvas, { width, height, confidence }, { threshol
     });
 }
 
-export function drawScale(canvas) {
+// Of the disparities, or of the confidence
+export function drawScale(canvas, isConfidence) {
     draw(canvas, 256, 1, (i, pixels, at) => {
-        for (let c = 0; c < 3; c++)
-            pixels[at + c] = colors[3 * i + c];
+        for (let c = 0; c < 3; c++) pixels[at + c] = isConfidence ? i : colors[3 * i + c];
     });
 }

@@ -39,8 +39,9 @@ export class Video {
     }
 
     get frameSize() {
-        const { videoWidth, videoHeight } = this.element, scale = Math.min(1, widestFrame / videoWidth);
-        return [2 * Math.floor(videoWidth * scale / 2), Math.floor(videoHeight * scale)];
+        const { videoWidth, videoHeight } = this.element,
+            scale = Math.min(1, widestFrame / videoWidth);
+        return [2 * Math.floor((videoWidth * scale) / 2), Math.floor(videoHeight * scale)];
     }
 
     get isPaused() {
@@ -48,10 +49,8 @@ export class Video {
     }
 
     async togglePause() {
-        if (this.element.paused)
-            await this.element.play();
-        else
-            this.element.pause();
+        if (this.element.paused) await this.element.play();
+        else this.element.pause();
     }
 
     close() {
@@ -60,8 +59,7 @@ export class Video {
         this.element.srcObject?.getTracks().forEach(track => track.stop());
         this.element.srcObject = null;
         this.element.removeAttribute('src');
-        if (this.address)
-            URL.revokeObjectURL(this.address);
+        if (this.address) URL.revokeObjectURL(this.address);
         this.address = null;
     }
 
@@ -76,7 +74,8 @@ export class Video {
 
     // Until the video is closed or another one is opened
     async run() {
-        const generation = ++this.generation, times = [];
+        const generation = ++this.generation,
+            times = [];
         let lastTime = -1;
         while (generation === this.generation) {
             if (this.element.paused || this.element.currentTime === lastTime) {
@@ -87,23 +86,20 @@ export class Video {
             try {
                 await this.match(this.#frame(), () => generation === this.generation);
             } catch (error) {
-                if (generation === this.generation)
-                    this.fail(error);
+                if (generation === this.generation) this.fail(error);
                 return;
             }
             times.push(performance.now());
-            if (times.length > 20)
-                times.shift();
+            if (times.length > 20) times.shift();
             if (generation === this.generation && times.length > 1)
-                this.report(1000 * (times.length - 1) / (times.at(-1) - times[0]));
+                this.report((1000 * (times.length - 1)) / (times.at(-1) - times[0]));
             await new Promise(resolve => setTimeout(resolve)); // what the visitor does comes first
         }
     }
 
     #frame() {
         const [width, height] = this.frameSize;
-        if (this.canvas.width !== width || this.canvas.height !== height)
-            Object.assign(this.canvas, { width, height });
+        if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
         const context = this.canvas.getContext('2d', { willReadFrequently: true });
         context.drawImage(this.element, 0, 0, width, height);
         return { width, height, data: context.getImageData(0, 0, width, height).data };

@@ -18,8 +18,7 @@ function presetNumber(name) {
 
 function readParameters(matcher) {
     const values = { treeStrategy: matcher.getTreeStrategy() };
-    for (const { name, method } of parameters)
-        values[name] = matcher[`get${method}`]();
+    for (const { name, method } of parameters) values[name] = matcher[`get${method}`]();
     return values;
 }
 
@@ -44,8 +43,11 @@ function applySettings(matcher, { minDisparity, numDisparities, changes }) {
 }
 
 function createMatcher(settings) {
-    const matcher = hdp.HDPTreeMatcher.create(settings.minDisparity, settings.numDisparities,
-        presetNumber(settings.preset));
+    const matcher = hdp.HDPTreeMatcher.create(
+        settings.minDisparity,
+        settings.numDisparities,
+        presetNumber(settings.preset),
+    );
     try {
         applySettings(matcher, settings);
     } catch (error) {
@@ -56,12 +58,13 @@ function createMatcher(settings) {
 }
 
 function findings(matcher) {
-    const rows = matcher.getRowAlignment(), light = matcher.getLightAlignment();
+    const rows = matcher.getRowAlignment(),
+        light = matcher.getLightAlignment();
     return {
         noise: matcher.getNoiseLevel(),
         noiseThreshold: matcher.getNoiseThreshold(),
-        rows: { moved: rows.result, model: rows.model },
-        light: { changed: light.result, model: light.model },
+        rows: { sought: matcher.getMaxRowOffset() > 0, moved: rows.result, model: rows.model },
+        light: { sought: matcher.getUseLightAlignment(), changed: light.result, model: light.model },
         ratios: matcher.getSearchRatios(),
         times: matcher.getStageTimes(),
     };
@@ -82,7 +85,8 @@ function resultOf(matcher, disparity, start) {
 
 // Halves of a picture with both images side by side
 function splitFrame({ width, height, data }) {
-    const half = width >> 1, halves = [];
+    const half = width >> 1,
+        halves = [];
     for (const first of [0, width - half]) {
         const part = new Uint8ClampedArray(4 * half * height);
         for (let y = 0; y < height; y++)
@@ -98,11 +102,12 @@ const actions = {
     async start({ name, module, documentation, threads }) {
         parameters = documentation.parameters;
         const { default: createHDPStereo } = await import(`./${name}.mjs`);
-        hdp = await createHDPStereo({
-            instantiateWasm(imports, receive) {
-                WebAssembly.instantiate(module, imports).then(instance => receive(instance, module));
+        hdp = await new Promise((resolve, reject) => {
+            const instantiateWasm = (imports, receive) => {
+                WebAssembly.instantiate(module, imports).then(instance => receive(instance, module), reject);
                 return {};
-            },
+            };
+            createHDPStereo({ instantiateWasm }).then(resolve, reject);
         });
         hdp.setNumThreads(threads);
         const presets = documentation.enumerations.Preset.map(({ name }) => name.replace('PRESET_', ''));
@@ -120,7 +125,8 @@ const actions = {
     },
 
     match({ settings }) {
-        const start = performance.now(), matcher = createMatcher(settings);
+        const start = performance.now(),
+            matcher = createMatcher(settings);
         try {
             const result = resultOf(matcher, matcher.compute(pair.left, pair.right), start);
             return [result, transferable(result)];
@@ -133,13 +139,13 @@ const actions = {
     setVideo({ settings }) {
         video?.delete();
         video = null;
-        if (settings)
-            video = createMatcher(settings);
+        if (settings) video = createMatcher(settings);
         return [{}];
     },
 
     frame({ frame }) {
-        const start = performance.now(), [left, right] = splitFrame(frame);
+        const start = performance.now(),
+            [left, right] = splitFrame(frame);
         const result = { ...resultOf(video, video.compute(left, right), start), left };
         return [result, [...transferable(result), left.data.buffer]];
     },

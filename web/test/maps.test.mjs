@@ -15,15 +15,18 @@ import { floatsOfPfm, matchNatively, pageFolder, pairs, presets } from './pictur
 const { default: create } = await import(pathToFileURL(join(pageFolder, 'hdpstereo.mjs')));
 const hdp = await create({ wasmBinary: readFileSync(join(pageFolder, 'hdpstereo.wasm')) });
 
-const hash = array => createHash('sha256').update(new Uint8Array(array.buffer, array.byteOffset, array.byteLength)).digest('hex');
+const hash = array =>
+    createHash('sha256')
+        .update(new Uint8Array(array.buffer, array.byteOffset, array.byteLength))
+        .digest('hex');
 
 // From the first row on, in 1/16 pixel
 function nativeMap(pair, preset) {
-    const { width, height } = pair.images.left, floats = floatsOfPfm(matchNatively(pair, preset, 'native.pfm'));
+    const { width, height } = pair.images.left,
+        floats = floatsOfPfm(matchNatively(pair, preset, 'native.pfm'));
     const map = new Int16Array(width * height);
     for (let y = 0; y < height; y++)
-        for (let x = 0; x < width; x++)
-            map[y * width + x] = 16 * floats[(height - 1 - y) * width + x];
+        for (let x = 0; x < width; x++) map[y * width + x] = 16 * floats[(height - 1 - y) * width + x];
     return map;
 }
 
@@ -31,14 +34,17 @@ for (const pair of pairs)
     for (const preset of presets)
         test(`${pair.name} pair, ${preset}: the map of the native program`, () => {
             const matcher = hdp.HDPTreeMatcher.create(pair.minDisparity, pair.numDisparities, hdp[`PRESET_${preset}`]);
-            const { left, right } = pair.images, { data } = matcher.compute(left, right), expected = nativeMap(pair, preset);
+            const { left, right } = pair.images,
+                { data } = matcher.compute(left, right),
+                expected = nativeMap(pair, preset);
             assert.equal(hash(data), hash(expected));
             assert.ok(new Set(data).size > 20, 'a map of something');
             matcher.delete();
         });
 
 test('the pairs have rows to move, light to change and noise', () => {
-    const matcher = hdp.HDPTreeMatcher.create(-5, 70, hdp.PRESET_FAST), { left, right } = pairs[2].images;
+    const matcher = hdp.HDPTreeMatcher.create(-5, 70, hdp.PRESET_FAST),
+        { left, right } = pairs[2].images;
     matcher.compute(left, right);
     const rows = matcher.getRowAlignment();
     assert.equal(rows.result, true);
@@ -68,9 +74,11 @@ test('setters take what getters return, and refuse what is out of range', () => 
 });
 
 test('all results of a run', () => {
-    const matcher = hdp.HDPTreeMatcher.create(0, 64, hdp.PRESET_TREE), { left, right } = pairs[0].images;
+    const matcher = hdp.HDPTreeMatcher.create(0, 64, hdp.PRESET_TREE),
+        { left, right } = pairs[0].images;
     assert.equal(matcher.getConfidence(), null);
-    const map = matcher.compute(left, right), confidence = matcher.getConfidence();
+    const map = matcher.compute(left, right),
+        confidence = matcher.getConfidence();
     assert.deepEqual([map.width, map.height, confidence.width, confidence.height], [640, 480, 640, 480]);
     assert.ok(confidence.data instanceof Uint8Array && confidence.data.some(value => value > 100));
     assert.equal(matcher.getSearchRatios().length, 3);

@@ -12,8 +12,13 @@ import { extname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 const types = {
-    '.html': 'text/html', '.css': 'text/css', '.mjs': 'text/javascript', '.json': 'application/json',
-    '.wasm': 'application/wasm', '.png': 'image/png', '.txt': 'text/plain',
+    '.html': 'text/html',
+    '.css': 'text/css',
+    '.mjs': 'text/javascript',
+    '.json': 'application/json',
+    '.wasm': 'application/wasm',
+    '.png': 'image/png',
+    '.txt': 'text/plain',
 };
 
 // headers: more of them, for each answer. Returns the address and close().
@@ -22,8 +27,7 @@ export async function serve(folder, { port = 0, headers = {} } = {}) {
         const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
         const file = join(folder, path.endsWith('/') ? `${path}index.html` : path);
         try {
-            if (!(await stat(file)).isFile())
-                throw new Error('not a file');
+            if (!(await stat(file)).isFile()) throw new Error('not a file');
         } catch {
             response.writeHead(404).end();
             return;
