@@ -43,7 +43,13 @@ static void evaluateMethod(const Method& method, const Pair& pair, const Evaluat
     result.score = scoreMap(disparity, pair);
     const Ptr<HDPTreeMatcher> hdp = matcher.dynamicCast<HDPTreeMatcher>();
     if (hdp)
+    {
         hdp->getSearchRatios(result.ratios);
+        Mat confidence;
+        hdp->getConfidence(confidence);
+        if (pair.protocol != Pair::NO_TRUTH)
+            findSparsification(wrongPixels(disparity, pair), pair.judged, confidence, result.score);
+    }
     if (!settings.maps.empty())
     {
         const String folder = fs::join(fs::join(settings.maps, method.name), scene.scene.set);

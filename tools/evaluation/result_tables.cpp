@@ -149,6 +149,28 @@ static Table meanTable(const String& title, const std::vector<Column>& columns, 
     return table;
 }
 
+//! What becomes of occluded pixels, and what the confidence is worth
+static Table reliabilityTable(const String& set, Pair::Protocol protocol, const Selection& results,
+                              const std::vector<Method>& methods)
+{
+    const Selection complete = completeOnes(results);
+    Table table;
+    table.title = format("Occlusions and confidence of %s, means of %d pairs", set.c_str(), int(complete.size()));
+    table.header = { "system", "occluded pixels, " + mainScoreName(protocol), "area of the sparsification curve",
+                     "least area", "ratio of the areas" };
+    for (size_t m = 0; m < methods.size(); m++)
+    {
+        const double area = meanFigure(complete, m, &Score::sparsification);
+        const double least = meanFigure(complete, m, &Score::leastSparsification);
+        table.addRow(methods[m].name);
+        table.addNumber(meanFigure(complete, m, &Score::occluded));
+        table.addNumber(area);
+        table.addNumber(least);
+        table.addNumber(least > 0 ? area / least : NO_SCORE);
+    }
+    return table;
+}
+
 //! Means of err>=1 and err>=2 per set; the paper's Table 3
 static Table averageTable(const std::vector<String>& sets, const std::vector<Method>& methods,
                           const std::vector<SceneResult>& results)
@@ -266,6 +288,13 @@ std::vector<Table> makeTables(const std::vector<Method>& methods, const std::vec
         }
     }
     for (const String& set : sets)
+        for (Pair::Protocol protocol : { Pair::MIDDLEBURY, Pair::KITTI, Pair::BAD })
+        {
+            const Selection ofSet = resultsOfSet(results, set, protocol);
+            if (!ofSet.empty())
+                tables.push_back(reliabilityTable(set, protocol, ofSet, methods));
+        }
+    for (const String& set : sets)
         for (Pair::Protocol protocol : { Pair::MIDDLEBURY, Pair::KITTI, Pair::BAD, Pair::NO_TRUTH })
         {
             const Selection complete = completeOnes(resultsOfSet(results, set, protocol));
@@ -279,11 +308,18 @@ std::vector<Table> makeTables(const std::vector<Method>& methods, const std::vec
 
 Table everyPairTable(const std::vector<Method>& methods, const std::vector<SceneResult>& results)
 {
-    const std::vector<Column> columns = { { "err>=1 %", &Score::error1 },   { "err>=2 %", &Score::error2 },
-                                          { "bad 0.5 %", &Score::badHalf }, { "bad 1 %", &Score::bad1 },
-                                          { "bad 2 %", &Score::bad2 },      { "bad 4 %", &Score::bad4 },
-                                          { "D1 %", &Score::d1 },           { "D1 noc %", &Score::d1NonOccluded },
-                                          { "average px", &Score::average } };
+    const std::vector<Column> columns = { { "err>=1 %", &Score::error1 },
+                                          { "err>=2 %", &Score::error2 },
+                                          { "bad 0.5 %", &Score::badHalf },
+                                          { "bad 1 %", &Score::bad1 },
+                                          { "bad 2 %", &Score::bad2 },
+                                          { "bad 4 %", &Score::bad4 },
+                                          { "D1 %", &Score::d1 },
+                                          { "D1 noc %", &Score::d1NonOccluded },
+                                          { "average px", &Score::average },
+                                          { "occluded %", &Score::occluded },
+                                          { "sparsification %", &Score::sparsification },
+                                          { "least sparsification %", &Score::leastSparsification } };
     Table table;
     table.title = "Every pair";
     table.header = { "set", "scene", "method" };

@@ -23,6 +23,9 @@ struct Score
     double d1, d1NonOccluded;         // errors above 3 pixels and 5 %; the latter for KITTI only
     double invalid;                   // pixels without a disparity
     double average;                   // mean absolute error in pixels, of each pixel at most 64
+    double occluded;                  // wrong occluded pixels, by the main score
+    double sparsification;            // of the confidence, see findSparsification()
+    double leastSparsification;       // of the best confidence that there could be
 
     Score();
 };
@@ -35,6 +38,14 @@ double mainScore(const Score& score, Pair::Protocol protocol);
 
 //! Pixels that are wrong by the pair's main score
 Mat wrongPixels(const Mat& disparity, const Pair& pair);
+
+/** The area under the sparsification curve: the error rate of the most confident pixels, in percent, mean over all shares
+of them from none to all. Pixels of one confidence are in no order.
+@param wrong Mask of the wrong pixels.
+@param judged Mask of the pixels that count.
+@param confidence CV_8UC1.
+@param score Receives the area, and that of a confidence which has all wrong pixels last. */
+void findSparsification(const Mat& wrong, const Mat& judged, const Mat& confidence, Score& score);
 
 //! Mean of the numbers that there are; NO_SCORE if there are none.
 double meanOf(const std::vector<double>& values);

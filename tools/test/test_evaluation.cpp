@@ -40,6 +40,7 @@ TEST(HDPStereo_Evaluation, middlebury_by_hand)
     EXPECT_DOUBLE_EQ(100. * 5 / 8, score.error1);
     EXPECT_DOUBLE_EQ(100. * 3 / 8, score.error2);
     EXPECT_NEAR((0 + 0.9375 + 1 + 1.9375 + 2 + 64 + 64 + 0.5) / 8, score.average, 1e-6);
+    EXPECT_DOUBLE_EQ(100, score.occluded); // one pixel of known truth
     EXPECT_TRUE(std::isnan(score.d1NonOccluded));
 }
 
@@ -54,8 +55,35 @@ TEST(HDPStereo_Evaluation, kitti_by_hand)
     EXPECT_DOUBLE_EQ(100. * 3 / 6, score.d1);
     EXPECT_DOUBLE_EQ(100. * 1 / 4, score.d1NonOccluded);
     EXPECT_NEAR((4 + 5 + 5.5 + 3 + 3.25 + 64) / 6, score.average, 1e-6);
+    EXPECT_DOUBLE_EQ(100, score.occluded); // 3.25 and none
     pair.judgedNonOccluded.release();
     EXPECT_TRUE(std::isnan(scoreMap(map, pair).d1NonOccluded));
+    EXPECT_TRUE(std::isnan(scoreMap(map, pair).occluded));
+}
+
+TEST(HDPStereo_Evaluation, sparsification_by_hand)
+{
+    const Mat wrong = Mat_<uchar>({ 1, 6 }, { 0, 255, 0, 255, 255, 0 });
+    const Mat judged = Mat_<uchar>({ 1, 6 }, { 255, 255, 255, 255, 0, 0 });
+    const double least = 25 * (2 - 2 * std::log(2.)); // no errors in the first half, then from none to a half
+    const struct
+    {
+        Mat confidence;
+        double area;
+    } cases[] = { { Mat_<uchar>({ 1, 6 }, { 200, 0, 200, 0, 255, 255 }), least },
+                  { Mat_<uchar>({ 1, 6 }, { 255, 7, 9, 8, 0, 0 }), least },
+                  { Mat(1, 6, CV_8UC1, cv::Scalar(3)), 50 },                                      // always a half
+                  { Mat_<uchar>({ 1, 6 }, { 1, 2, 1, 2, 3, 3 }), 25 * (2 + 2 * std::log(2.)) } }; // wrong ones first
+    Score score;
+    for (const auto& c : cases)
+    {
+        findSparsification(wrong, judged, c.confidence, score);
+        EXPECT_NEAR(c.area, score.sparsification, 1e-10);
+        EXPECT_NEAR(least, score.leastSparsification, 1e-10);
+    }
+    findSparsification(Mat::zeros(1, 6, CV_8U), judged, wrong, score);
+    EXPECT_EQ(0, score.sparsification);
+    EXPECT_EQ(0, score.leastSparsification);
 }
 
 TEST(HDPStereo_Evaluation, bad_pixels_by_hand)
