@@ -78,7 +78,8 @@ static std::vector<Variant> variantsOf(int preset)
     {
         add<int>(variants, "finestLayer", &M::setFinestLayer, { 1, 2 });
         add<int>(variants, "scanlinePasses", &M::setScanlinePasses, { 2, 3 });
-        add<int>(variants, "topAggregation", &M::setTopAggregation, { M::AGGREGATION_TREES });
+        variants.push_back(
+            { "topAggregation = AGGREGATION_TREES", [](M& m) { m.setTopAggregation(M::AGGREGATION_TREES); }, 0, 0, 0 });
         add<int>(variants, "maxTopDisparities", &M::setMaxTopDisparities, { 16, 64 });
         add<int>(variants, "P1", &M::setP1, { 9, 36 });
         add<int>(variants, "P2", &M::setP2, { 35, 100 });
@@ -86,7 +87,8 @@ static std::vector<Variant> variantsOf(int preset)
     else
     {
         variants[0].name = "PRESET_TREE";
-        add<int>(variants, "aggregation", &M::setAggregation, { M::AGGREGATION_TREES });
+        variants.push_back(
+            { "aggregation = AGGREGATION_TREES", [](M& m) { m.setAggregation(M::AGGREGATION_TREES); }, 0, 0, 0 });
         add<bool>(variants, "useNonLocalRefinement", &M::setUseNonLocalRefinement, { true });
         add<int>(variants, "maxTopDisparities", &M::setMaxTopDisparities, { 32, 128 });
         add<double>(variants, "delta0", &M::setDelta0, { 0.005, 0.08 });
