@@ -81,7 +81,9 @@ build_matcher()
     run "build the matcher" ninja -C "$directory/$name/matcher" -j "$jobs"
 }
 
+# Two of them: browsers allow threads only to pages that are isolated from others, which the host has to ask for.
 build_matcher hdpstereo "" -DWITH_PTHREADS_PF=OFF
+build_matcher hdpstereo-threads "-pthread" -DWITH_PTHREADS_PF=ON
 
 # From npm: three.js and fast-png for the page, esbuild to put each into one file, playwright-core for the tests
 npm_directory=$directory/npm
@@ -123,6 +125,9 @@ fi
 mkdir "$page.part/pair"
 cp "$directory"/pair/{left,right}.png "$page.part/pair"
 cp "$directory"/hdpstereo/matcher/{hdpstereo.mjs,hdpstereo.wasm,parameters.json} "$page.part"
+cp "$directory"/hdpstereo-threads/matcher/hdpstereo-threads.{mjs,wasm} "$page.part"
+# With emscripten before 3.1.58, threads have a file of their own.
+find "$directory/hdpstereo-threads/matcher" -maxdepth 1 -name '*.worker.*js' -exec cp {} "$page.part" \;
 rm -rf "$page"
 mv "$page.part" "$page"
 

@@ -20,7 +20,9 @@ export class MatcherClient {
         const threads = globalThis.crossOriginIsolated ? navigator.hardwareConcurrency : 1;
         const start = async (name, count) => {
             this.engine = { name, module: await compile(`${name}.wasm`), documentation, threads: count };
-            return { documentation, ...(await this.#startWorker()) };
+            const started = await this.#startWorker();
+            this.hasStarted = true;
+            return { documentation, ...started };
         };
         if (threads > 1) {
             try {
@@ -72,14 +74,19 @@ export class MatcherClient {
         this.#worker.terminate();
         const ended = [...this.#waiting.values()];
         this.#waiting.clear();
-        this.#startWorker();
-        if (this.pair) this.#request('setPair', this.pair);
+        this.#restart();
         for (const { reject } of ended) reject(new Cancelled('cancelled'));
     }
 
     #worker = null;
     #waiting = new Map();
     #lastId = 0;
+
+    #restart() {
+        this.#worker.terminate();
+        this.#startWorker().catch(() => {}); // what is asked of it next fails as well
+        if (this.pair) this.#request('setPair', this.pair).catch(() => {});
+    }
 
     #startWorker() {
         this.#worker = new Worker(new URL('worker.mjs', import.meta.url), { type: 'module' });
@@ -92,8 +99,7 @@ export class MatcherClient {
         this.#worker.onerror = event => {
             const ended = [...this.#waiting.values()];
             this.#waiting.clear();
-            this.#startWorker();
-            if (this.pair) this.#request('setPair', this.pair);
+            if (this.hasStarted) this.#restart();
             for (const { reject } of ended) reject(new Error(event.message || 'The matcher stopped.'));
         };
         return this.#request('start', this.engine);

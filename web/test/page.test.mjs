@@ -487,6 +487,28 @@ test('screenshots: light, dark, and a phone', async () => {
     }
 });
 
+test('with threads, if the host isolates the page: the same map', async () => {
+    const headers = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
+    const isolated = await serve(pageFolder, { headers });
+    const opened = await browser.newContext({ acceptDownloads: true });
+    const before = page;
+    try {
+        page = await opened.newPage();
+        watch(page);
+        await page.goto(isolated.address);
+        await matched();
+        assert.match(await page.textContent('#engine'), /\d+ threads/);
+        for (const preset of presets) {
+            await choosePreset(preset);
+            await sameMap(builtIn, preset);
+        }
+    } finally {
+        page = before;
+        await opened.close();
+        isolated.close();
+    }
+});
+
 test('nothing is fetched from elsewhere, and nothing goes wrong on the way', () => {
     const elsewhere = requests.filter(address => !/^(blob:|data:|http:\/\/127\.0\.0\.1:)/.test(address));
     assert.ok(requests.length > 50);

@@ -14,6 +14,7 @@ import { fileURLToPath } from 'node:url';
 const types = {
     '.html': 'text/html',
     '.css': 'text/css',
+    '.js': 'text/javascript',
     '.mjs': 'text/javascript',
     '.json': 'application/json',
     '.wasm': 'application/wasm',
