@@ -74,7 +74,7 @@ test('setters take what getters return, and refuse what is out of range', () => 
 });
 
 test('all results of a run', () => {
-    const matcher = hdp.HDPTreeMatcher.create(0, 64, hdp.PRESET_TREE),
+    const matcher = hdp.HDPTreeMatcher.create(0, 64, hdp.PRESET_PAPER),
         { left, right } = pairs[0].images;
     assert.equal(matcher.getConfidence(), null);
     const map = matcher.compute(left, right),
