@@ -139,18 +139,18 @@ void storeMeans(const float* costs, const int* pixels, int size, const float* fa
                 CostVolume& volume)
 {
     uchar* const stored = volume.costs.data();
-    const size_t count = run.end - run.start;
     for (int i = 0; i < size; ++i, costs += lanes)
     {
         const float factor = factors[i];
         uchar means[lanes];
         HDP_FOR_LANES(k, lanes) means[k] = (uchar)std::min((int)(costs[k] * factor + 0.5f), 255);
         const CostVolume::Candidates& own = volume.candidates[pixels[i]];
-        uchar* const first = stored + own.start() + (run.start - own.interval.first);
-        if (count == lanes) // the usual one, of a size that the compiler knows
+        const int at = run.start - own.interval.first;
+        uchar* const first = stored + own.start() + at;
+        if (at + lanes <= own.rows() * CostVolume::row) // a size that the compiler knows; the last ones are padding
             std::memcpy(first, means, lanes);
         else
-            std::memcpy(first, means, count);
+            std::memcpy(first, means, run.size());
     }
 }
 

@@ -187,6 +187,8 @@ class Parameters(Test):
                 other = HDPTreeMatcher.COST_CENSUS
             if name == 'DisparityMedianSize':
                 other = 3
+            if name == 'TopAggregation':
+                other = HDPTreeMatcher.AGGREGATION_TREE_SCANLINES
             getattr(matcher, 'set' + name)(other)
             after = parameters(matcher)
             self.assertEqual(type(value), type(after[name]), name)
