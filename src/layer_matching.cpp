@@ -209,13 +209,13 @@ void filter(const LayerInput& in, MatchedLayer& matched)
 void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
 {
     matched.prior.clear();
-    const int aggregation = in.parameters.aggregation;
+    const bool hasTrees = in.parameters.aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES;
     clock.run("matching cost", [&] { prepareCost(in, matched); });
-    if (in.isTop() || aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES)
+    if (in.isTop() || hasTrees)
         aggregateTrees(in, buffers, clock, matched);
     else
         aggregateScanlines(in, buffers, clock, matched);
-    if (in.parameters.useNonLocalRefinement && aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES)
+    if (in.parameters.useNonLocalRefinement && hasTrees)
         clock.run("non-local refinement", [&] { refine(in, buffers, matched); });
     if (in.temporal && in.isFinest())
         clock.run("temporal prediction", [&] { joinLastFrame(matched.census, *in.temporal, matched.winner); });

@@ -18,7 +18,7 @@ namespace {
 // all threads.
 const int blockRows = 8;
 
-int blockColumns(int width) { return std::min(std::max(width / 2, 16), +VolumeProblem::maxScanlines); }
+int blockColumns(int width) { return std::min(std::max(width / 16, 16), +VolumeProblem::maxScanlines); }
 
 void dispatchRows(const VolumeProblem& problem, const Range& rows, short* lines)
 {

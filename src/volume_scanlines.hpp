@@ -42,7 +42,7 @@ struct VolumeProblem
 
     enum
     {
-        maxScanlines = 512,      // that are followed side by side
+        maxScanlines = 64,       // that are followed side by side
         margin = CostVolume::row // before and behind the candidates of a pixel, for the first and the last one to have
                                  // neighbours
     };
@@ -60,7 +60,7 @@ where disparities that are not candidates of q are left out. L = C where there i
 The winner has the lowest sum of the directions, the lowest disparity if there are several; the tip of the V through its
 sum and those of both candidates beside it gives the sub-pixel part. Of the first candidate and of the last one, the
 tip may lie towards the others: the sum beyond it is that of the slope between those next to it, or that which leaves the
-tip where it is. Pixels without candidates get 0.
+tip at the end. Pixels without candidates get 0.
 @param volume The costs C.
 @param weights w, CV_8UC2, see weighEdges().
 @param penalties The penalties.
