@@ -94,21 +94,8 @@ void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
         {
             const ushort* candidate = disparity.ptr<ushort>(y);
             uchar* cost = costs.ptr(y);
-            const uchar *left[3], *right[3];
-            for (int plane = 0; plane < 3; ++plane)
-            {
-                left[plane] = leftPixels(y) + plane;
-                right[plane] = rightPlane(std::min(plane, planes() - 1), y) + planes_.width - 1;
-            }
-            const unsigned mask = 0xffffff >> (8 * (3 - planes()));
             for (int x = 0; x < disparity.cols; ++x)
-            {
-                const int at = wholeDisparity(candidate[x]) - x;
-                unsigned bits = (unsigned)(left[0][4 * x] ^ right[0][at]) |
-                                (unsigned)(left[1][4 * x] ^ right[1][at]) << 8 |
-                                (unsigned)(left[2][4 * x] ^ right[2][at]) << 16;
-                cost[x] = (uchar)countCensusBits(bits & mask);
-            }
+                cost[x] = (uchar)at(Point(x, y), wholeDisparity(candidate[x]));
         }
     });
 }
