@@ -4,7 +4,8 @@
 # first time, seconds when nothing has changed.
 #   scripts/build_web.sh           builds it
 #   scripts/build_web.sh --serve   and serves it on the loopback address, to look at it
-# OPENCV_SOURCE_DIR=<OpenCV's source> in the environment: builds that one instead of Debian's source package.
+# OPENCV_SOURCE_DIR=<OpenCV's source> in the environment: builds that one instead of Debian's source package. It may be
+# read-only.
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -36,11 +37,18 @@ if [ ! -e "${OPENCV_SOURCE_DIR:-}/modules/imgproc/src" ]; then
         '*/modules/core/*' '*/modules/imgproc/*' '*/modules/calib3d/*'
 fi
 OPENCV_SOURCE_DIR=$(realpath "$OPENCV_SOURCE_DIR")
-# Its v_round() for WebAssembly adds a half and cuts off: wrong by one below 0, and halves do not become even.
-intrinsics=$OPENCV_SOURCE_DIR/modules/core/include/opencv2/core/hal/intrin_wasm.hpp
-if grep -q 'wasm_f32x4_add(a.val, h)' "$intrinsics"; then
-    sed -i '/v_round(const v_float32x4/,/^}/{/splat(0.5)/d; s/wasm_f32x4_add(a.val, h)/wasm_f32x4_nearest(a.val)/}' \
-        "$intrinsics"
+# Its v_round() for WebAssembly adds a half and cuts off: wrong by one below 0, and halves do not become even. The
+# source is only read: the compiler finds a corrected copy of the header first. What is the same is not written again,
+# nor built.
+header=opencv2/core/hal/intrin_wasm.hpp
+overlay=$directory/overlay
+corrected=$(sed '/v_round(const v_float32x4/,/^}/{
+    /splat(0.5)/d
+    s/wasm_f32x4_add(a.val, h)/wasm_f32x4_nearest(a.val)/
+}' "$OPENCV_SOURCE_DIR/modules/core/include/$header")
+if [ "$corrected" != "$(cat "$overlay/$header" 2>/dev/null)" ]; then
+    mkdir -p "$overlay/${header%/*}"
+    printf '%s\n' "$corrected" >"$overlay/$header"
 fi
 
 # OpenCV with nothing that those two modules do not need. Its tests of the compiler do without links, which take a
@@ -48,29 +56,31 @@ fi
 # shellcheck disable=SC2054  # a list of modules
 opencv_options=(-DBUILD_LIST=core,imgproc -DBUILD_SHARED_LIBS=OFF -DENABLE_PIC=OFF -DCPU_BASELINE= -DCPU_DISPATCH=
     -DCV_ENABLE_INTRINSICS=ON -DCV_TRACE=OFF -DENABLE_CCACHE=OFF -DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY
-    -DBUILD_ZLIB=OFF "-DZLIB_INCLUDE_DIR=$checkout/web/no_zlib" -DZLIB_LIBRARY=m)
+    -DBUILD_ZLIB=OFF "-DZLIB_INCLUDE_DIR=$checkout/web/no_zlib" -DZLIB_LIBRARY=m
+    "-DOPENCV_DOWNLOAD_PATH=$directory/downloads")
 for part in BUILD_{TESTS,PERF_TESTS,EXAMPLES,DOCS,JAVA,opencv_apps} \
     WITH_{IPP,ITT,QUIRC,ADE,PROTOBUF,CAROTENE,OPENCL,LAPACK,EIGEN,TBB,VA,VULKAN,WEBNN,OPENGL,1394,FFMPEG,GSTREAMER} \
     WITH_{V4L,GTK,JPEG,PNG,TIFF,WEBP,JASPER,OPENJPEG,OPENEXR}; do
     opencv_options+=("-D$part=OFF")
 done
 
-# configure DIRECTORY SOURCE FLAGS [OPTION...]: once
+# configure DIRECTORY SOURCE FLAGS [OPTION...]: once for these
 configure()
 {
-    local target=$1 source=$2 flags=$3
+    local target=$1 source=$2 flags=$3 arguments="$*"
     shift 3
-    [ ! -e "$target/build.ninja" ] || return 0
+    [ "$(cat "$target/.configured" 2>/dev/null)" != "$arguments" ] || return 0
     rm -rf "$target"
     run "configure $source" emcmake cmake -S "$source" -B "$target" -G Ninja -DCMAKE_BUILD_TYPE=Release \
         "-DCMAKE_C_FLAGS=$flags" "-DCMAKE_CXX_FLAGS=$flags" "$@"
+    echo "$arguments" >"$target/.configured"
 }
 
 # build_matcher NAME FLAGS [OPTION of OpenCV...]: NAME.mjs and NAME.wasm in build/web/NAME/matcher. Exceptions and SIMD
 # of WebAssembly are in all browsers since 2023.
 build_matcher()
 {
-    local name=$1 flags="-msimd128 -fwasm-exceptions $2"
+    local name=$1 flags="-iquote '$overlay' -msimd128 -fwasm-exceptions $2"
     shift 2
     say "Building OpenCV and $name"
     configure "$directory/$name/opencv" "$OPENCV_SOURCE_DIR" "-w $flags" "${opencv_options[@]}" "$@"

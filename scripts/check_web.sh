@@ -1,7 +1,7 @@
 #!/bin/bash
 # Builds the web page and tests it: the maps in node, and the page in Chromium. Prints how long FAST takes beside this
 # machine's own code, and leaves screenshots in build/web/test.
-#   scripts/check_web.sh BUILD   a build of this module with its samples
+#   scripts/check_web.sh BUILD   a build of this module with its samples and tools
 # shellcheck source-path=SCRIPTDIR source=common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 

@@ -4,10 +4,9 @@
 
 // Maps as files: the same as those of samples/hdp_stereo_match.cpp
 
+import { scale } from './disparities.mjs';
+import { channelsOf, levelsOf } from './image_data.mjs';
 import { encode } from './vendor/png.mjs';
-import { channelsOf, levelsOf } from './picture.mjs';
-
-const scale = 16; // of the disparities
 
 // 256 times the disparity, 0 where there is none
 function encodePng({ width, height, disparity, invalid }) {

@@ -6,14 +6,14 @@
 
 import { decode, hasPngSignature } from './vendor/png.mjs';
 
-const megapixel = 1e6;
-export const largestImage = 60 * megapixel;
+const tooManyMegapixels = 60;
 
-export function checkSize(width, height, name) {
-    if (width * height > largestImage)
+function checkSize(width, height, name) {
+    const megapixels = (width * height) / 1e6;
+    if (megapixels >= tooManyMegapixels)
         throw new Error(
-            `${name} has ${Math.round((width * height) / megapixel)} megapixels. This page takes up to ` +
-                `${largestImage / megapixel}: make it smaller first.`,
+            `${name} has ${Math.round(megapixels)} megapixels. This page takes less than ${tooManyMegapixels}: ` +
+                'make it smaller first.',
         );
 }
 

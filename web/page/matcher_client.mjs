@@ -42,7 +42,9 @@ export class MatcherClient {
         await this.#request('setPair', this.pair);
     }
 
+    // The run for the images before is not waited for.
     decode(file) {
+        this.cancel();
         return this.#request('decode', { file });
     }
 

@@ -4,6 +4,8 @@
 
 // Images and maps on canvases
 
+import { channelsOf, levelsOf } from './image_data.mjs';
+
 // The turbo colour map, from blue to red, at equal distances; the ends, nearly black, are left out.
 const turbo = [0x4458cb, 0x3e9bfe, 0x18d6cb, 0x46f783, 0xa4fc3b, 0xe1dc37, 0xfda330, 0xef5a11, 0xc32402];
 const greyed = [120, 124, 132];
@@ -41,18 +43,6 @@ function draw(canvas, width, height, color) {
             pixels[at + 3] = 255;
         }
     context.putImageData(image, 0, 0);
-}
-
-// To 8 bits: 16-bit images from black to their brightest pixel
-export function levelsOf({ data }) {
-    if (!(data instanceof Uint16Array)) return level => level;
-    let brightest = 1;
-    for (const level of data) if (level > brightest) brightest = level;
-    return level => (255 * level) / brightest;
-}
-
-export function channelsOf({ width, height, data }) {
-    return data.length / (width * height);
 }
 
 export function drawImage(canvas, image) {

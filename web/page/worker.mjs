@@ -4,8 +4,9 @@
 
 // Everything that takes time: reads images, and matches them. Each message has an id, and so has its answer.
 
-import { decodeImage } from './images.mjs';
 import { encodeDownload } from './downloads.mjs';
+import { halvesOf } from './image_data.mjs';
+import { decodeImage } from './images.mjs';
 
 let hdp = null;
 let parameters = []; // as parameters.json has them
@@ -83,19 +84,6 @@ function resultOf(matcher, disparity, start) {
     };
 }
 
-// Halves of a picture with both images side by side
-function splitFrame({ width, height, data }) {
-    const half = width >> 1,
-        halves = [];
-    for (const first of [0, width - half]) {
-        const part = new Uint8ClampedArray(4 * half * height);
-        for (let y = 0; y < height; y++)
-            part.set(data.subarray(4 * (y * width + first), 4 * (y * width + first + half)), 4 * y * half);
-        halves.push({ width: half, height, data: part });
-    }
-    return halves;
-}
-
 const transferable = result => [result.disparity.buffer, result.confidence.buffer];
 
 const actions = {
@@ -145,7 +133,7 @@ const actions = {
 
     frame({ frame }) {
         const start = performance.now(),
-            [left, right] = splitFrame(frame);
+            [left, right] = halvesOf(frame);
         const result = { ...resultOf(video, video.compute(left, right), start), left };
         return [result, [...transferable(result), left.data.buffer]];
     },

@@ -50,9 +50,27 @@ template <typename T> val arrayOf(const std::vector<T>& values)
 val toJavaScript(const std::vector<double>& values) { return arrayOf(values); }
 val toJavaScript(const std::vector<std::string>& values) { return arrayOf(values); }
 
-template <typename T> val copyOf(const cv::Mat& image)
+template <typename T> val valuesOf(const cv::Mat& image)
 {
-    return val(emscripten::typed_memory_view(image.total() * image.channels(), image.ptr<T>())).call<val>("slice");
+    return val(emscripten::typed_memory_view(image.total() * image.channels(), image.ptr<T>()));
+}
+
+//! All values of an image, which stay where they are: an array of JavaScript's type for its depth
+val valuesOf(const cv::Mat& image)
+{
+    switch (image.depth())
+    {
+    case CV_8U:
+        return valuesOf<uchar>(image);
+    case CV_16U:
+        return valuesOf<ushort>(image);
+    case CV_16S:
+        return valuesOf<short>(image);
+    case CV_32S:
+        return valuesOf<int>(image);
+    default:
+        return valuesOf<float>(image);
+    }
 }
 
 //! null if it is empty
@@ -63,29 +81,8 @@ val toJavaScript(const cv::Mat& image)
     val result = val::object();
     result.set("width", image.cols);
     result.set("height", image.rows);
-    switch (image.depth())
-    {
-    case CV_8U:
-        result.set("data", copyOf<uchar>(image));
-        break;
-    case CV_16U:
-        result.set("data", copyOf<ushort>(image));
-        break;
-    case CV_16S:
-        result.set("data", copyOf<short>(image));
-        break;
-    case CV_32S:
-        result.set("data", copyOf<int>(image));
-        break;
-    default:
-        result.set("data", copyOf<float>(image));
-    }
+    result.set("data", valuesOf(image).call<val>("slice"));
     return result;
-}
-
-template <typename T> void copyTo(cv::Mat& image, const val& data)
-{
-    val(emscripten::typed_memory_view(image.total() * image.channels(), image.ptr<T>())).call<void>("set", data);
 }
 
 /** What HDPTreeMatcher takes of an image of JavaScript: its data is a Uint8Array or Uint8ClampedArray, or a Uint16Array,
@@ -100,10 +97,7 @@ cv::Mat fromJavaScript(const val& image, const char* name)
     if ((channels != 1 && channels != 3 && channels != 4) || size != (double)width * height * channels)
         CV_Error(cv::Error::StsBadSize, std::string(name) + ".data must have 1, 3 or 4 values per pixel");
     cv::Mat result(height, width, CV_MAKETYPE(isDeep ? CV_16U : CV_8U, channels));
-    if (isDeep)
-        copyTo<ushort>(result, data);
-    else
-        copyTo<uchar>(result, data);
+    valuesOf(result).call<void>("set", data);
     if (channels > 1) // 16 bits are for grey levels
         cv::cvtColor(result, result,
                      channels == 3 ? (isDeep ? cv::COLOR_RGB2GRAY : cv::COLOR_RGB2BGR)

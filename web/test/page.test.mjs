@@ -319,6 +319,7 @@ test('a wrong input gets a sentence, and the page goes on', async () => {
     const large = Buffer.from(png.subarray(0, 64)); // its header says how large it is
     large.writeUInt32BE(10000, 16);
     large.writeUInt32BE(7000, 20);
+    const blank = { width: 10000, height: 6000, channels: 1, data: new Uint8Array(6e7) };
     const wrong = [
         [builtIn.files[0], /built-in_left\.png is only one image\. Choose two/],
         [
@@ -328,7 +329,11 @@ test('a wrong input gets a sentence, and the page goes on', async () => {
         [[builtIn.files[0], deep.files[1]], /One of the images has 8 bits, and the other one 16/],
         [
             [builtIn.files[0], { name: 'large.png', mimeType: 'image/png', buffer: large }],
-            /large\.png has 70 megapixels\. This page takes up to 60/,
+            /large\.png has 70 megapixels\. This page takes less than 60/,
+        ],
+        [
+            [writePng('blank_left.png', blank), writePng('blank_right.png', blank)],
+            /blank_left\.png has 60 megapixels\. This page takes less than 60/,
         ],
         [
             [builtIn.files[0], { name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('some notes') }],
@@ -387,8 +392,10 @@ test('a new choice cancels the run before, and the page answers meanwhile', asyn
     assert.equal(await page.isVisible('#busy'), false);
     await page.check('input[name=preset][value=FAST]');
     await matched();
-    await openBuiltIn();
-    await sameMap(builtIn, 'FAST');
+    await page.check('input[name=preset][value=PAPER]');
+    await page.waitForSelector('#busy:not([hidden])');
+    await Promise.all([page.waitForEvent('worker'), openBuiltIn()]); // other images end it, too
+    await sameMap(builtIn, 'PAPER');
 });
 
 test('a video of frames side by side runs live, with and without temporal prediction', async () => {
