@@ -49,11 +49,23 @@ template <typename T> void dispatchSlide(const T* entering, int width, T* kept, 
     CV_CPU_DISPATCH(slideWindow, (entering, width, kept, sums), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-template <typename T>
-void dispatchConfidence(const T* own, const T* others, const short* squares, const uchar* visible, int width, T* groups,
-                        float* factors, uchar* confidence)
+void dispatchDifferences(const ushort* const* rows, const ushort* const* others, int scale, int width, int otherWidth,
+                         int largest, ushort* cells)
 {
-    CV_CPU_DISPATCH(confidenceRow, (own, others, squares, visible, width, groups, factors, confidence),
+    CV_CPU_DISPATCH(differenceCells, (rows, others, scale, width, otherWidth, largest, cells),
+                    CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchAgreement(const int* fromUpper, const int* byMedian, int width, float* agreement)
+{
+    CV_CPU_DISPATCH(agreementRow, (fromUpper, byMedian, width, agreement), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+template <typename T>
+void dispatchConfidence(const T* own, const T* others, const short* squares, const uchar* visible,
+                        const float* agreement, int width, T* groups, float* factors, uchar* confidence)
+{
+    CV_CPU_DISPATCH(confidenceRow, (own, others, squares, visible, agreement, width, groups, factors, confidence),
                     CV_CPU_DISPATCH_MODES_ALL);
 }
 
@@ -71,6 +83,39 @@ void distancesInColumns(const Mat& disparity, Mat& distance)
                              y > 0 ? distance.ptr(y - 1) : none.ptr(), distance.ptr(y));
         for (int y = last - 1; y >= 0; --y)
             dispatchDistance(distance.ptr(y + 1), columns, distance.ptr(y));
+    });
+}
+
+/** Sums of the differences between two maps over windows of cells of 2 x 2 pixels, CV_32SC1, one per cell.
+@param map A disparity map.
+@param other Another one of its size, or that of the layer above.
+@param isUpper Whether it is that.
+@param largest What larger differences count as, in pixels.
+@param window Side of the windows, in cells.
+@param sums Receives the sums. */
+void sumDifferences(const Mat& map, const Mat& other, bool isUpper, int largest, int window, Mat& sums)
+{
+    const Size size((map.cols + 1) / 2, (map.rows + 1) / 2);
+    Mat cells(size, CV_16U);
+    parallel_for_(Range(0, size.height), [&](const Range& range) {
+        for (int y = range.start; y < range.end; ++y)
+        {
+            const ushort *rows[2], *others[2];
+            for (int i = 0; i < 2; ++i)
+            {
+                const int row = std::min(2 * y + i, map.rows - 1);
+                rows[i] = map.ptr<ushort>(row);
+                others[i] = other.ptr<ushort>(isUpper ? std::min(y, other.rows - 1) : row);
+            }
+            dispatchDifferences(rows, others, isUpper ? 2 : 1, map.cols, other.cols, largest * subpixelScale,
+                                cells.ptr<ushort>(y));
+        }
+    });
+    sums.create(size, CV_32S);
+    parallel_for_(Range(0, countStripes(size.height, stripeRows)), [&](const Range& stripes) {
+        const Range rows(stripes.start * stripeRows, std::min(stripes.end * stripeRows, size.height));
+        Mat part = sums.rowRange(rows); // the filter finds the rows beside those of the cells
+        boxFilter(cells.rowRange(rows), part, CV_32S, Size(window, window), Point(-1, -1), false, BORDER_REPLICATE);
     });
 }
 
@@ -152,12 +197,18 @@ private:
 };
 
 template <typename Costs, typename CostOfLayer>
-void computeConfidence(const Mat& disparity, int numDisparities, const CostOfLayer& cost, Mat& confidence)
+void computeConfidence(const ConfidenceMaps& maps, int numDisparities, const CostOfLayer& cost, Mat& confidence)
 {
     typedef typename Costs::Cost Cost;
+    const Mat& disparity = maps.disparity;
     const int width = disparity.cols, window = Constants::window, radius = window / 2, far = Constants::farFromSteps;
-    Mat distance, visible;
+    Mat distance, visible, fromUpper, byMedian;
     distancesInColumns(disparity, distance);
+    sumDifferences(disparity, maps.unfiltered, false, Constants::largestMedian, Constants::medianWindow, byMedian);
+    if (maps.upper.empty())
+        fromUpper = Mat::zeros(byMedian.size(), CV_32S);
+    else
+        sumDifferences(disparity, maps.upper, true, Constants::largestUpper, Constants::upperWindow, fromUpper);
     findStable(disparity, Constants::visibleMaxDiff, visible);
     confidence.create(disparity.size(), CV_8U);
     parallel_for_(Range(0, countStripes(disparity.rows, stripeRows)), [&](const Range& stripes) {
@@ -166,7 +217,7 @@ void computeConfidence(const Mat& disparity, int numDisparities, const CostOfLay
         Mat_<Cost> entering(2, width), kept(2 * window, width, Cost(0)), sums(2, width + 2 * radius, Cost(0));
         std::vector<Cost> groups(2 * (width + window));
         std::vector<short> padded(width + 2 * far + vectorMargin), squares(width);
-        std::vector<float> factors(width + vectorMargin);
+        std::vector<float> factors(width + vectorMargin), agreement(width + 1);
         const Range rows(stripes.start * stripeRows, std::min(stripes.end * stripeRows, disparity.rows));
         for (int y = rows.start - radius, slot = 0; y < rows.end + radius; ++y, slot = (slot + 1) % window)
         {
@@ -182,22 +233,23 @@ void computeConfidence(const Mat& disparity, int numDisparities, const CostOfLay
             if (centre < rows.start)
                 continue; // the first window is not complete
             dispatchSquares(distance.ptr(centre), width, &padded[far], squares.data());
-            dispatchConfidence(sums[0], sums[1], squares.data(), visible.ptr(centre), width, groups.data(),
-                               factors.data(), confidence.ptr(centre));
+            dispatchAgreement(fromUpper.ptr<int>(centre / 2), byMedian.ptr<int>(centre / 2), width, agreement.data());
+            dispatchConfidence(sums[0], sums[1], squares.data(), visible.ptr(centre), agreement.data(), width,
+                               groups.data(), factors.data(), confidence.ptr(centre));
         }
     });
 }
 
 } // namespace
 
-void disparityConfidence(const Mat& disparity, int numDisparities, const CensusCost& cost, Mat& confidence)
+void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const CensusCost& cost, Mat& confidence)
 {
-    computeConfidence<CensusAlternatives>(disparity, numDisparities, cost, confidence);
+    computeConfidence<CensusAlternatives>(maps, numDisparities, cost, confidence);
 }
 
-void disparityConfidence(const Mat& disparity, int numDisparities, const MatchingCost& cost, Mat& confidence)
+void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const MatchingCost& cost, Mat& confidence)
 {
-    computeConfidence<CostAlternatives>(disparity, numDisparities, cost, confidence);
+    computeConfidence<CostAlternatives>(maps, numDisparities, cost, confidence);
 }
 
 } // namespace hdp

@@ -20,8 +20,21 @@ struct DisparityConfidence
         alternative = 2,    // distance, in pixels, of the candidates that the winner is compared with
         visibleMaxDiff = 1, // of the left-right check, in pixels
         hiddenDivisor = 2,  // what the confidence of a pixel that fails it is divided by
-        costUnits = 512     // costs are rounded to one of these, if they are no census costs
+        costUnits = 512,    // costs are rounded to one of these, if they are no census costs
+        upperWindow = 31,   // side of the square that P is averaged over, in cells of 2 x 2 pixels
+        medianWindow = 7,   // the same of M
+        largestUpper = 8,   // pixels; larger differences from the layer above count as this
+        largestMedian = 4,  // the same of differences from the map before the median
+        halved = 4          // 1 / pixel: a mean difference of 1 / halved pixels halves the confidence
     };
+};
+
+//! The maps that disparityConfidence() looks at
+struct ConfidenceMaps
+{
+    Mat disparity;  // of the layer, CV_16UC1
+    Mat unfiltered; // the same before the median
+    Mat upper;      // of the layer above; empty if there is none
 };
 
 // Elements behind a row that its vectors may reach
@@ -55,8 +68,9 @@ template <typename T> struct Alternatives
     }
 };
 
-/** How far the disparities of a layer are to be trusted: 255 v sqrt(S U), rounded. Wrong disparities come in patches
-with a step at their border, and where other disparities fit as well.
+/** How far the disparities of a layer are to be trusted: 255 v sqrt(sqrt(S U) P M), rounded. Wrong disparities come in
+patches with a step at their border, where other disparities fit as well, where the layer above had others, and where
+the median had to change many.
 
 S is the distance to the nearest pixel at a step, with a limit: min(distance, 64) / 64. The two pixels at a step are
 neighbours in a row or column whose disparities differ by more than 1.5 pixels.
@@ -66,15 +80,21 @@ pixels before and after it (or of the only one of them that there is): max(0, A 
 means of both over a window of 21 x 21 pixels, borders replicated; 0 without alternatives or if A + C = 0. Sums are
 of whole numbers: other costs than that of the census are rounded to 1/512.
 
+P is 1 / (1 + 4 p), where p is the mean difference, in pixels, from twice the disparity that the layer above has there,
+at most 8 per pixel; M is 1 / (1 + 4 m), where m is the mean change by the median, at most 4 per pixel. Means are those
+over 31 x 31 and 7 x 7 cells of 2 x 2 pixels, the pixel's own in the middle. Borders are replicated. P is 1 without a
+layer above.
+
 v is 1 for a pixel that passes the left-right check, see findStable(), or else 1/2.
-@param disparity CV_16UC1, a disparity map.
+@param maps The maps.
 @param numDisparities Of the layer.
 @param cost Of the layer.
 @param confidence Receives CV_8UC1. */
-CV_EXPORTS void disparityConfidence(const Mat& disparity, int numDisparities, const CensusCost& cost, Mat& confidence);
+CV_EXPORTS void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const CensusCost& cost,
+                                    Mat& confidence);
 
 //! For any cost
-CV_EXPORTS void disparityConfidence(const Mat& disparity, int numDisparities, const MatchingCost& cost,
+CV_EXPORTS void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const MatchingCost& cost,
                                     Mat& confidence);
 
 } // namespace hdp

@@ -51,18 +51,36 @@ void censusCostRow(const uchar* left, const uchar* const* right, int planes, con
 void slideWindow(const short* entering, int width, short* kept, short* sums);
 void slideWindow(const int* entering, int width, int* kept, int* sums);
 
+/** Sums of a row of cells of 2 x 2 pixels: of the differences between two maps, borders replicated.
+@param rows Both rows of the map.
+@param others Those of the other map; twice the row of the layer above.
+@param scale 1, or 2 for the layer above: what its disparities count.
+@param width Of the map's rows.
+@param otherWidth Of the other map's.
+@param largest What larger differences count as.
+@param cells Receives the row. */
+void differenceCells(const ushort* const* rows, const ushort* const* others, int scale, int width, int otherWidth,
+                     int largest, ushort* cells);
+
+/** P M of disparityConfidence().
+@param fromUpper,byMedian Sums over windows, one per cell.
+@param width In pixels.
+@param agreement Receives the row, and one element more. */
+void agreementRow(const int* fromUpper, const int* byMedian, int width, float* agreement);
+
 /** A row of confidences.
 @param own,others Sums of the costs over the windows' rows, with half a window of columns more on both sides.
 @param squares Squared distances to the nearest pixel at a step.
 @param visible Not 0 for pixels that pass the left-right check.
+@param agreement P M of disparityConfidence().
 @param width Of the row.
 @param groups Memory for 2 rows and windows.
 @param factors Memory for a row and vectorMargin.
 @param confidence Receives the row. */
-void confidenceRow(const short* own, const short* others, const short* squares, const uchar* visible, int width,
-                   short* groups, float* factors, uchar* confidence);
-void confidenceRow(const int* own, const int* others, const short* squares, const uchar* visible, int width,
-                   int* groups, float* factors, uchar* confidence);
+void confidenceRow(const short* own, const short* others, const short* squares, const uchar* visible,
+                   const float* agreement, int width, short* groups, float* factors, uchar* confidence);
+void confidenceRow(const int* own, const int* others, const short* squares, const uchar* visible,
+                   const float* agreement, int width, int* groups, float* factors, uchar* confidence);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -183,6 +201,70 @@ void censusCostRow(const uchar* left, const uchar* const* right, int planes, con
 
 namespace {
 
+//! A cell that has a pixel of the layer above, or 2 x 2 pixels of a map of the same size
+template <int scale>
+inline ushort differenceCell(const ushort* const* rows, const ushort* const* others, int cell, ushort largest)
+{
+    int sum = 0;
+    HDP_UNROLLED for (int i = 0; i < 2; ++i)
+    {
+        HDP_UNROLLED for (int j = 0; j < 2; ++j)
+        {
+            const ushort other = (ushort)(scale * others[i][scale == 2 ? cell : 2 * cell + j]);
+            sum += std::min(difference(rows[i][2 * cell + j], other), largest);
+        }
+    }
+    return (ushort)sum;
+}
+
+template <int scale>
+void wholeCells(const ushort* const* rows, const ushort* const* others, int count, ushort largest, ushort* cells)
+{
+    const ushort* const r[2] = { rows[0], rows[1] };
+    const ushort* const o[2] = { others[0], others[1] };
+    HDP_VECTORIZED for (int x = 0; x < count; ++x) cells[x] = differenceCell<scale>(r, o, x, largest);
+}
+
+} // namespace
+
+void differenceCells(const ushort* const* rows, const ushort* const* others, int scale, int width, int otherWidth,
+                     int largest, ushort* cells)
+{
+    const int whole = std::min(width / 2, otherWidth);
+    if (scale == 2)
+        wholeCells<2>(rows, others, whole, (ushort)largest, cells);
+    else
+        wholeCells<1>(rows, others, whole, (ushort)largest, cells);
+    for (int cell = whole; 2 * cell < width; ++cell) // what is left
+    {
+        int sum = 0;
+        for (int i = 0; i < 2; ++i)
+            for (int x = 2 * cell; x < 2 * cell + 2; ++x)
+            {
+                const int column = std::min(x, width - 1), other = std::min(column / scale, otherWidth - 1);
+                sum += std::min(std::abs(rows[i][column] - scale * others[i][other]), largest);
+            }
+        cells[cell] = (ushort)sum;
+    }
+}
+
+void agreementRow(const int* fromUpper, const int* byMedian, int width, float* agreement)
+{
+    // Sums of differences of 1 / halved pixels
+    const int unit = 4 * subpixelScale / Constants::halved;
+    const float upper = (float)(unit * Constants::upperWindow * Constants::upperWindow),
+                median = (float)(unit * Constants::medianWindow * Constants::medianWindow);
+    const int cells = (width + 1) / 2;
+    HDP_VECTORIZED for (int x = 0; x < cells; ++x)
+    {
+        const float factor = upper * median / ((upper + (float)fromUpper[x]) * (median + (float)byMedian[x]));
+        agreement[2 * x] = factor;
+        agreement[2 * x + 1] = factor;
+    }
+}
+
+namespace {
+
 template <typename T> void slide(const T* entering, int width, T* kept, T* sums)
 {
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
@@ -200,8 +282,8 @@ void takeSquareRoots(float* values, int count)
 }
 
 template <typename T>
-void confidences(const T* own, const T* others, const short* squares, const uchar* visible, int width, T* groups,
-                 float* factors, uchar* confidence)
+void confidences(const T* own, const T* others, const short* squares, const uchar* visible, const float* agreement,
+                 int width, T* groups, float* factors, uchar* confidence)
 {
     const int group = 3, count = 7, window = Constants::window, far = Constants::farFromSteps;
     static_assert(group * count == window, "a window's sum is that of some groups of columns");
@@ -226,6 +308,8 @@ void confidences(const T* own, const T* others, const short* squares, const ucha
         factors[x] = s * u;
     }
     takeSquareRoots(factors, width);
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) factors[x] *= agreement[x];
+    takeSquareRoots(factors, width);
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const float v = visible[x] ? 1.f : 1.f / Constants::hiddenDivisor;
@@ -239,16 +323,16 @@ void slideWindow(const short* entering, int width, short* kept, short* sums) { s
 
 void slideWindow(const int* entering, int width, int* kept, int* sums) { slide(entering, width, kept, sums); }
 
-void confidenceRow(const short* own, const short* others, const short* squares, const uchar* visible, int width,
-                   short* groups, float* factors, uchar* confidence)
+void confidenceRow(const short* own, const short* others, const short* squares, const uchar* visible,
+                   const float* agreement, int width, short* groups, float* factors, uchar* confidence)
 {
-    confidences(own, others, squares, visible, width, groups, factors, confidence);
+    confidences(own, others, squares, visible, agreement, width, groups, factors, confidence);
 }
 
-void confidenceRow(const int* own, const int* others, const short* squares, const uchar* visible, int width,
-                   int* groups, float* factors, uchar* confidence)
+void confidenceRow(const int* own, const int* others, const short* squares, const uchar* visible,
+                   const float* agreement, int width, int* groups, float* factors, uchar* confidence)
 {
-    confidences(own, others, squares, visible, width, groups, factors, confidence);
+    confidences(own, others, squares, visible, agreement, width, groups, factors, confidence);
 }
 
 #endif

@@ -170,12 +170,15 @@ public:
         Mat confidence = confidenceArray.getMat();
         const PairSettings& settings = result_.settings;
         const MatchedLayer& finest = layers_[settings.finestLayer];
+        const bool hasUpper = hasLayer(settings.finestLayer + 1);
+        const ConfidenceMaps maps = { finest.disparity, finest.unfiltered,
+                                      hasUpper ? layers_[settings.finestLayer + 1].disparity : Mat() };
         Mat ofLayer, extended;
         const int disparities = layerDisparities(result_.numDisparities, settings.finestLayer, settings.subpixel);
         if (finest.isCensus)
-            disparityConfidence(finest.disparity, disparities, finest.census, ofLayer);
+            disparityConfidence(maps, disparities, finest.census, ofLayer);
         else
-            disparityConfidence(finest.disparity, disparities, finest.colorGradient, ofLayer);
+            disparityConfidence(maps, disparities, finest.colorGradient, ofLayer);
         if (settings.finestLayer > 0)
             resize(ofLayer, extended, result_.size + Size(settings.extension, 0), 0, 0, INTER_LINEAR_EXACT);
         else

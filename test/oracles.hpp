@@ -10,6 +10,7 @@
 #include "test_precomp.hpp"
 #include "../src/census_cost.hpp"
 #include "../src/color_gradient_cost.hpp"
+#include "../src/disparity_confidence.hpp"
 #include "../src/disparity_forest.hpp"
 #include "../src/disparity_prediction.hpp"
 #include "../src/scanline_aggregation.hpp"
@@ -887,10 +888,28 @@ inline Mat upsampled(const Mat& upper, Size size)
     return result;
 }
 
-//! How far the disparity of a pixel is to be trusted: 255 v sqrt(S U), not rounded, see disparityConfidence().
-template <typename Formula>
-double confidence(const Mat& disparity, int numDisparities, const Formula& cost, int y, int x)
+//! The mean difference of two maps, in pixels, over the window of 2 x 2 cells around that of a pixel; scale: how many
+//! pixels of the first map are one of the other.
+inline double meanDifference(const Mat& map, const Mat& other, int scale, double largest, int window, int y, int x)
 {
+    double sum = 0;
+    for (int row = y / 2 - window / 2; row <= y / 2 + window / 2; ++row)
+        for (int column = x / 2 - window / 2; column <= x / 2 + window / 2; ++column)
+            for (int i = 0; i < 4; ++i)
+            {
+                const int v = clamped(2 * clamped(row, (map.rows + 1) / 2) + i / 2, map.rows);
+                const int u = clamped(2 * clamped(column, (map.cols + 1) / 2) + i % 2, map.cols);
+                const int there = other.at<ushort>(clamped(v / scale, other.rows), clamped(u / scale, other.cols));
+                sum += std::min(std::abs(map.at<ushort>(v, u) - scale * there) / 16., largest);
+            }
+    return sum / (4 * window * window);
+}
+
+//! How far the disparity of a pixel is to be trusted: 255 v sqrt(sqrt(S U) P M), not rounded, see disparityConfidence().
+template <typename Formula>
+double confidence(const hdp::ConfidenceMaps& maps, int numDisparities, const Formula& cost, int y, int x)
+{
+    const Mat& disparity = maps.disparity;
     const auto at = [&](int row, int column) {
         return disparity.at<ushort>(clamped(row, disparity.rows), clamped(column, disparity.cols)) / 16.;
     };
@@ -928,7 +947,10 @@ double confidence(const Mat& disparity, int numDisparities, const Formula& cost,
     for (int column = 0; column < disparity.cols; ++column)
         if (columnInRight(column) == columnInRight(x) && at(y, column) - at(y, x) > 1)
             isVisible = false;
-    return 255 * (isVisible ? 1 : 0.5) * std::sqrt(distance / farFromSteps * unique);
+    const double p = maps.upper.empty() ? 0 : meanDifference(disparity, maps.upper, 2, 8, 31, y, x),
+                 m = meanDifference(disparity, maps.unfiltered, 1, 4, 7, y, x);
+    const double agreement = 1 / ((1 + 4 * p) * (1 + 4 * m));
+    return 255 * (isVisible ? 1 : 0.5) * std::sqrt(std::sqrt(distance / farFromSteps * unique) * agreement);
 }
 
 } // namespace oracle

@@ -20,8 +20,15 @@ namespace {
 
 const hdp::ColorGradientParams colorGradient = { 10, 2, 0.11f, 1 };
 
+//! A map that no median has changed, without a layer above
+hdp::ConfidenceMaps mapAlone(const Mat& disparity)
+{
+    const hdp::ConfidenceMaps maps = { disparity, disparity, Mat() };
+    return maps;
+}
+
 //! The confidence of a map of a pair of grey images
-Mat confidenceOf(const Mat& left, const Mat& right, const Mat& disparity, int numDisparities, bool isCensus,
+Mat confidenceOf(const Mat& left, const Mat& right, const hdp::ConfidenceMaps& maps, int numDisparities, bool isCensus,
                  int blockSize = 7)
 {
     Mat confidence;
@@ -32,30 +39,32 @@ Mat confidenceOf(const Mat& left, const Mat& right, const Mat& disparity, int nu
         hdp::greyLevels(right, 8, rightGrey);
         hdp::CensusCost cost;
         cost.prepare(leftGrey, rightGrey, numDisparities, blockSize);
-        hdp::disparityConfidence(disparity, numDisparities, cost, confidence);
+        hdp::disparityConfidence(maps, numDisparities, cost, confidence);
         Mat asForAnyCost;
-        hdp::disparityConfidence(disparity, numDisparities, static_cast<const hdp::MatchingCost&>(cost), asForAnyCost);
+        hdp::disparityConfidence(maps, numDisparities, static_cast<const hdp::MatchingCost&>(cost), asForAnyCost);
         expectIdentical(asForAnyCost, confidence);
     }
     else
     {
         hdp::ColorGradientCost cost;
         cost.prepare(left, right, numDisparities, colorGradient);
-        hdp::disparityConfidence(disparity, numDisparities, cost, confidence);
+        hdp::disparityConfidence(maps, numDisparities, cost, confidence);
     }
     return confidence;
 }
 
 //! The confidence of every n-th pixel is that of its definition.
 template <typename Formula>
-void expectDefinition(const Mat& disparity, int numDisparities, const Formula& cost, const Mat& confidence, int n)
+void expectDefinition(const hdp::ConfidenceMaps& maps, int numDisparities, const Formula& cost, const Mat& confidence,
+                      int n)
 {
+    const Mat& disparity = maps.disparity;
     ASSERT_EQ(CV_8UC1, confidence.type());
     ASSERT_EQ(disparity.size(), confidence.size());
     for (int i = 0; i < disparity.size().area(); i += n)
     {
         const int x = i % disparity.cols, y = i / disparity.cols;
-        const double expected = oracle::confidence(disparity, numDisparities, cost, y, x);
+        const double expected = oracle::confidence(maps, numDisparities, cost, y, x);
         ASSERT_NEAR(expected, confidence.at<uchar>(y, x), 0.501) << "at " << x << ", " << y;
     }
 }
@@ -69,16 +78,26 @@ void expectDefinitionForPatches(RNG& rng, const Size& size, int numDisparities, 
     cv::add(right, randomImage(rng, size, CV_8UC1, 10), left);
     // Blocks of disparities that differ within themselves by less than a pixel
     patchyImage(rng, size, CV_8UC1, 12).convertTo(disparity, CV_16U, (numDisparities - 1) * hdp::subpixelScale / 255.);
-    const Mat confidence = confidenceOf(left, right, disparity, numDisparities, isCensus, blockSize);
+    // Both agree with the map in most places
+    Mat unfiltered = disparity.clone(), upper;
+    resize(disparity, upper, Size(std::max(size.width / 2, 1), std::max(size.height / 2, 1)), 0, 0, INTER_NEAREST);
+    upper /= 2;
+    for (int i = 0; i < size.area() / 8; ++i)
+    {
+        unfiltered.at<ushort>(rng.uniform(0, size.height), rng.uniform(0, size.width)) = (ushort)rng.uniform(0, 200);
+        upper.at<ushort>(rng.uniform(0, upper.rows), rng.uniform(0, upper.cols)) = (ushort)rng.uniform(0, 200);
+    }
+    const hdp::ConfidenceMaps maps = { disparity, unfiltered, blockSize == 7 ? upper : Mat() };
+    const Mat confidence = confidenceOf(left, right, maps, numDisparities, isCensus, blockSize);
     const int n = size.area() > 1000 ? 29 : 1; // the definition is slow
     if (isCensus)
     {
         const oracle::CensusCost cost(oracle::greyLevels(left), oracle::greyLevels(right), blockSize);
-        return expectDefinition(disparity, numDisparities, cost, confidence, n);
+        return expectDefinition(maps, numDisparities, cost, confidence, n);
     }
     const oracle::ColorGradientCost cost(left, right, colorGradient);
     const auto rounded = [&](int y, int x, int candidate) { return cvRound(512 * cost(y, x, candidate)) / 512.; };
-    expectDefinition(disparity, numDisparities, rounded, confidence, n);
+    expectDefinition(maps, numDisparities, rounded, confidence, n);
 }
 
 TEST(HDPStereo_DisparityConfidence, by_its_definition)
@@ -106,8 +125,8 @@ TEST(HDPStereo_DisparityConfidence, far_from_steps)
         Mat disparity(size, CV_16U, Scalar(0));
         for (const Point& spot : spots)
             disparity.at<ushort>(spot) = (numDisparities - 1) * hdp::subpixelScale;
-        const Mat confidence = confidenceOf(image, image, disparity, numDisparities, true);
-        expectDefinition(disparity, numDisparities, cost, confidence, 211);
+        const hdp::ConfidenceMaps maps = mapAlone(disparity);
+        expectDefinition(maps, numDisparities, cost, confidenceOf(image, image, maps, numDisparities, true), 211);
     }
 }
 
@@ -134,7 +153,11 @@ struct TexturedPlane
 
     Mat map() const { return Mat(left.size(), CV_16U, Scalar(16 * disparity)); }
 
-    Mat confidence(const Mat& map) const { return confidenceOf(left, right, map, numDisparities, isCensus); }
+    Mat confidence(const hdp::ConfidenceMaps& maps) const
+    {
+        return confidenceOf(left, right, maps, numDisparities, isCensus);
+    }
+    Mat confidence(const Mat& map) const { return confidence(mapAlone(map)); }
 };
 
 TEST(HDPStereo_DisparityConfidence, texture)
@@ -202,6 +225,23 @@ TEST(HDPStereo_DisparityConfidence, hidden_pixels)
     EXPECT_GT(cv::mean(confidence.colRange(6, 10))[0], 1.5 * cv::mean(confidence.colRange(2, 6))[0]);
 }
 
+//! Where the layer above had another disparity, and where the median had to change many
+TEST(HDPStereo_DisparityConfidence, other_maps)
+{
+    const TexturedPlane plane(true);
+    const Rect patch(60, 20, 80, 80), inside(80, 40, 40, 40);
+    const double alone = cv::mean(plane.confidence(plane.map())(inside))[0];
+    hdp::ConfidenceMaps maps = { plane.map(), plane.map(), Mat(60, 90, CV_16U, Scalar(8 * TexturedPlane::disparity)) };
+    EXPECT_EQ(alone, cv::mean(plane.confidence(maps)(inside))[0]);
+    maps.upper(Rect(30, 10, 40, 40)) += 16;
+    EXPECT_GT(alone, 2 * cv::mean(plane.confidence(maps)(inside))[0]);
+    maps = mapAlone(plane.map());
+    maps.unfiltered = plane.map();
+    for (int y = patch.y; y < patch.y + patch.height; y += 2)
+        maps.unfiltered.row(y).colRange(patch.x, patch.x + patch.width) += 32;
+    EXPECT_GT(alone, 2 * cv::mean(plane.confidence(maps)(inside))[0]);
+}
+
 TEST(HDPStereo_DisparityConfidence, any_number_of_threads)
 {
     const int threads = cv::getNumThreads();
@@ -216,7 +256,7 @@ TEST(HDPStereo_DisparityConfidence, any_number_of_threads)
         for (int n : { 1, 2, 8 })
         {
             cv::setNumThreads(n);
-            const Mat confidence = confidenceOf(left, right, disparity, 9, isCensus);
+            const Mat confidence = confidenceOf(left, right, mapAlone(disparity), 9, isCensus);
             cv::setNumThreads(threads);
             if (expected.empty())
                 expected = confidence;

@@ -450,12 +450,14 @@ public:
 
     /** @brief Returns how reliable each disparity of the last compute() is.
 
-    It is computed by this call; compute() does not take longer. The confidence is \f$255 v \sqrt{S U}\f$. S grows with
-    the distance to the nearest step of the disparities, to 1 at 64 pixels. U is how much the matching cost stands out
-    from the costs C two disparities before and after: \f$U = \max(0, \bar C - \bar M) / (\bar C + \bar M)\f$, means
-    over 21 x 21 pixels. v is 1, or 1/2 if a nearer pixel hides this one from the right image or its match is outside
-    that image. Distances are in pixels of the finest layer. The confidence is no probability; it serves to sort or
-    weight pixels, or to reject those below a threshold.
+    It is computed by this call; compute() does not take longer. The confidence is
+    \f$255 v \sqrt{P M \sqrt{S U}}\f$. S grows with the distance to the nearest step of the disparities, to 1 at 64
+    pixels. U is how much the costs A two disparities before and after stand out from the cost C of the disparity:
+    \f$U = \max(0, \bar A - \bar C) / (\bar A + \bar C)\f$, means over 21 x 21 pixels. P is 1 / (1 + 4 p), p being the
+    mean difference from the layer above over 62 x 62 pixels, and M is 1 / (1 + 4 m), m being the mean change by the
+    median over 14 x 14 pixels. v is 1, or 1/2 if a nearer pixel hides this one from the right image or its match is
+    outside that image. Distances and disparities are in pixels of the finest layer. The confidence is no probability;
+    it serves to sort or weight pixels, or to reject those below a threshold.
     @param confidence Receives CV_8UC1 of the left image's size: from 0 to 255, larger is more reliable; 0 where a
     filter rejected the pixel. Empty before the first compute() and after one that threw an exception.
      */
