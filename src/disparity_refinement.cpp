@@ -5,6 +5,7 @@
 #include "disparity_refinement.hpp"
 #include "disparity_refinement.simd.hpp"
 #include "disparity_refinement.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "image_levels.hpp"
 #include "vectorized.hpp"
 
 namespace cv {
@@ -13,9 +14,16 @@ namespace hdp {
 
 namespace {
 
-void dispatchFill(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch)
+void dispatchFill(ushort* disparity, const uchar* residual, int width, int blank, OcclusionScratch& scratch)
 {
-    CV_CPU_DISPATCH(fillOccludedRow, (disparity, residual, width, scratch), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(fillOccludedRow, (disparity, residual, width, blank, scratch), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! The number of columns, from the left border on, that are black
+int countBlank(const ushort* grey, int width)
+{
+    const int black = 2 * greyScale; // at most, as JPEG leaves it
+    return (int)(std::find_if(grey, grey + width, [=](ushort level) { return level > black; }) - grey);
 }
 
 void dispatchMedian(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
@@ -117,12 +125,15 @@ void restoreThinStructures(const Mat& unfiltered, Mat& disparity)
     });
 }
 
-void fillOccluded(Mat& disparity, const Mat& residual)
+void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right)
 {
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         OcclusionScratch scratch(disparity.cols);
         for (int y = rows.start; y < rows.end; ++y)
-            dispatchFill(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, scratch);
+        {
+            const int blank = right.empty() ? 0 : countBlank(right.ptr<ushort>(y), right.cols);
+            dispatchFill(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, blank, scratch);
+        }
     });
 }
 

@@ -38,11 +38,13 @@ CV_EXPORTS void restoreThinStructures(const Mat& unfiltered, Mat& disparity);
 struct OcclusionScratch
 {
     explicit OcclusionScratch(int width)
-        : columns(width), keys(width), there((size_t)width + 1), visible(width), shown(width)
+        : columns(width), nearest((size_t)width + 1), keys(width), there((size_t)width + 1), visible(width),
+          shown(width)
     {
     }
 
     std::vector<int> columns;          // of the right image that each pixel maps to, from 1 on; 0: none
+    std::vector<int> nearest;          // the largest disparity that maps to each column
     std::vector<unsigned> keys;        // of each pixel, by which the lowest wins its column: residual and disparity
     std::vector<unsigned> there;       // the key that won each column
     std::vector<uchar> visible, shown; // which pixels the right image shows, and in its first columns
@@ -52,10 +54,14 @@ struct OcclusionScratch
 pixels that map to one column of the right image the one with the lowest residual is there; those whose disparity is
 another one, and those that map to no column, are not. Nor are single pixels between two that are not, nor what is left
 of a surface that begins at the border of the right image: the last run of four pixels it shows, without steps, of which
-the first one is in column 0, 1 or 2.
+the first one is in column 0, 1 or 2; or one that is nearer than what is before it, if nearer pixels hide three quarters
+of that from the right image, or it maps to no column, and an eighth at most is visible in columns that are not blank. The
+surface is continued to the left border, half as steep as its first columns are.
 @param disparity CV_16UC1, a disparity map; changed.
-@param residual Matching costs, CV_8UC1. */
-CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual);
+@param residual Matching costs, CV_8UC1.
+@param right Grey levels of the right image, CV_16UC1, see greyLevels(): columns on its left are blank that are black, as
+rectification leaves them. None if empty. */
+CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right = Mat());
 
 /** The disparities of a layer from those of the layer above: bilinear inside a surface, its pixel's own at its border.
 @param upper CV_16UC1, a disparity map.

@@ -13,8 +13,9 @@ namespace stereo {
 namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! fillOccluded() for one row. scratch: of this width.
-void fillOccludedRow(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch);
+//! fillOccluded() for one row. scratch: of this width; blank: columns of the right image, from its left border on, that
+//! show nothing.
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int blank, OcclusionScratch& scratch);
 
 /** Compares a row's disparities with the largest ones that map to the same columns of the right image.
 @param disparity In 1 / subpixelScale pixel.
@@ -99,20 +100,89 @@ int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int wid
     return border;
 }
 
+inline bool isStep(const ushort* disparity, int x) { return std::abs(disparity[x] - disparity[x - 1]) > subpixelScale; }
+
+/** Where the part of the row begins that the right image shows, if matches by chance have won columns of it: at the last
+surface that leaves hardly a column to what is on its left. Nearer pixels hide farther ones, whatever the residuals are.
+@param border What findBorder() has found.
+@param reach From this column on no surface leaves so few columns. */
+int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int width, int blank, int border, int reach)
+{
+    const int surface = 4; // columns, at least
+    const int shown = 8;   // pixels before it per visible one, at least
+    const int hidden = 4;  // three of so many are hidden, at least
+    const int* columns = scratch.columns.data();
+    int last = reach - 1;
+    while (last > border && !isStep(disparity, last))
+        --last;
+    if (last <= border)
+        return border;
+
+    const int end = std::min(2 * last + surface, width); // surfaces farther on are not so near that they hide much
+    int* nearest = scratch.nearest.data();
+    std::fill(nearest, nearest + width + 1, 0);
+    for (int x = 0; x < end; ++x)
+        nearest[columns[x]] = std::max(nearest[columns[x]], (int)disparity[x]);
+    uchar* isHidden = scratch.shown.data();
+    HDP_VECTORIZED for (int x = 0; x < end; ++x) isHidden[x] =
+        (uchar)((columns[x] == 0) | (nearest[columns[x]] - disparity[x] > subpixelScale));
+    int visibleBefore = isHidden[0] == 0 && columns[0] > blank, hiddenBefore = isHidden[0];
+    for (int x = 1; x <= last && x + surface <= end; ++x)
+    {
+        const bool isEnough = shown * visibleBefore <= x && hidden * hiddenBefore >= (hidden - 1) * x;
+        if (isEnough && x > border && (isHidden[x - 1] || isStep(disparity, x)))
+        {
+            int next = x;
+            while (next < x + surface && !isHidden[next] && (next == x || !isStep(disparity, next)))
+                ++next;
+            if (next == x + surface)
+                border = x;
+        }
+        hiddenBefore += isHidden[x];
+        visibleBefore += !isHidden[x] && columns[x] > blank;
+    }
+    return border;
+}
+
+//! Continues the surface that begins at this column to the left border, half as steep as it is: most surfaces are bent.
+void continueSurface(ushort* disparity, const uchar* shown, int begin, int width)
+{
+    const int least = 8, most = 32; // columns, as many as are filled, that tell the slope
+    const int last = std::min(width, begin + std::min(std::max(begin, least + 0), most + 0));
+    int end = begin + 1;
+    while (end < last && shown[end] && std::abs(disparity[end] - disparity[end - 1]) <= subpixelScale)
+        ++end;
+    const int half = (end - begin) / 2;
+    if (2 * half < least)
+        return std::fill(disparity, disparity + begin, disparity[begin]);
+    int rise = 0; // between the halves, times half
+    for (int x = begin; x < begin + half; ++x)
+        rise += disparity[x + half] - disparity[x];
+    int largest = 0;
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) largest = std::max(largest, (int)disparity[x]);
+    const int first = disparity[begin], scale = 2 * half * half;
+    for (int x = 0; x < begin; ++x)
+    {
+        const int fall = std::abs(rise) * (begin - x), steps = (fall + scale / 2) / scale;
+        disparity[x] = (ushort)std::min(std::max(first + (rise > 0 ? -steps : steps), 0), largest);
+    }
+}
+
 } // namespace
 
-void fillOccludedRow(ushort* disparity, const uchar* residual, int width, OcclusionScratch& scratch)
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int blank, OcclusionScratch& scratch)
 {
     unsigned *there = scratch.there.data(), *keys = scratch.keys.data();
     int* columns = scratch.columns.data();
     uchar *visible = scratch.visible.data(), *shown = scratch.shown.data();
     std::fill(there, there + width + 1, UINT_MAX);
-    int reach = 0;
+    int reach = 0, hidingReach = 0;
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const int column = std::max(x + 1 - wholeDisparity(disparity[x]), 0);
         columns[x] = column;
         reach = std::max(reach, column <= nearBorder ? x + 1 : 0);
+        hidingReach = std::max(hidingReach, 8 * (column - blank) <= 3 * x ? x + 1 : 0);
         keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
     }
     for (int x = 0; x < width; ++x)
@@ -123,19 +193,19 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, Occlus
         const int difference = (int)(0xffff - (keys[x] & 0xffff)) - disparity[x];
         visible[x] = (uchar)((columns[x] > 0) & (difference <= subpixelScale) & (difference >= -subpixelScale));
     }
-    std::fill(visible, visible + findBorder(disparity, scratch, width, reach), (uchar)0);
+    const int border = findBorder(disparity, scratch, width, reach);
+    std::fill(visible, visible + findHidingSurface(disparity, scratch, width, blank, border, hidingReach), (uchar)0);
     shown[0] = visible[0];
     shown[width - 1] = visible[width - 1];
     HDP_VECTORIZED for (int x = 1; x < width - 1; ++x) shown[x] = visible[x] & (visible[x - 1] | visible[x + 1]);
     for (int begin = findByte(shown, 0, width, 0); begin < width;)
     {
         const int end = findByte(shown, begin, width, 1);
-        if (begin > 0 || end < width)
-        {
-            const ushort before = disparity[begin > 0 ? begin - 1 : end],
-                         after = disparity[end < width ? end : begin - 1];
-            std::fill(disparity + begin, disparity + end, std::min(before, after));
-        }
+        if (begin == 0 && end < width)
+            continueSurface(disparity, shown, end, width);
+        else if (begin > 0)
+            std::fill(disparity + begin, disparity + end,
+                      std::min(disparity[begin - 1], disparity[end < width ? end : begin - 1]));
         begin = findByte(shown, end, width, 0);
     }
 }

@@ -139,7 +139,7 @@ void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clo
     if (p.fillOcclusions)
         clock.run("occlusions", [&] {
             matched.census.ofDisparities(matched.winner, matched.residual);
-            fillOccluded(matched.winner, matched.residual);
+            fillOccluded(matched.winner, matched.residual, in.images.right);
         });
 }
 
@@ -174,7 +174,7 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
                                penalties, hasFromBelow, buffers.scanlines, matched.winner, matched.residual);
         });
         if (p.fillOcclusions)
-            clock.run("occlusions", [&] { fillOccluded(matched.winner, matched.residual); });
+            clock.run("occlusions", [&] { fillOccluded(matched.winner, matched.residual, in.images.right); });
     }
 }
 

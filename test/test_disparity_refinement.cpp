@@ -155,7 +155,7 @@ TEST(HDPStereo_DisparityRefinement, a_limit_beyond_all_disparities_rejects_nothi
 }
 
 // In one row; whole disparities.
-Mat filled(const std::vector<int>& disparities, const std::vector<int>& residuals)
+Mat filled(const std::vector<int>& disparities, const std::vector<int>& residuals, const Mat& right = Mat())
 {
     Mat disparity(1, (int)disparities.size(), CV_16UC1), residual(disparity.size(), CV_8UC1);
     for (int x = 0; x < disparity.cols; ++x)
@@ -163,7 +163,7 @@ Mat filled(const std::vector<int>& disparities, const std::vector<int>& residual
         disparity.at<ushort>(x) = (ushort)(16 * disparities[x]);
         residual.at<uchar>(x) = (uchar)residuals[x];
     }
-    hdp::fillOccluded(disparity, residual);
+    hdp::fillOccluded(disparity, residual, right);
     return disparity / 16;
 }
 
@@ -209,6 +209,42 @@ TEST(HDPStereo_DisparityRefinement, a_match_by_chance_in_an_occlusion_is_not_vis
     // Columns 5 to 7 lie behind disparity 4. Column 6 matches one that column 4 has.
     expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 12 }, { 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 4 })),
                     filled({ 1, 1, 1, 1, 1, 1, 3, 1, 4, 4, 4, 4 }, { 1, 1, 1, 1, 1, 9, 0, 9, 1, 1, 1, 1 }));
+}
+
+//! A block of the smallest disparities beside a surface that maps to the same columns, whatever matches better
+TEST(HDPStereo_DisparityRefinement, what_a_nearer_surface_hides_is_not_visible)
+{
+    const int width = 40, blockEnd = 16;
+    std::vector<int> disparities(width, 14), residuals(width, 9);
+    std::fill(disparities.begin(), disparities.begin() + blockEnd, 0); // the surface has column 2 and those after it
+    std::fill(residuals.begin(), residuals.begin() + blockEnd, 1);
+    expectIdentical(Mat(1, width, CV_16UC1, Scalar(14)), filled(disparities, residuals));
+
+    // Four columns are left to the block: it is visible, unless they are black in the right image.
+    std::fill(disparities.begin() + blockEnd, disparities.end(), 12);
+    Mat right(1, width, CV_16UC1, Scalar(400));
+    EXPECT_EQ(0, filled(disparities, residuals, right).at<ushort>(0));
+    right.colRange(0, 4).setTo(Scalar(0));
+    expectIdentical(Mat(1, width, CV_16UC1, Scalar(12)), filled(disparities, residuals, right));
+}
+
+//! On the left of the right image's border a surface goes on, half as steep.
+TEST(HDPStereo_DisparityRefinement, slanted_surface_at_the_border)
+{
+    for (int rise : { -4, 0, 4 }) // per column, in 1/16 pixel
+    {
+        SCOPED_TRACE(rise);
+        const int width = 80, border = 24; // the surface has column 0 there
+        Mat disparity(1, width, CV_16UC1), residual(1, width, CV_8UC1, Scalar(0)), result;
+        for (int x = 0; x < width; ++x)
+            disparity.at<ushort>(x) = (ushort)(x < border ? 16 * 60 : 16 * border + rise * (x - border));
+        disparity.copyTo(result);
+        hdp::fillOccluded(result, residual);
+        const int visible = border + 4;
+        expectIdentical(Mat(disparity.colRange(visible, width)), Mat(result.colRange(visible, width)));
+        for (int x = 0; x < border; ++x)
+            ASSERT_EQ(rise / 2, result.at<ushort>(x + 1) - result.at<ushort>(x)) << "at " << x;
+    }
 }
 
 TEST(HDPStereo_DisparityRefinement, visible_pixels_are_not_filled)

@@ -358,8 +358,8 @@ public:
     /** @brief Whether occluded pixels are filled, in each layer.
 
     Of the pixels that match one column of the right image, the one with the lowest cost is visible; those of another
-    disparity are occluded. So is the rest of a surface that begins at the left border of the right image. Occluded
-    pixels get the disparity of the farther surface beside them.
+    disparity are occluded. They get the disparity of the farther surface beside them. What is left of a surface that
+    begins at the left border of the right image is not visible there either: it continues the surface, half as steep.
     @param fillOcclusions true needs HDPTreeMatcher::COST_CENSUS. false (PRESET_PAPER): occluded pixels stay as they
     matched. true in the others. */
     CV_WRAP virtual void setFillOcclusions(bool fillOcclusions) = 0;
