@@ -19,24 +19,24 @@ const int censusMargin = 16;
 // Columns of a census row are computed in groups of this many, and rows from a copy of so many that stays in the caches.
 const int censusColumns = 32, censusRows = 16;
 
-void dispatchLeftCensus(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels)
+void dispatchLeftCensus(const CensusWindow& window, const short* grey, int cols, uchar* planes, uchar* pixels)
 {
-    CV_CPU_DISPATCH(leftCensusRow, (grey, step, radius, cols, planes, pixels), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(leftCensusRow, (window, grey, cols, planes, pixels), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-void dispatchRightCensus(const short* grey, ptrdiff_t step, int radius, int cols, uchar* row, size_t planeSize)
+void dispatchRightCensus(const CensusWindow& window, const short* grey, int cols, uchar* row, size_t planeSize)
 {
-    CV_CPU_DISPATCH(rightCensusRow, (grey, step, radius, cols, row, planeSize), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(rightCensusRow, (window, grey, cols, row, planeSize), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 } // namespace
 
-void CensusCost::prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize)
+void CensusCost::prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize, int tolerance)
 {
     planes_.width = left.cols;
     planes_.count = (blockSize * blockSize / 2 + 7) / 8;
-    prepareImage(left, blockSize / 2, false, 0);
-    prepareImage(right, blockSize / 2, true, numDisparities + costPadding);
+    prepareImage(left, blockSize / 2, tolerance, false, 0);
+    prepareImage(right, blockSize / 2, tolerance, true, numDisparities + costPadding);
     planes_.left = left_.ptr() + 4 * censusMargin;
     planes_.right = right_.ptr() + censusMargin;
     planes_.leftStep = left_.step;
@@ -44,7 +44,7 @@ void CensusCost::prepare(const Mat& left, const Mat& right, int numDisparities, 
     planes_.rightPlane = right_.step * left.rows;
 }
 
-void CensusCost::prepareImage(const Mat& image, int radius, bool isRight, int after)
+void CensusCost::prepareImage(const Mat& image, int radius, int tolerance, bool isRight, int after)
 {
     const int width = image.cols, planes = planes_.count, rows = image.rows;
     const int cols = (int)alignSize(width, censusColumns); // what is computed past the width is overwritten or not read
@@ -54,7 +54,7 @@ void CensusCost::prepareImage(const Mat& image, int radius, bool isRight, int af
         left_.create(rows, censusMargin + cols + censusMargin, CV_8UC4);
     parallel_for_(Range(0, (rows + censusRows - 1) / censusRows), [&](const Range& range) {
         Mat bordered(censusRows + 2 * radius, cols + 2 * radius, CV_16S); // all levels are below 32768
-        const ptrdiff_t step = (ptrdiff_t)bordered.step1();
+        const CensusWindow window = { radius, tolerance, (ptrdiff_t)bordered.step1() };
         std::vector<uchar> leftPlanes(isRight ? 0 : 3 * cols);
         for (int i = range.start; i < range.end; ++i)
         {
@@ -66,10 +66,10 @@ void CensusCost::prepareImage(const Mat& image, int radius, bool isRight, int af
                 const short* grey = bordered.ptr<short>(y - first + radius) + radius;
                 if (!isRight)
                 {
-                    dispatchLeftCensus(grey, step, radius, cols, leftPlanes.data(), left_.ptr(y) + 4 * censusMargin);
+                    dispatchLeftCensus(window, grey, cols, leftPlanes.data(), left_.ptr(y) + 4 * censusMargin);
                     continue;
                 }
-                dispatchRightCensus(grey, step, radius, cols, right_.ptr(y) + censusMargin, right_.step * rows);
+                dispatchRightCensus(window, grey, cols, right_.ptr(y) + censusMargin, right_.step * rows);
                 for (int plane = 0; plane <= planes; ++plane)
                 {
                     uchar* row = right_.ptr(plane * rows + y) + censusMargin;

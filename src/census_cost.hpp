@@ -20,6 +20,13 @@ struct CensusPlanes
     size_t rightPlane;          // from a plane to the next
 };
 
+//! What the census of a row of grey levels compares
+struct CensusWindow
+{
+    int radius, tolerance; // see CensusCost::prepare(); 1 to 3
+    ptrdiff_t step;        // from a row to the next, in elements
+};
+
 //! The number of bits set in the lower 24
 inline int countCensusBits(unsigned bits)
 {
@@ -29,8 +36,8 @@ inline int countCensusBits(unsigned bits)
     return (int)((bits + (bits >> 8) + (bits >> 16)) & 31);
 }
 
-/** The census cost: the number of pixels, of every second one in the window as on a checkerboard, that are darker than
-the centre in one image and not in the other. The census of a pixel has a bit for each of them, in planes of 8 bits: 3
+/** The census cost: the number of pixels, of every second one in the window as on a checkerboard, that are clearly darker
+than the centre in one image and not in the other. The census of a pixel has a bit for each of them, in planes of 8 bits: 3
 for a window of 7 x 7 pixels, 2 for 5, 1 for 3. */
 class CV_EXPORTS CensusCost CV_FINAL : public MatchingCost
 {
@@ -39,8 +46,9 @@ public:
     @param left Grey levels, CV_16UC1, see greyLevels().
     @param right Of the same size and type.
     @param numDisparities The number of candidates a pixel may be asked for.
-    @param blockSize Side of the window: 3, 5 or 7. */
-    void prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize);
+    @param blockSize Side of the window: 3, 5 or 7.
+    @param tolerance A pixel is clearly darker by more than this, 0..mostTolerance, in the images' units. */
+    void prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize, int tolerance = 0);
 
     void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const CV_OVERRIDE;
 
@@ -76,11 +84,12 @@ public:
     size_t planeStride() const { return planes_.rightPlane; }
     enum
     {
-        greyByte = 3
+        greyByte = 3,
+        mostTolerance = 1023
     };
 
 private:
-    void prepareImage(const Mat& image, int radius, bool isRight, int after);
+    void prepareImage(const Mat& image, int radius, int tolerance, bool isRight, int after);
 
     CensusPlanes planes_;
     Mat left_;  // CV_8UC4, see leftPixels()

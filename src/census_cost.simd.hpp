@@ -15,21 +15,20 @@ namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** A row of the left image: the census transform, a bit for each pixel of the checkerboard around the centre, set if it
-is darker, and the grey levels.
+is clearly darker, and the grey levels.
+@param window The window.
 @param grey The first pixel of the row, levels times greyScale; it has a border of the radius, and may be read up to
 column cols.
-@param step From a row to the next, in elements.
-@param radius Of the window, 1 to 3.
 @param cols Columns to compute.
 @param planes Memory for a row of 3 planes, cols bytes each.
 @param pixels Receives the row, see CensusCost::leftPixels(). */
-void leftCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels);
+void leftCensusRow(const CensusWindow& window, const short* grey, int cols, uchar* planes, uchar* pixels);
 
 /** A row of the right image, as leftCensusRow(). The image is mirrored, and so is its window then, so that its bits are
 the same ones.
 @param row Receives the row, see CensusCost::rightPlane().
 @param planeSize From a plane to the next. */
-void rightCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* row, size_t planeSize);
+void rightCensusRow(const CensusWindow& window, const short* grey, int cols, uchar* row, size_t planeSize);
 
 //! CensusCost::evaluate()
 void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
@@ -39,15 +38,17 @@ void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count
 namespace {
 
 //! Returns the number of planes.
-int censusRow(const short* grey, ptrdiff_t step, int radius, bool mirrored, int cols, uchar* census, size_t planeSize)
+int censusRow(const CensusWindow& window, const short* grey, bool mirrored, int cols, uchar* census, size_t planeSize)
 {
+    const int radius = window.radius;
+    const short tolerance = (short)window.tolerance;
     // Of the last plane's bits that compare nothing: the centre, which is not darker than itself
     ptrdiff_t offsets[24] = { 0 };
     int bits = 0;
     for (int dy = -radius; dy <= radius; ++dy)
         for (int dx = -radius; dx <= radius; ++dx)
             if ((dx + dy) % 2 != 0)
-                offsets[bits++] = dy * step + (mirrored ? -dx : dx);
+                offsets[bits++] = dy * window.step + (mirrored ? -dx : dx);
     for (int bit = 0; bit < bits; bit += 8, census += planeSize)
     {
         const ptrdiff_t* offset = offsets + bit;
@@ -56,7 +57,7 @@ int censusRow(const short* grey, ptrdiff_t step, int radius, bool mirrored, int 
         HDP_VECTORIZED for (int x = 0; x < cols; ++x)
         {
             // Word by word, so that they are narrowed once
-            const short centre = grey[x];
+            const short centre = (short)(grey[x] - tolerance);
             short byte = (short)(p0[x] < centre ? 1 : 0);
             byte = (short)(byte | (short)(p1[x] < centre ? 2 : 0));
             byte = (short)(byte | (short)(p2[x] < centre ? 4 : 0));
@@ -73,9 +74,9 @@ int censusRow(const short* grey, ptrdiff_t step, int radius, bool mirrored, int 
 
 } // namespace
 
-void leftCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* planes, uchar* pixels)
+void leftCensusRow(const CensusWindow& window, const short* grey, int cols, uchar* planes, uchar* pixels)
 {
-    const int count = censusRow(grey, step, radius, false, cols, planes, cols);
+    const int count = censusRow(window, grey, false, cols, planes, cols);
     const uchar *second = planes + (count > 1 ? cols : 0), *third = planes + (count > 2 ? 2 * cols : 0);
     HDP_VECTORIZED for (int x = 0; x < cols; ++x)
     {
@@ -86,9 +87,9 @@ void leftCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, ucha
     }
 }
 
-void rightCensusRow(const short* grey, ptrdiff_t step, int radius, int cols, uchar* row, size_t planeSize)
+void rightCensusRow(const CensusWindow& window, const short* grey, int cols, uchar* row, size_t planeSize)
 {
-    row += censusRow(grey, step, radius, true, cols, row, planeSize) * planeSize;
+    row += censusRow(window, grey, true, cols, row, planeSize) * planeSize;
     HDP_VECTORIZED for (int x = 0; x < cols; ++x) row[x] = (uchar)(grey[x] / greyScale);
 }
 

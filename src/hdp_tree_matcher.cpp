@@ -63,7 +63,7 @@ public:
         {
             const MatchedLayer* const upper = layer + 1 < settings.layers ? &layers_[layer + 1] : nullptr;
             TemporalState* const temporal = p_.useTemporalPrediction ? &temporal_ : nullptr;
-            const LayerInput input = { layer, images[layer], upper, p_, settings, result_.alignment.isNoisy, temporal };
+            const LayerInput input = { layer, images[layer], upper, p_, settings, result_.alignment, temporal };
             matchLayer(input, buffers_, clock_, layers_[layer]);
         }
 
@@ -202,7 +202,7 @@ public:
         return isMatched() && result_.alignment.hasLight;
     }
 
-    double getNoiseLevel() const CV_OVERRIDE { return isMatched() ? result_.alignment.noise : 0; }
+    double getNoiseLevel() const CV_OVERRIDE { return isMatched() ? result_.alignment.noise.deviation : 0; }
 
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
     {

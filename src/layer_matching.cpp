@@ -20,6 +20,10 @@ namespace {
 
 const int secondPassMedian = 5;
 
+// Of the census's tolerance: in standard deviations of the noise, and the layer from which on it is at least 1
+const double toleratedNoise = 0.55;
+const int coarseLayer = 2;
+
 // Of the means that scanlines get, gamma relative to that of the trees alone: scanlines reach farther
 const double meanGamma = 0.2;
 
@@ -38,13 +42,21 @@ int disparitiesOf(const LayerInput& in) { return disparitiesOf(in, in.layer); }
 //! Of the layer's map
 int largestDisparity(const LayerInput& in) { return hdp::largestDisparity(in.parameters.numDisparities, in.layer); }
 
+//! Of the census. Less is as often noise as texture; on coarse layers, the rounding of the image and shading.
+int censusTolerance(const LayerInput& in)
+{
+    const int tolerance = cvRound(toleratedNoise * greyScale * in.alignment.noise.ofLayer(in.layer));
+    return std::min(std::max(tolerance, (int)(in.layer >= coarseLayer)), CensusCost::mostTolerance + 0);
+}
+
 void prepareCost(const LayerInput& in, MatchedLayer& matched)
 {
     const MatcherParameters& p = in.parameters;
     const LayerImages& images = in.images;
     matched.isCensus = p.matchingCost == HDPTreeMatcher::COST_CENSUS;
     if (matched.isCensus)
-        return matched.census.prepare(images.left, images.right, disparitiesOf(in), in.settings.windowSide);
+        return matched.census.prepare(images.left, images.right, disparitiesOf(in), in.settings.windowSide,
+                                      censusTolerance(in));
     const ColorGradientParams params = { (float)p.colorTruncation, (float)p.gradientTruncation, (float)p.colorWeight,
                                          in.settings.windowSide };
     matched.colorGradient.prepare(images.left, images.right, disparitiesOf(in), params);
@@ -92,7 +104,7 @@ void predict(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 void growForest(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 {
     const MatcherParameters& p = in.parameters;
-    const bool hasMedian = p.useMedianPrefilter || in.isNoisy;
+    const bool hasMedian = p.useMedianPrefilter || in.alignment.isNoisy;
     if (hasMedian)
         medianBlur(in.images.guide, matched.guide, 3);
     const Mat& guide = hasMedian ? matched.guide : in.images.guide;

@@ -10,6 +10,7 @@
 #include "disparity_forest.hpp"
 #include "forest_aggregation.hpp"
 #include "matcher_parameters.hpp"
+#include "pair_alignment.hpp"
 #include "pair_pyramids.hpp"
 #include "scanline_aggregation.hpp"
 #include "stage_clock.hpp"
@@ -48,7 +49,7 @@ struct LayerInput
     const MatchedLayer* upper; // the layer above; none at the top layer
     const MatcherParameters& parameters;
     const PairSettings& settings;
-    bool isNoisy;            // the guide gets a median
+    const PairAlignment& alignment;
     TemporalState* temporal; // what is known of the video; none if it is not used
 
     bool isTop() const { return !upper; }

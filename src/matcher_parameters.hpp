@@ -44,7 +44,7 @@ struct MatcherParameters
     bool useSubpixel = false;
     int aggregation = HDPTreeMatcher::AGGREGATION_TREES;
     int topAggregation = HDPTreeMatcher::AGGREGATION_TREES;
-    int P1 = 18;
+    int P1 = 16;
     int P2 = 65;
     int finestLayer = 0;
     int scanlinePasses = 1;

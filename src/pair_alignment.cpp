@@ -49,7 +49,6 @@ void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::ve
     matchCoarsely(left, right, search.numDisparities, buffers.coarse);
     alignment.hasRows =
         estimateRows(buffers.coarse, search.finestLayer, search.maxRowOffset, alignment.rows, alignment.noise);
-    alignment.noise /= greyScale;
     if (search.hasLight && isGrey)
         alignment.hasLight = estimateLight(buffers.coarse, alignment.light);
 
@@ -65,7 +64,7 @@ void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::ve
         for (size_t layer = search.finestLayer + 1; layer < images.size(); ++layer)
             halveImage(images[layer - 1].right, images[layer].right); // into the memory of the pyramid
 
-    alignment.isNoisy = search.noiseThreshold > 0 && alignment.noise >= search.noiseThreshold;
+    alignment.isNoisy = search.noiseThreshold > 0 && alignment.noise.deviation >= search.noiseThreshold;
     if (!alignment.isNoisy || !isGrey)
         return;
     buffers.smoothed.resize(images.size());

@@ -28,7 +28,7 @@ struct PairAlignment
     RowModel rows;
     LightModel light;
     bool hasRows = false, hasLight = false;
-    double noise = 0;     // standard deviation in levels of 255
+    LayerNoise noise;
     bool isNoisy = false; // noise has reached the threshold
 };
 

@@ -7,6 +7,7 @@
 #include "row_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "corner_matches.hpp"
+#include "image_levels.hpp"
 #include "robust_fit.hpp"
 
 #include <cfloat>
@@ -176,10 +177,10 @@ template <typename T> void alignRow(const Mat& right, const RowModel& model, int
 
 } // namespace
 
-bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model, double& noise)
+bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model, LayerNoise& noise)
 {
     model = RowModel();
-    noise = 0;
+    noise = LayerNoise();
     const Size size = coarse.left[0].size();
     while (finestLayer < coarse.layer && coarse.left[finestLayer].total() > (size_t)trackedArea)
         ++finestLayer;
@@ -197,7 +198,8 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         const MeanSquares ofFit = meanSquares(fit, size);
         RowModel fitted;
         fitted.coefficients = fit.coefficients;
-        noise = noiseOf(matches);
+        noise.deviation = noiseOf(matches) / greyScale;
+        noise.layer = layer;
         if (ofFit.deviation < ofBest.deviation)
         {
             ofBest = ofFit;

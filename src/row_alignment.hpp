@@ -47,17 +47,36 @@ struct RowModel
     }
 };
 
+//! Noise of a pair
+struct LayerNoise
+{
+    double deviation = 0; // standard deviation, in levels of 255
+    int layer = 0;        // that it was measured in
+
+    //! Of another layer. White noise would halve from layer to layer; that of cameras, of neighbours alike, falls less.
+    double ofLayer(int other) const
+    {
+        const double fall = 1.7;
+        double noise = deviation;
+        for (int l = layer; l < other; ++l)
+            noise /= fall;
+        for (int l = layer; l > other; --l)
+            noise *= fall;
+        return noise;
+    }
+};
+
 /** Finds how the rows of the right image lie against those of the left one, from matches that are followed from the
 coarse layer to the finest one.
 @param coarse What matchCoarsely() found.
 @param finestLayer The last layer that matches are followed to; one of 600000 pixels is fine enough.
 @param maxOffset Largest difference of a pixel's rows that is believed, in pixels of the image.
 @param model Receives the model, zero if the matches do not tell.
-@param noise Receives the standard deviation of the noise of the last layer that was looked at, in its values, 0 if
-unknown: what remains between the windows of matches, in the tenth of them where it is the least.
+@param noise Receives the noise of the last layer that was looked at, 0 if unknown: what remains between the windows of
+matches, in the tenth of them where it is the least.
 @return Whether the model is certain, and moves rows by enough to be applied. */
 CV_EXPORTS bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model,
-                             double& noise);
+                             LayerNoise& noise);
 
 /** Moves the rows of the right image to those of the left one: aligned(x, y) = right(x, y + model(x, y)), by cubic
 interpolation. Beyond the image are its first and last rows.

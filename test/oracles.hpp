@@ -144,11 +144,14 @@ private:
 };
 
 //! The census cost of images of grey levels, CV_16UC1: the pixels of the window's checkerboard that are darker than its
-//! centre in one of the images only; rows and columns clamped to the images.
+//! centre by more than the tolerance in one of the images only; rows and columns clamped to the images.
 class CensusCost
 {
 public:
-    CensusCost(const Mat& left, const Mat& right, int blockSize) : left_(left), right_(right), radius_(blockSize / 2) {}
+    CensusCost(const Mat& left, const Mat& right, int blockSize, int tolerance = 0)
+        : left_(left), right_(right), radius_(blockSize / 2), tolerance_(tolerance)
+    {
+    }
 
     int operator()(int y, int x, int disparity) const
     {
@@ -165,13 +168,14 @@ public:
     }
 
 private:
-    static bool isDarker(const Mat& image, int y, int x, int dy, int dx)
+    bool isDarker(const Mat& image, int y, int x, int dy, int dx) const
     {
-        return image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) < image.at<ushort>(y, x);
+        const int other = image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols));
+        return image.at<ushort>(y, x) - other > tolerance_;
     }
 
     Mat left_, right_;
-    int radius_;
+    int radius_, tolerance_;
 };
 
 //! How many of the census's comparisons find a darker pixel, in some pixels of a row

@@ -92,7 +92,7 @@ inline void setPreset(HDPTreeMatcher& matcher, int preset)
     matcher.setIntervalMargin(isTree ? 2 : 0);
     matcher.setDelta0(isTree ? 0.02 : (double)HDPTreeMatcher::AUTO);
     matcher.setBeta(isTree ? 0.9 : (double)HDPTreeMatcher::AUTO);
-    matcher.setP1(18);
+    matcher.setP1(16);
     matcher.setP2(65);
     matcher.setScanlinePasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
     matcher.setUseNonLocalRefinement(false);

@@ -16,17 +16,18 @@ using hdp::CensusCost;
 Mat randomLevels(RNG& rng, Size size, int levels = 1021) { return randomImage(rng, size, CV_16UC1, levels); }
 
 //! cost: may have been prepared for another pair.
-void testCost(const Mat& left, const Mat& right, int candidates, int blockSize, CensusCost& cost)
+void testCost(const Mat& left, const Mat& right, int candidates, int blockSize, CensusCost& cost, int tolerance = 0)
 {
-    SCOPED_TRACE(testing::Message() << left.size() << ", candidates " << candidates << ", block " << blockSize);
-    cost.prepare(left, right, candidates, blockSize);
-    expectFormula(cost, oracle::CensusCost(left, right, blockSize), left.size(), candidates, 0);
+    SCOPED_TRACE(testing::Message() << left.size() << ", candidates " << candidates << ", block " << blockSize
+                                    << ", tolerance " << tolerance);
+    cost.prepare(left, right, candidates, blockSize, tolerance);
+    expectFormula(cost, oracle::CensusCost(left, right, blockSize, tolerance), left.size(), candidates, 0);
 }
 
-void testCost(const Mat& left, const Mat& right, int candidates, int blockSize)
+void testCost(const Mat& left, const Mat& right, int candidates, int blockSize, int tolerance = 0)
 {
     CensusCost cost;
-    testCost(left, right, candidates, blockSize, cost);
+    testCost(left, right, candidates, blockSize, cost, tolerance);
 }
 
 typedef testing::TestWithParam<int> HDPStereo_CensusCost; // blockSize
@@ -54,6 +55,16 @@ TEST_P(HDPStereo_CensusCost, faint_texture)
                   right = randomLevels(rng, size, 3) + 1018 - brightness;
         testCost(left, right, 12, GetParam());
     }
+}
+
+//! Levels below the tolerance, too, and the largest one, with which all pixels are alike
+TEST_P(HDPStereo_CensusCost, tolerance)
+{
+    const Size size(23, 11);
+    RNG rng(37);
+    for (int levels : { 4, 1021 })
+        for (int tolerance : { 1, 3, 40, (int)CensusCost::mostTolerance })
+            testCost(randomLevels(rng, size, levels), randomLevels(rng, size, levels), 9, GetParam(), tolerance);
 }
 
 TEST_P(HDPStereo_CensusCost, regions_of_interest)

@@ -78,7 +78,7 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_FALSE(matcher->getUseSubpixel());
     EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, matcher->getAggregation());
     EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, matcher->getTopAggregation());
-    EXPECT_EQ(18, matcher->getP1());
+    EXPECT_EQ(16, matcher->getP1());
     EXPECT_EQ(65, matcher->getP2());
     EXPECT_EQ(1, matcher->getScanlinePasses());
     EXPECT_EQ(0, matcher->getFinestLayer());
@@ -147,7 +147,7 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
                  (int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES, (int)HDPTreeMatcher::AGGREGATION_TREES);
     EXPECT_KEEPS(matcher, TopAggregation, (int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES,
                  (int)HDPTreeMatcher::AGGREGATION_TREES);
-    EXPECT_KEEPS(matcher, P1, 0, 100, 18);
+    EXPECT_KEEPS(matcher, P1, 0, 100, 16);
     EXPECT_KEEPS(matcher, P2, 0, 100, 65);
     EXPECT_KEEPS(matcher, ScanlinePasses, 4, 2, 1);
     EXPECT_KEEPS(matcher, FinestLayer, 15, 1, 0);

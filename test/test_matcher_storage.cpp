@@ -345,7 +345,7 @@ TEST(HDPStereo_MatcherStorage, unknown_keys)
     text.replace(key, 4, "\nsmallPenalty:");
     const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
     deserialize(text, *matcher);
-    EXPECT_EQ(18, matcher->getP1());
+    EXPECT_EQ(16, matcher->getP1());
     EXPECT_EQ(44, matcher->getP2());
 }
 

@@ -81,7 +81,7 @@ static std::vector<Variant> variantsOf(int preset)
         variants.push_back(
             { "topAggregation = AGGREGATION_TREES", [](M& m) { m.setTopAggregation(M::AGGREGATION_TREES); }, 0, 0, 0 });
         add<int>(variants, "maxTopDisparities", &M::setMaxTopDisparities, { 16, 64 });
-        add<int>(variants, "P1", &M::setP1, { 9, 36 });
+        add<int>(variants, "P1", &M::setP1, { 8, 32 });
         add<int>(variants, "P2", &M::setP2, { 35, 100 });
     }
     else

@@ -273,8 +273,9 @@ public:
     /** @brief Matching cost M(p, x) (section 3.3).
 
     The census cost compares every second pixel of a window of 3, 5 or 7 pixels (see blockSize), as on a checkerboard,
-    with its centre, in grey. It does not depend on the exposure of the images, but AGGREGATION_SCANLINES adds a small,
-    truncated difference of the grey levels to it, which does.
+    with its centre, in grey: which of them are darker, by more than half the deviation of the pair's noise. It hardly
+    depends on the exposure of the images, but AGGREGATION_SCANLINES adds a small, truncated difference of the grey levels
+    to it, which does.
     @param matchingCost HDPTreeMatcher::COST_COLOR_GRADIENT, in PRESET_PAPER, or HDPTreeMatcher::COST_CENSUS, in the
     others. */
     CV_WRAP virtual void setMatchingCost(int matchingCost) = 0;
@@ -333,7 +334,7 @@ public:
     CV_WRAP virtual int getTopAggregation() const = 0;
 
     /** @brief Penalty for a step of one disparity between neighbours on a scanline.
-    @param P1 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 18 by default. Without
+    @param P1 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 16 by default. Without
     effect with HDPTreeMatcher::AGGREGATION_TREES. */
     CV_WRAP virtual void setP1(int P1) = 0;
     /** @copybrief setP1 @sa setP1 */
@@ -522,7 +523,7 @@ public:
 
     /** @brief Returns the noise of the last compute()'s pair: what differs between matched corners.
     @return Standard deviation of the grey levels, 255 being white, of the finest layer that matches are followed to. This
-    is the image itself if it has at most 600000 pixels and finestLayer is 0; each layer above has half the noise. 0 if
+    is the image itself if it has at most 600000 pixels and finestLayer is 0; each layer above has less. 0 if
     too few matches were found or nothing asked for them (maxRowOffset 0, no light alignment, and a noise threshold of
     0), before the first compute() and after one that threw an exception. Texture that is finer than pixels counts as
     noise, too.

@@ -56,7 +56,7 @@ PARAMETERS = {
     'IntervalMargin': (0, 2),
     'UseSubpixel': (False, True),
     'Aggregation': (cv.stereo.HDPTreeMatcher_AGGREGATION_TREES, cv.stereo.HDPTreeMatcher_AGGREGATION_SCANLINES),
-    'P1': (18, 7),
+    'P1': (16, 7),
     'P2': (65, 60),
     'FinestLayer': (0, 1),
     'TopAggregation': (cv.stereo.HDPTreeMatcher_AGGREGATION_TREES,
