@@ -95,7 +95,7 @@ struct ScanlineBuffers
 three directions that one sweep over the rows can do, from the left, from the right and from above, and with that from
 below, which takes a second one. The cost of candidate d is
 
-C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 31) / 4) + floor(prior * |d - predicted| / 2),
+C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 23) / 4) + floor(prior * |d - predicted| / 2),
 
 I being grey levels, here whole ones, and predicted the disparity that the candidate's run was predicted for.
 

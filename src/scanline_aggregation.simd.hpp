@@ -203,7 +203,7 @@ private:
         const int at = 4 * column;
         const auto ofPlane = [&](int plane) { return load((ptrdiff_t)(plane * planeStride_) - column); };
         const ByteLanes grey = ByteLanes::repeatByte<at + CensusCost::greyByte>(left), candidates = ofPlane(planes);
-        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(31)).quarter();
+        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(23)).quarter();
         const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ofPlane(0);
         if (planes == 1)
             return contrast + first.countBits();

@@ -727,7 +727,7 @@ private:
         const int run = d >= w.first[0] && d < w.first[0] + 8 ? 0 : 1;
         const int difference =
             left_.at<ushort>(p) / 4 - right_.at<ushort>(p.y, clamped(p.x - d, size_.width)) / 4; // of whole levels
-        return census_(p.y, p.x, d) + std::min(std::abs(difference), 31) / 4 +
+        return census_(p.y, p.x, d) + std::min(std::abs(difference), 23) / 4 +
                (int)std::floor(prior_ * std::abs(d - w.predicted[run] / 16.) / 2);
     }
 
