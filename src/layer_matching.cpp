@@ -21,7 +21,7 @@ namespace {
 const int secondPassMedian = 5;
 
 // Of the census's tolerance: in standard deviations of the noise, and the layer from which on it is at least 1
-const double toleratedNoise = 0.55;
+const double toleratedNoise = 0.45;
 const int coarseLayer = 2;
 
 // Of the means that scanlines get, gamma relative to that of the trees alone: scanlines reach farther

@@ -105,8 +105,9 @@ large(p, q) = max(min(small, large), large - floor(3 * |I(p) - I(q)| / 2)),
 where candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d
 in the window of p: those that p does not have are left out, and the last one of its first run and the first one of the
 second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less its own
-minimum, at most 255, the first of them if there are several; the tip of the V through its sum and those of the
-candidates beside it, if p has disparities d - 1 and d + 1, gives the sub-pixel part.
+minimum, at most 255, the first of them if there are several; its sum and those of the candidates beside it, if p has
+disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction(): its limits are 15 and 25 times the number of
+directions.
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
 start anew some rows before each of them.

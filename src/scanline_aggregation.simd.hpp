@@ -6,6 +6,7 @@
 #include "scanline_aggregation.hpp"
 #include "image_levels.hpp"
 #include "vectorized.hpp"
+#include "winner_fraction.hpp"
 #include <cstring>
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "byte_lanes.simd.hpp"
@@ -359,11 +360,11 @@ private:
         return 8 * (first == 1 ? i : 3 - i); // a constant for the compiler
     }
 
-    //! A row's disparities, each at the tip of two lines of opposite slope through the sums of the winner and of those
-    //! beside it, and residuals
+    //! A row's disparities, with winnerFraction(), and residuals
     void finishRow(int group, ushort* disparity, uchar* residual) const
     {
         const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers, rounded to the nearest
+        const float directions = p_.hasFromBelow ? 4 : 3, blunt = 15 * directions, sharp = 25 * directions;
         const int last = p_.validCandidates() - 1, large = p_.penalties.large, largest = p_.largest;
         const short *firstOfLow = tables_.first(0), *firstOfHigh = tables_.first(1);
         const uchar *winners = winners_[group], *costs = costs_[group];
@@ -380,7 +381,7 @@ private:
                 ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
             const float slope = (float)std::max(std::max(before, after) - sum, 1);
             const float rise = (float)((before - after) & -isInner);
-            const float offset = rise * (subpixelScale / 2) / slope;
+            const float offset = subpixelScale * winnerFraction(rise, slope, blunt, sharp);
             const int tip = whole * subpixelScale + (int)((offset + wholes) - wholes);
             disparity[x] = (ushort)std::min(std::max(tip, 0), largest);
         }

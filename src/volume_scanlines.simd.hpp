@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "volume_scanlines.hpp"
+#include "winner_fraction.hpp"
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "byte_lanes.simd.hpp"
 #endif
@@ -244,7 +245,10 @@ private:
         const int after =
             k < last ? sums[k + 1] : lowest + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - lowest);
         const int slope = std::max(std::max(before, after) - lowest, 1);
-        return (ushort)(whole + cvRound((before - after) * (subpixelScale / 2) / (float)slope));
+        const float unit = 4 * CostVolume::scale, blunt = 8 * unit,
+                    sharp = 14 * unit; // of the costs of four directions
+        const float fraction = winnerFraction((float)(before - after), (float)slope, blunt, sharp);
+        return (ushort)(whole + cvRound(subpixelScale * fraction));
     }
 
     enum

@@ -654,6 +654,17 @@ inline Mat findSparseMatches(const Mat& left, const Mat& right, int blockSize, i
     return result;
 }
 
+//! The fraction of a winner's disparity, see hdp::winnerFraction(). before, after: what the sums beside it have more
+inline double fraction(int before, int after, double blunt, double sharp)
+{
+    const double slope = std::max(before, after); // of the steeper side of the V; the other one has the opposite
+    if (slope <= 0)
+        return 0;
+    const double u = (before - after) / slope, root = u < 0 ? -std::sqrt(-u) : std::sqrt(u);
+    const double share = slope <= blunt ? 0 : slope >= sharp ? 0.65 : 0.65 * (slope - blunt) / (sharp - blunt);
+    return (share * root + (1 - share) * u) / 2;
+}
+
 //! Semi-global matching of a layer from the left, the right and above, over the candidates of windows alone: see
 //! aggregateScanlines(). Disparities are in 1/16 pixel.
 class Scanlines
@@ -774,10 +785,8 @@ private:
         double offset = 0;
         if (i > 0 && i + 1 < d.size() && d[i - 1] == d[i] - 1 && d[i + 1] == d[i] + 1)
         {
-            // The steeper side of the V has its slope, the other one the opposite.
-            const double slope = std::max(sums[i - 1], sums[i + 1]) - sums[i];
-            if (slope > 0)
-                offset = (sums[i - 1] - sums[i + 1]) / (2 * slope);
+            const double count = hasFromBelow_ ? 4 : 3; // of directions
+            offset = fraction(sums[i - 1] - sums[i], sums[i + 1] - sums[i], 15 * count, 25 * count);
         }
         return (ushort)std::min(std::max(16 * d[i] + cvRound(16 * offset), 0), largest_);
     }
@@ -857,9 +866,7 @@ inline Mat volumeDisparity(const Mat_<uchar>& costs, const Mat& weights, const M
             const int beyondFirst = std::max(after, sum[2] - sum[1]);
             const int beyondLast = std::max(before, sum[count - 3] - sum[count - 2]);
             const int left = k > 0 ? before : beyondFirst, right = k + 1 < count ? after : beyondLast;
-            // The steeper side of the V has its slope, the other one the opposite.
-            if (std::max(left, right) > 0)
-                offset = (left - right) / (2. * std::max(left, right));
+            offset = fraction(left, right, 8 * 4 * 8, 14 * 4 * 8);
         }
         disparity.at<ushort>(pixel) = (ushort)(16 * (first + k) + cvRound(16 * offset));
     }

@@ -531,7 +531,9 @@ TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
             const Mat difference = disparity.colRange(inside) - expected.colRange(inside);
             // The columns that only one of the pairs has, or that are added, count in P(D_l), and so reach every pixel.
             // The squares of the sparse matches begin with the added columns.
-            const int tolerance = matcher->getAggregation() == HDPTreeMatcher::AGGREGATION_TREES ? 0 : 8;
+            // Half a pixel of the finest layer
+            const bool hasScanlines = matcher->getAggregation() != HDPTreeMatcher::AGGREGATION_TREES;
+            const int tolerance = hasScanlines ? 8 << matcher->getFinestLayer() : 0;
             const int share = !system.usePrediction ? 200 : matcher->getUseSubpixel() ? 25 : 33;
             EXPECT_LE(cv::countNonZero(cv::abs(difference - 16 * k) > tolerance), (int)difference.total() / share);
         }

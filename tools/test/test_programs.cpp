@@ -109,6 +109,22 @@ TEST(HDPStereo_Programs, full_disk)
 }
 #endif
 
+TEST(HDPStereo_Programs, subpixel)
+{
+    const DatasetFolder folder;
+    EXPECT_EQ(0, run(folder, "hdp_subpixel --help").status);
+    const Execution good = run(folder, "hdp_subpixel --methods=fast,sgbm --textures=natural");
+    EXPECT_EQ(0, good.status) << good.errors;
+    for (const char* row : { "### natural texture, noise 2", "| fast |", "| sgbm |" })
+        EXPECT_NE(String::npos, good.output.find(row)) << row;
+    for (const char* bad : { "--textures=rough", "--noise=-1", "--methods=slow", "file.png" })
+    {
+        const Execution wrong = run(folder, "hdp_subpixel " + String(bad));
+        EXPECT_EQ(1, wrong.status) << bad;
+        EXPECT_EQ(0u, wrong.errors.find("error: ")) << wrong.errors;
+    }
+}
+
 TEST(HDPStereo_Programs, robustness)
 {
     const DatasetFolder folder;

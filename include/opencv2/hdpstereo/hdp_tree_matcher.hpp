@@ -299,8 +299,9 @@ public:
 
     /** @brief Whether disparities have fractions, in 1/16 pixel.
     @param useSubpixel true: the winner moves to the minimum of a parabola (trees) or of a V of two lines of opposite
-    slope (scanlines) through its cost and those of the candidates beside it. false (PRESET_PAPER): whole disparities;
-    scanlines round the final map only. */
+    slope (scanlines) through its cost and those of the candidates beside it; sharp minima of scanlines then move away
+    from whole disparities, which the V prefers. false (PRESET_PAPER): whole disparities; scanlines round the final map
+    only. */
     CV_WRAP virtual void setUseSubpixel(bool useSubpixel) = 0;
     /** @copybrief setUseSubpixel @sa setUseSubpixel */
     CV_WRAP virtual bool getUseSubpixel() const = 0;
