@@ -18,7 +18,7 @@ struct TemporalJoin
     {
         window = 7,        // side of the square that costs are compared over, in cells
         sameDisparity = 1, // in pixels: costs of disparities no farther apart are not compared
-        costOffset = 8,    // in bits of a census of 24
+        costOffset = 6,    // in bits of a census of 24
         keptShare = 26, // percent of the measured disparity's cost, and costOffset, by which the last frame's may cost
         unmovedShare = 33,   // more; if the camera moved, that at the same place
         tolerance = 4,       // between disparities that agree, in pixels of the image

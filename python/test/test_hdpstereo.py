@@ -368,6 +368,7 @@ class Matching(Test):
 class Strategies(Test):
     def match(self, strategy, prediction=True):
         matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_TREE)
+        matcher.setAggregation(HDPTreeMatcher.AGGREGATION_TREES)  # scanlines make different trees much alike
         matcher.setUsePrediction(prediction)
         matcher.setTreeStrategy(strategy)
         return matcher.compute(LEFT, RIGHT)

@@ -9,5 +9,5 @@ int main()
     cv::randu(scene, 0, 256);
     cv::stereo::HDPTreeMatcher::create(0, 16)->compute(scene.colRange(0, 190), scene.colRange(5, 195), disparity);
     std::cout << cv::mean(disparity)[0] << " " << cv::norm(disparity) << std::endl;
-    return disparity.at<short>(30, 100) == 5 * cv::StereoMatcher::DISP_SCALE ? 0 : 1;
+    return cvRound(disparity.at<short>(30, 100) / (double)cv::StereoMatcher::DISP_SCALE) == 5 ? 0 : 1;
 }
