@@ -66,6 +66,9 @@ inline int findByte(const uchar* bytes, int begin, int end, uchar value)
     return found ? (int)((const uchar*)found - bytes) : end;
 }
 
+//! Whether a surface ends between a pixel and the one before
+inline bool isStep(const ushort* disparity, int x) { return std::abs(disparity[x] - disparity[x - 1]) > subpixelScale; }
+
 const int nearBorder = 3; // columns of the right image, from 1 on, that count as its border
 
 //! Where the part of the row begins that the right image shows: at the last visible surface that begins at the border of
@@ -88,8 +91,7 @@ int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int wid
             if (!isAtBorder && (x > begin || hidden * visibleBefore > x))
                 break;
             int end = x + 1;
-            while (end < std::min(x + surface, runEnd) &&
-                   std::abs(disparity[end] - disparity[end - 1]) <= subpixelScale)
+            while (end < std::min(x + surface, runEnd) && !isStep(disparity, end))
                 ++end;
             if (end == x + surface)
                 border = x;
@@ -99,8 +101,6 @@ int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int wid
     }
     return border;
 }
-
-inline bool isStep(const ushort* disparity, int x) { return std::abs(disparity[x] - disparity[x - 1]) > subpixelScale; }
 
 /** Where the part of the row begins that the right image shows, if matches by chance have won columns of it: at the last
 surface that leaves hardly a column to what is on its left. Nearer pixels hide farther ones, whatever the residuals are.
@@ -150,7 +150,7 @@ void continueSurface(ushort* disparity, const uchar* shown, int begin, int width
     const int least = 8, most = 32; // columns, as many as are filled, that tell the slope
     const int last = std::min(width, begin + std::min(std::max(begin, least + 0), most + 0));
     int end = begin + 1;
-    while (end < last && shown[end] && std::abs(disparity[end] - disparity[end - 1]) <= subpixelScale)
+    while (end < last && shown[end] && !isStep(disparity, end))
         ++end;
     const int half = (end - begin) / 2;
     if (2 * half < least)

@@ -273,9 +273,9 @@ public:
     /** @brief Matching cost M(p, x) (section 3.3).
 
     The census cost compares every second pixel of a window of 3, 5 or 7 pixels (see blockSize), as on a checkerboard,
-    with its centre, in grey: which of them are darker, by more than half the deviation of the pair's noise. It hardly
-    depends on the exposure of the images, but AGGREGATION_SCANLINES adds a small, truncated difference of the grey levels
-    to it, which does.
+    with its centre, in grey: which of them are darker, by more than about half the deviation of the pair's noise. It
+    hardly depends on the exposure of the images, but AGGREGATION_SCANLINES adds a small, truncated difference of the
+    grey levels to it, which does.
     @param matchingCost HDPTreeMatcher::COST_COLOR_GRADIENT, in PRESET_PAPER, or HDPTreeMatcher::COST_CENSUS, in the
     others. */
     CV_WRAP virtual void setMatchingCost(int matchingCost) = 0;
