@@ -197,7 +197,7 @@ Mat upperLevels(const Mat& image, int bits)
     return levels;
 }
 
-TEST(HDPStereo_ImageTypes, eight_bits_in_words_of_16)
+TEST(HDPStereo_SlowImageTypes, eight_bits_in_words_of_16)
 {
     const SyntheticPair pair = greyPair(22);
     const Mat darkLeft = pair.left / 3, darkRight = pair.right / 3, coarseLeft = pair.left & 0xf0,
@@ -264,7 +264,7 @@ Vec2d errorsOf12And8Bits(const System& system, double contrast)
 }
 
 //! The census of faint texture gains by two more bits; where the upper 8 bits tell all, they do no harm.
-TEST(HDPStereo_ImageTypes, bits_below_the_eighth)
+TEST(HDPStereo_SlowImageTypes, bits_below_the_eighth)
 {
     for (const System& system : presets)
     {

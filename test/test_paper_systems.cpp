@@ -11,6 +11,7 @@ namespace opencv_test {
 namespace {
 
 typedef testing::TestWithParam<System> HDPStereo_PaperSystem;
+typedef testing::TestWithParam<System> HDPStereo_SlowPaperSystem;
 
 //////////////////////////////////// the whole system, slowly ////////////////////////////////////
 
@@ -94,7 +95,7 @@ double differenceToOracles(const System& system, bool inColor)
     return (double)different / all;
 }
 
-TEST_P(HDPStereo_PaperSystem, whole_system_made_of_oracles)
+TEST_P(HDPStereo_SlowPaperSystem, whole_system_made_of_oracles)
 {
     // What differs by less than a float can hold may go either way; in colour, what 1/32 level of a gradient can.
     const double grey = differenceToOracles(GetParam(), false), color = differenceToOracles(GetParam(), true);
@@ -165,6 +166,7 @@ TEST(HDPStereo_PaperForest, agrees_with_the_other_results)
 }
 
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_PaperSystem, testing::ValuesIn(paperSystems));
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_SlowPaperSystem, testing::ValuesIn(paperSystems));
 
 //////////////////////////////////// the Aloe pair ////////////////////////////////////
 

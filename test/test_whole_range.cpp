@@ -53,7 +53,7 @@ void expectWholeRange(const System& preset, int numDisparities)
         }
 }
 
-TEST(HDPStereo_WholeRange, each_disparity_of_a_small_range_is_found)
+TEST(HDPStereo_SlowWholeRange, each_disparity_of_a_small_range_is_found)
 {
     for (const System& preset : presets)
         expectWholeRange(preset, 16);
@@ -123,7 +123,7 @@ FoundBars matchBars(int preset, int width, bool isHorizontal, int seed)
     return found;
 }
 
-TEST(HDPStereo_WholeRange, thin_structures_are_kept_or_not_confident)
+TEST(HDPStereo_SlowWholeRange, thin_structures_are_kept_or_not_confident)
 {
     const struct
     {
@@ -149,7 +149,7 @@ TEST(HDPStereo_WholeRange, thin_structures_are_kept_or_not_confident)
 }
 
 //! Texture that varies along rows only, or that has no low frequencies
-TEST(HDPStereo_WholeRange, texture_that_coarse_layers_do_not_have)
+TEST(HDPStereo_SlowWholeRange, texture_that_coarse_layers_do_not_have)
 {
     const Size size(500, 160);
     const int numDisparities = 64;
