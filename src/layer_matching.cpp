@@ -27,6 +27,14 @@ const int coarseLayer = 2;
 // Of the means that scanlines get, gamma relative to that of the trees alone: scanlines reach farther
 const double meanGamma = 0.2;
 
+// Their large penalty, relative to P2, and its gamma, relative to that of the trees
+const double meanP2 = 1.2;
+const double edgeGamma = 0.7;
+
+// By how much scanlines weaken the large penalty at edges: most on the finest layer, where the edges are those of
+// surfaces, as long as they are not those of the noise
+const int finestSlope = 5, usualSlope = 3;
+
 // Of the non-local refinement: a stable disparity's largest difference in the left-right check, and gamma, relative to
 // that of the cost; with the same gamma the refinement blurs slanted surfaces.
 const int stableMaxDiff = 1;
@@ -126,7 +134,8 @@ void aggregateTreeScanlines(const LayerInput& in, LayerBuffers& buffers, Matched
 {
     const MatcherParameters& p = in.parameters;
     const int scale = CostVolume::scale;
-    const VolumePenalties penalties = { scale * p.P1 / 2, scale * p.P2, p.gamma }; // means of costs are smoother
+    const int large = std::min(cvRound(scale * meanP2 * p.P2), +VolumePenalties::largest);
+    const VolumePenalties penalties = { scale * p.P1 / 2, large, p.gamma * edgeGamma }; // means of costs are smoother
     aggregateMeans(buffers.forest, matched.cost(), p.gamma * meanGamma, buffers.aggregation, buffers.volume);
     aggregateVolume(buffers.volume, buffers.forest.weights, penalties, buffers.volumeScanlines, matched.winner);
 }
@@ -179,7 +188,8 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
             predictWindows(prediction, disparities, matched.windowBuffers, matched.windows);
         });
         clock.run("cost aggregation", [&] {
-            const ScanlinePenalties penalties = { p.P1, p.P2, pass == 0 ? 1 : 2 };
+            const int slope = in.isFinest() && !in.alignment.isNoisy ? finestSlope : usualSlope;
+            const ScanlinePenalties penalties = { p.P1, p.P2, slope, pass == 0 ? 1 : 2 };
             // The direction from below costs half as much as the others together: where it is cheap, or worth it
             const bool hasFromBelow = !in.isFinest() || pass > 0;
             aggregateScanlines(matched.census, in.images.left, disparities, largestDisparity(in), matched.windows,

@@ -17,6 +17,7 @@ struct ScanlinePenalties
 {
     int small, large; // for a step of one disparity and for a larger one between neighbours of one grey level,
                       // 0..largest
+    int edgeSlope;    // halves of a bit by which large falls per grey level between them, >= 0
     int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..largestPrior
     enum
     {
@@ -101,7 +102,7 @@ I being grey levels, here whole ones, and predicted the disparity that the candi
 
 With L(p, d) of a direction and q the pixel before p,
 L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
-large(p, q) = max(min(small, large), large - floor(3 * |I(p) - I(q)| / 2)),
+large(p, q) = max(min(small, large), large - floor(edgeSlope * |I(p) - I(q)| / 2)),
 where candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d
 in the window of p: those that p does not have are left out, and the last one of its first run and the first one of the
 second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less its own

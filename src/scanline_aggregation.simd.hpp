@@ -149,8 +149,9 @@ private:
     void weighEdges(const ushort* row, const ushort* next, uchar* edges) const
     {
         const int large = p_.penalties.large, least = std::min(p_.penalties.small, large), last = width_ - 1;
+        const int slope = p_.penalties.edgeSlope;
         const auto penalty = [&](int p, int q) {
-            return (uchar)std::max(large - std::abs(p - q) * 3 / (2 * greyScale), least);
+            return (uchar)std::max(large - std::abs(p - q) * slope / (2 * greyScale), least);
         };
         HDP_VECTORIZED for (int x = 0; x < last; ++x)
         {

@@ -675,7 +675,7 @@ public:
               const hdp::ScanlinePenalties& penalties, bool hasFromBelow)
         : left_(left), right_(right), census_(left, right, blockSize), size_(left.size()),
           numDisparities_(numDisparities), largest_(largest), windows_(windows), small_(penalties.small),
-          large_(penalties.large), prior_(penalties.prior), hasFromBelow_(hasFromBelow)
+          large_(penalties.large), edgeSlope_(penalties.edgeSlope), prior_(penalties.prior), hasFromBelow_(hasFromBelow)
     {
     }
 
@@ -754,7 +754,7 @@ private:
         const std::vector<int> theirs = candidates(q);
         const int m = *std::min_element(before.begin(), before.end());
         const int contrast = std::abs(left_.at<ushort>(p) - left_.at<ushort>(q)); // in quarters of levels
-        const int large = std::max(std::min(small_, large_), large_ - (int)std::floor(1.5 * contrast / 4));
+        const int large = std::max(std::min(small_, large_), large_ - (int)std::floor(edgeSlope_ * contrast / 8.));
         const auto costBefore = [&](int d) {
             const size_t i = (size_t)(std::find(theirs.begin(), theirs.end(), d) - theirs.begin());
             return i < theirs.size() ? before[i] : m + large;
@@ -796,7 +796,7 @@ private:
     Size size_;
     int numDisparities_, largest_;
     Mat windows_;
-    int small_, large_, prior_;
+    int small_, large_, edgeSlope_, prior_;
     const bool hasFromBelow_;
 };
 

@@ -96,7 +96,7 @@ Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, bool 
     return Layer::beside(disparity, residual);
 }
 
-const hdp::ScanlinePenalties usualPenalties = { 18, 60, 1 };
+const hdp::ScanlinePenalties usualPenalties = { 18, 60, 3, 1 };
 
 void expectFormula(const Layer& layer, const hdp::ScanlinePenalties& penalties, bool hasFromBelow,
                    hdp::ScanlineBuffers& buffers)
@@ -140,8 +140,8 @@ TEST_P(HDPStereo_ScanlineAggregation, any_penalties)
 {
     RNG rng(43);
     hdp::ScanlineBuffers buffers;
-    const hdp::ScanlinePenalties penalties[] = { { 0, 0, 1 },  { 0, 100, 2 }, { 100, 100, 4 },
-                                                 { 5, 30, 2 }, { 1, 2, 3 },   { 60, 20, 1 } };
+    const hdp::ScanlinePenalties penalties[] = { { 0, 0, 3, 1 },  { 0, 100, 5, 2 }, { 100, 100, 8, 4 },
+                                                 { 5, 30, 0, 2 }, { 1, 2, 3, 3 },   { 60, 20, 4, 1 } };
     for (int numDisparities : { 3, 14, 33 })
     {
         const Layer layer(rng, Size(61, 38), numDisparities, GetParam());
@@ -149,8 +149,8 @@ TEST_P(HDPStereo_ScanlineAggregation, any_penalties)
         for (const hdp::ScanlinePenalties& p : penalties)
         {
             hasFromBelow = !hasFromBelow;
-            SCOPED_TRACE(testing::Message()
-                         << numDisparities << " disparities, " << p.small << ", " << p.large << ", " << p.prior);
+            SCOPED_TRACE(testing::Message() << numDisparities << " disparities, " << p.small << ", " << p.large << ", "
+                                            << p.edgeSlope << ", " << p.prior);
             expectFormula(layer, p, hasFromBelow, buffers);
         }
     }
