@@ -40,31 +40,10 @@ public:
         const PairSettings settings = resolve(p_, left);
         clock_.restart();
 
-        std::vector<LayerImages> images;
-        clock_.run("image pyramid", [&] {
-            buildPairPyramids(left, right, p_.minDisparity, settings.extension, settings.layers,
-                              p_.matchingCost == COST_CENSUS, pyramids_, images);
-        });
-
-        if (p_.maxRowOffset > 0 || p_.useLightAlignment || p_.noiseThreshold > 0)
-            clock_.run("alignment", [&] {
-                const AlignmentSearch search = { p_.numDisparities, p_.maxRowOffset, p_.useLightAlignment,
-                                                 p_.noiseThreshold, settings.finestLayer };
-                alignPair(search, alignmentBuffers_, images, result_.alignment);
-            });
-
-        if (p_.useTemporalPrediction)
-            clock_.run("temporal prediction", [&] { follow(images[settings.finestLayer].left, settings.finestLayer); });
-        else
-            temporal_ = TemporalState();
-
-        layers_.resize(settings.layers);
-        for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
+        if (!matchPair(left, right, settings))
         {
-            const MatchedLayer* const upper = layer + 1 < settings.layers ? &layers_[layer + 1] : nullptr;
-            TemporalState* const temporal = p_.useTemporalPrediction ? &temporal_ : nullptr;
-            const LayerInput input = { layer, images[layer], upper, p_, settings, result_.alignment, temporal };
-            matchLayer(input, buffers_, clock_, layers_[layer]);
+            temporal_.clear();
+            matchPair(left, right, settings);
         }
 
         disparityArray.create(left.size(), depth);
@@ -249,6 +228,40 @@ private:
         if (layer < 0)
             CV_Error(Error::StsOutOfRange, format("layer must be >= 0, not %d", layer));
         return isMatched() && layer >= result_.settings.finestLayer && layer < result_.settings.layers;
+    }
+
+    //! From the images to the disparities of the finest layer. Returns false if the pair was matched as the next one of a
+    //! video, but contradicts most of what the last one predicts.
+    bool matchPair(const Mat& left, const Mat& right, const PairSettings& settings)
+    {
+        std::vector<LayerImages> images;
+        clock_.run("image pyramid", [&] {
+            buildPairPyramids(left, right, p_.minDisparity, settings.extension, settings.layers,
+                              p_.matchingCost == COST_CENSUS, pyramids_, images);
+        });
+
+        if (p_.maxRowOffset > 0 || p_.useLightAlignment || p_.noiseThreshold > 0)
+            clock_.run("alignment", [&] {
+                const AlignmentSearch search = { p_.numDisparities, p_.maxRowOffset, p_.useLightAlignment,
+                                                 p_.noiseThreshold, settings.finestLayer };
+                alignPair(search, alignmentBuffers_, images, result_.alignment);
+            });
+
+        if (p_.useTemporalPrediction)
+            clock_.run("temporal prediction", [&] { follow(images[settings.finestLayer].left, settings.finestLayer); });
+        else
+            temporal_ = TemporalState();
+        const int age = temporal_.age;
+
+        layers_.resize(settings.layers);
+        for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
+        {
+            const MatchedLayer* const upper = layer + 1 < settings.layers ? &layers_[layer + 1] : nullptr;
+            TemporalState* const temporal = p_.useTemporalPrediction ? &temporal_ : nullptr;
+            const LayerInput input = { layer, images[layer], upper, p_, settings, result_.alignment, temporal };
+            matchLayer(input, buffers_, clock_, layers_[layer]);
+        }
+        return temporal_.age == age;
     }
 
     //! What a frame has to do with the one before

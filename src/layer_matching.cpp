@@ -53,6 +53,10 @@ int largestDisparity(const LayerInput& in) { return hdp::largestDisparity(in.par
 //! Of the census. Less is as often noise as texture; on coarse layers, the rounding of the image and shading.
 int censusTolerance(const LayerInput& in)
 {
+    // Faint texture is worth more than noise costs if the noise of several frames averages out. Where nothing moves, the
+    // disparities of the last frame are kept anyway.
+    if (in.temporal && in.temporal->age > 0 && !in.temporal->motion.isStill && in.layer < coarseLayer)
+        return 0;
     const int tolerance = cvRound(toleratedNoise * greyScale * in.alignment.noise.ofLayer(in.layer));
     return std::min(std::max(tolerance, (int)(in.layer >= coarseLayer)), CensusCost::mostTolerance + 0);
 }

@@ -213,13 +213,13 @@ void takeMovedCells(const TemporalState& s, int y, std::vector<int>& finer)
     dispatchChange(s.backward.change(), y, V::cell, s.sources.cols, finer.data());
 }
 
-//! Adds what the pixels of a cell tell.
+//! Adds what two pixels of a cell tell, those on its diagonal.
 void compareCell(const CensusCost& cost, Point cell, const Mat& measured, const Mat& last, int moved, int sources,
                  int offset, Vec4s& evidence)
 {
-    for (int i = 0; i < V::cell * V::cell; ++i)
+    for (int i = 0; i < V::cell; ++i)
     {
-        const Point pixel(V::cell * cell.x + i % V::cell, V::cell * cell.y + i / V::cell);
+        const Point pixel(V::cell * cell.x + i, V::cell * cell.y + i);
         const int here = costOf(cost, pixel, measured.at<ushort>(pixel));
         if (sources & SAME_PLACE)
         {
@@ -277,9 +277,9 @@ TemporalChoice chooseCell(const short* sums, int sources, bool isStill)
         return hasUnmoved && 100 * unmoved <= T::keptShare * sums[SCALE_UNMOVED] ? UNMOVED : MEASURED;
     const int least = hasMoved ? std::min(moved, 0) : 0;
     const int scale = std::max(sums[SCALE_UNMOVED], sums[SCALE_MOVED]);
-    if (hasUnmoved && 100 * (unmoved - least) <= T::unmovedShare * scale)
+    if (hasUnmoved && 100 * (unmoved - least) <= T::movedShare * scale)
         return UNMOVED;
-    return hasMoved && 100 * moved <= T::keptShare * sums[SCALE_MOVED] ? MOVED : MEASURED;
+    return hasMoved && 100 * moved <= T::movedShare * sums[SCALE_MOVED] ? MOVED : MEASURED;
 }
 
 //! Chooses by the sums over a window around each cell; beside the image there is no evidence.

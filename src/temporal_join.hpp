@@ -19,11 +19,11 @@ struct TemporalJoin
         window = 7,        // side of the square that costs are compared over, in cells
         sameDisparity = 1, // in pixels: costs of disparities no farther apart are not compared
         costOffset = 6,    // in bits of a census of 24
-        keptShare = 26, // percent of the measured disparity's cost, and costOffset, by which the last frame's may cost
-        unmovedShare = 33,   // more; if the camera moved, that at the same place
-        tolerance = 4,       // between disparities that agree, in pixels of the image
-        maxStep = 1,         // towards the measured disparity, before it is divided by the weight, in pixels
-        maxCount = 4,        // frames that a disparity may stand for
+        keptShare = 26,  // percent of the measured disparity's cost, and costOffset, by which the last frame's may cost
+        movedShare = 36, // more; the same if the camera moved
+        tolerance = 4,   // between disparities that agree, in pixels of the image
+        maxStep = 1,     // towards the measured disparity, before it is divided by the weight, in pixels
+        maxCount = 4,    // frames that a disparity may stand for
         maxUnmovedCount = 2, // and for its weight, if the camera moved: a disparity at the same place,
         maxMovedCount = 1,   // and one where the motion leads
         stillness = 5,       // halves of a grey level by which a cell that stands still changes at most
