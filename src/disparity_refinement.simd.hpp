@@ -145,7 +145,8 @@ int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int wi
 }
 
 //! Continues the surface that begins at this column to the left border, half as steep as it is: most surfaces are bent.
-void continueSurface(ushort* disparity, const uchar* shown, int begin, int width)
+//! largest: disparity of the row.
+void continueSurface(ushort* disparity, const uchar* shown, int begin, int width, int largest)
 {
     const int least = 8, most = 32; // columns, as many as are filled, that tell the slope
     const int last = std::min(width, begin + std::min(std::max(begin, least + 0), most + 0));
@@ -158,8 +159,6 @@ void continueSurface(ushort* disparity, const uchar* shown, int begin, int width
     int rise = 0; // between the halves, times half
     for (int x = begin; x < begin + half; ++x)
         rise += disparity[x + half] - disparity[x];
-    int largest = 0;
-    HDP_VECTORIZED for (int x = 0; x < width; ++x) largest = std::max(largest, (int)disparity[x]);
     const int first = disparity[begin], scale = 2 * half * half;
     for (int x = 0; x < begin; ++x)
     {
@@ -176,11 +175,12 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int bl
     int* columns = scratch.columns.data();
     uchar *visible = scratch.visible.data(), *shown = scratch.shown.data();
     std::fill(there, there + width + 1, UINT_MAX);
-    int reach = 0, hidingReach = 0;
+    int reach = 0, hidingReach = 0, largest = 0;
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const int column = std::max(x + 1 - wholeDisparity(disparity[x]), 0);
         columns[x] = column;
+        largest = std::max(largest, (int)disparity[x]);
         reach = std::max(reach, column <= nearBorder ? x + 1 : 0);
         hidingReach = std::max(hidingReach, 8 * (column - blank) <= 3 * x ? x + 1 : 0);
         keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
@@ -202,7 +202,7 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int bl
     {
         const int end = findByte(shown, begin, width, 1);
         if (begin == 0 && end < width)
-            continueSurface(disparity, shown, end, width);
+            continueSurface(disparity, shown, end, width, largest);
         else if (begin > 0)
             std::fill(disparity + begin, disparity + end,
                       std::min(disparity[begin - 1], disparity[end < width ? end : begin - 1]));

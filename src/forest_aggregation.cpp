@@ -45,6 +45,18 @@ int countLanes(int candidates, int treeSize)
     return lanes;
 }
 
+//! Calls take(run, lanes) for runs of candidates that are in memory at once.
+template <typename Take> void forEachRun(const Range& candidates, int treeSize, const Take& take)
+{
+    for (int first = candidates.start; first < candidates.end;)
+    {
+        const int lanes = countLanes(candidates.end - first, treeSize);
+        const Range run(first, std::min(first + lanes, candidates.end));
+        take(run, lanes);
+        first = run.end;
+    }
+}
+
 //! Memory for the costs of a run
 float* provideCosts(int size, int lanes, std::vector<float>& costs)
 {
@@ -109,13 +121,9 @@ struct Aggregation
     {
         if (winners.size() < (size_t)size)
             winners.resize(size);
-        for (int first = candidates.start; first < candidates.end;)
-        {
-            const int lanes = countLanes(candidates.end - first, size);
-            const Range run(first, std::min(first + lanes, candidates.end));
-            takeRun(walk, size, problem, similarity, run, lanes, first > candidates.start, costs, winners.data());
-            first = run.end;
-        }
+        forEachRun(candidates, size, [&](const Range& run, int lanes) {
+            takeRun(walk, size, problem, similarity, run, lanes, run.start > candidates.start, costs, winners.data());
+        });
     }
 
     void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
@@ -273,14 +281,9 @@ struct MeanAggregation
         if (tree.interval.empty())
             return;
         findFactors(scratch.walk, tree.size, scratch.factors);
-        const int end = tree.interval.last + 1;
-        for (int first = tree.interval.first; first < end;)
-        {
-            const int lanes = countLanes(end - first, tree.size);
-            const Range run(first, std::min(first + lanes, end));
+        forEachRun(Range(tree.interval.first, tree.interval.last + 1), tree.size, [&](const Range& run, int lanes) {
             takeMeans(scratch.walk, tree.size, scratch.factors, run, lanes, scratch.costs);
-            first = run.end;
-        }
+        });
     }
 
     void processLarge(const DisparityTree& tree, AggregationBuffers& buffers) const
