@@ -28,7 +28,7 @@ const int coarseLayer = 2;
 const double meanGamma = 0.2;
 
 // Their large penalty, relative to P2, and its gamma, relative to that of the trees
-const double meanP2 = 1.2;
+const double meanP2 = 1.3;
 const double edgeGamma = 0.7;
 
 // By how much scanlines weaken the large penalty at edges: most on the finest layer, where the edges are those of

@@ -312,7 +312,7 @@ public:
     HDPTreeMatcher::AGGREGATION_TREE_SCANLINES (PRESET_TREE): the costs become weighted means over each pixel's
     disparity tree, of its few candidates, with a fifth of \f$\gamma\f$. Over these, semi-global matching
     @cite Hirschmuller2008SGM from the left, from the right, from above and from below: trees carry faint texture to
-    where there is none, scanlines follow slanted surfaces. P1 is half as large here; P2 is 1.2 times
+    where there is none, scanlines follow slanted surfaces. P1 is half as large here; P2 is 1.3 times
     as large, at most 100, and multiplied by the similarity of the two neighbours, see setGamma(), with 0.7
     \f$\gamma\f$, but never becomes less than P1. It takes 3 bytes per candidate, and 16 candidates or more per pixel.
 
