@@ -20,7 +20,7 @@ struct TemporalJoin
         sameDisparity = 1, // in pixels: costs of disparities no farther apart are not compared
         costOffset = 6,    // in bits of a census of 24
         keptShare = 26,  // percent of the measured disparity's cost, and costOffset, by which the last frame's may cost
-        movedShare = 36, // more; the same if the camera moved
+        movedShare = 33, // more; the same if the camera moved
         tolerance = 4,   // between disparities that agree, in pixels of the image
         maxStep = 1,     // towards the measured disparity, before it is divided by the weight, in pixels
         maxCount = 4,    // frames that a disparity may stand for
