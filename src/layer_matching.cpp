@@ -31,8 +31,7 @@ const double meanGamma = 0.2;
 const double meanP2 = 1.3;
 const double edgeGamma = 0.7;
 
-// By how much scanlines weaken the large penalty at edges: most on the finest layer, where the edges are those of
-// surfaces, as long as they are not those of the noise
+// ScanlinePenalties::edgeSlope: on the finest layer the edges are those of surfaces, unless they are those of the noise.
 const int finestSlope = 5, usualSlope = 3;
 
 // Of the non-local refinement: a stable disparity's largest difference in the left-right check, and gamma, relative to
