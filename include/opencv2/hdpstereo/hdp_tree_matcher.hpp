@@ -312,9 +312,9 @@ public:
     HDPTreeMatcher::AGGREGATION_TREE_SCANLINES (PRESET_TREE): the costs become weighted means over each pixel's
     disparity tree, of its few candidates, with a fifth of \f$\gamma\f$. Over these, semi-global matching
     @cite Hirschmuller2008SGM from the left, from the right, from above and from below: trees carry faint texture to
-    where there is none, scanlines follow slanted surfaces. P1 is half as large here; P2 is 1.3 times
-    as large, at most 100, and multiplied by the similarity of the two neighbours, see setGamma(), with 0.7
-    \f$\gamma\f$, but never becomes less than P1. It takes 3 bytes per candidate, and 16 candidates or more per pixel.
+    where there is none, scanlines follow slanted surfaces. P1 is half as large here; P2 is 1.3 times as large, at most
+    100, and multiplied by the similarity of the two neighbours, see setGamma(), with 0.7 \f$\gamma\f$, but never
+    becomes less than P1. It takes 3 bytes per candidate, and 16 candidates or more per pixel.
 
     HDPTreeMatcher::AGGREGATION_SCANLINES (the others): semi-global matching of the costs themselves, from the left,
     from the right and from above, in the layers before the finest one and in later passes from below, too, over 16
@@ -343,8 +343,9 @@ public:
 
     /** @brief Penalty for a larger step between neighbours on a scanline.
     @param P2 In bits of the census, and not in the unit of cv::StereoSGBM, 0..100; 65 by default. It is for neighbours
-    of one grey level; others cost 1.5 less for each level between them, 2.5 less on the finest layer unless the pair
-    is noisy, see setNoiseThreshold(), as surfaces end where the image has an edge, but not less than P1. Without effect with HDPTreeMatcher::AGGREGATION_TREES. */
+    of one grey level; others cost 1.5 less for each level between them, 2.5 less on the finest layer unless the pair is
+    noisy, see setNoiseThreshold(), as surfaces end where the image has an edge, but not less than P1. Without effect
+    with HDPTreeMatcher::AGGREGATION_TREES. */
     CV_WRAP virtual void setP2(int P2) = 0;
     /** @copybrief setP2 @sa setP2 */
     CV_WRAP virtual int getP2() const = 0;
