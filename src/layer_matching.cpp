@@ -11,6 +11,7 @@
 #include "image_pyramid.hpp"
 #include "nonlocal_refinement.hpp"
 #include "sparse_matches.hpp"
+#include "tree_planes.hpp"
 
 namespace cv {
 namespace stereo {
@@ -140,7 +141,10 @@ void aggregateTreeScanlines(const LayerInput& in, LayerBuffers& buffers, Matched
     const int large = std::min(cvRound(scale * meanP2 * p.P2), +VolumePenalties::largest);
     const VolumePenalties penalties = { scale * p.P1 / 2, large, p.gamma * edgeGamma }; // means of costs are smoother
     aggregateMeans(buffers.forest, matched.cost(), p.gamma * meanGamma, buffers.aggregation, buffers.volume);
-    aggregateVolume(buffers.volume, buffers.forest.weights, penalties, buffers.volumeScanlines, matched.winner);
+    const Mat& weights = buffers.forest.weights;
+    aggregateVolume(buffers.volume, weights, penalties, buffers.volumeScanlines, matched.winner);
+    if (in.isTop() && preferTreePlanes(buffers.forest, matched.winner, buffers.volume) > 0)
+        aggregateVolume(buffers.volume, weights, penalties, buffers.volumeScanlines, matched.winner);
 }
 
 //! Sections 3.1 to 3.3

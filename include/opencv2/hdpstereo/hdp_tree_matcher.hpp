@@ -314,7 +314,10 @@ public:
     @cite Hirschmuller2008SGM from the left, from the right, from above and from below: trees carry faint texture to
     where there is none, scanlines follow slanted surfaces. P1 is half as large here; P2 is 1.3 times as large, at most
     100, and multiplied by the similarity of the two neighbours, see setGamma(), with 0.7 \f$\gamma\f$, but never
-    becomes less than P1. It takes 3 bytes per candidate, and 16 candidates or more per pixel.
+    becomes less than P1. It takes 3 bytes per candidate, and 16 candidates or more per pixel. On the top layer, if the
+    disparities of a large tree lie on a plane, others cost up to 1.25 bits more unless the pixel's costs contradict, and
+    the scanlines run once more: bare surfaces end where their colour ends. Segment trees are such trees; a minimum
+    spanning tree of the whole image is not.
 
     HDPTreeMatcher::AGGREGATION_SCANLINES (the others): semi-global matching of the costs themselves, from the left,
     from the right and from above, in the layers before the finest one and in later passes from below, too, over 16

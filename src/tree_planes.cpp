@@ -1,0 +1,208 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "tree_planes.hpp"
+
+#include "disparity_units.hpp"
+#include "tree_walk.hpp"
+#include "vectorized.hpp"
+#include <numeric>
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+namespace {
+
+const int minPixels = 400;      // of a tree that gets a plane
+const int samples = 300;        // of its pixels, about
+const int triples = 60;         // planes that are tried
+const double leastBase = 0.05;  // area of the parallelogram of three pixels, as a share of the tree's
+const double steepest = 0.5;    // slope, in disparities per pixel
+const int fits = 4;             // to the disparities near the plane
+const double fitDistance = 1.5; // of those
+const double onDistance = 1;    // of disparities that lie on the plane
+const double leastShare = 0.4;  // of the disparities that lie on it
+const double mostRise = 4.5;    // of the mean cost, in units of the volume
+const double leastContrast = 1; // by which the mean of the candidates' costs exceeds that of the disparities
+const int largestRise = 64;     // of a pixel's, for pixels of other surfaces to count as such
+
+// In units of the volume, that of a disparity off the plane, which grows by the volume's scale per pixel; and the cost of
+// a pixel's disparity on the plane above its lowest one, from which on the pixel belongs to another surface
+const int largestPenalty = 10;
+const int mostContradiction = 24;
+
+//! d = coefficients . (1, x, y)
+typedef Vec3d Plane;
+
+Vec3d basisOf(int pixel, int width) { return Vec3d(1, pixel % width, pixel / width); }
+
+//! The pixels of a tree that its plane is looked for with
+class TreeSamples
+{
+public:
+    TreeSamples(const TreeWalk& walk, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
+        : interval_(tree.interval), volume_(volume), size_(tree.size)
+    {
+        const ushort* const winners = disparity.ptr<ushort>();
+        const int step = std::max(tree.size / samples, 1);
+        for (int i = 0; i < tree.size; i += step)
+        {
+            const int pixel = walk.pixels[i];
+            const double winner = winners[pixel] / (double)subpixelScale;
+            const Sample sample = { pixel, basisOf(pixel, volume.size.width), winner, cost(pixel, winner) };
+            samples_.push_back(sample);
+        }
+    }
+
+    //! Whether the costs tell anything
+    bool haveContrast() const
+    {
+        const int candidates = interval_.size();
+        int64 sum = 0; // of the differences from the winner's cost
+        for (const Sample& sample : samples_)
+        {
+            const uchar* const costs = &volume_.costs[volume_.candidates[sample.pixel].start()];
+            sum += std::accumulate(costs, costs + candidates, 0) - candidates * sample.cost;
+        }
+        return sum >= leastContrast * candidates * samples_.size();
+    }
+
+    //! The plane of least rise among those through three samples, fitted to the disparities near it
+    Plane findPlane() const
+    {
+        RNG rng(samples_.size());
+        Plane best(samples_[0].disparity, 0, 0);
+        double least = rise(best);
+        for (int i = 0; i < triples; ++i)
+        {
+            const Sample &a = any(rng), &b = any(rng), &c = any(rng);
+            Plane plane;
+            if (!findThrough(a, b, c, plane))
+                continue;
+            const double risen = rise(plane);
+            if (risen < least)
+            {
+                least = risen;
+                best = plane;
+            }
+        }
+        for (int i = 0; i < fits; ++i)
+            best = fitted(best);
+        return best;
+    }
+
+    //! By how much the plane raises the mean of the costs
+    double rise(const Plane& plane) const
+    {
+        int sum = 0;
+        for (const Sample& sample : samples_)
+            sum += std::min(cost(sample.pixel, plane.dot(sample.basis)) - sample.cost, +largestRise);
+        return sum / (double)samples_.size();
+    }
+
+    double shareOn(const Plane& plane) const
+    {
+        int count = 0;
+        for (const Sample& sample : samples_)
+            count += std::abs(plane.dot(sample.basis) - sample.disparity) <= onDistance;
+        return count / (double)samples_.size();
+    }
+
+private:
+    struct Sample
+    {
+        int pixel;
+        Vec3d basis;
+        double disparity;
+        int cost; // of the disparity
+    };
+
+    //! The least squares of the disparities near a plane
+    Plane fitted(const Plane& plane) const
+    {
+        Matx33d squares = Matx33d::eye() * 1e-6; // for pixels of one line
+        Vec3d sum = squares * plane;
+        for (const Sample& sample : samples_)
+            if (std::abs(plane.dot(sample.basis) - sample.disparity) <= fitDistance)
+            {
+                squares += sample.basis * sample.basis.t();
+                sum += sample.basis * sample.disparity;
+            }
+        return squares.solve(sum, DECOMP_CHOLESKY);
+    }
+
+    const Sample& any(RNG& rng) const { return samples_[rng.uniform(0, (int)samples_.size())]; }
+
+    bool findThrough(const Sample& a, const Sample& b, const Sample& c, Plane& plane) const
+    {
+        const Vec3d p = b.basis - a.basis, q = c.basis - a.basis;
+        const double area = p[1] * q[2] - q[1] * p[2], rise = b.disparity - a.disparity,
+                     secondRise = c.disparity - a.disparity;
+        if (std::abs(area) < leastBase * size_)
+            return false;
+        plane[1] = (rise * q[2] - secondRise * p[2]) / area;
+        plane[2] = (secondRise * p[1] - rise * q[1]) / area;
+        plane[0] = a.disparity - plane[1] * a.basis[1] - plane[2] * a.basis[2];
+        return std::abs(plane[1]) <= steepest && std::abs(plane[2]) <= steepest;
+    }
+
+    int cost(int pixel, double disparity) const
+    {
+        const int first = interval_.first, last = interval_.last;
+        const int candidate = cvRound(std::min(std::max(disparity, (double)first), (double)last));
+        return volume_.costs[volume_.candidates[pixel].start() + candidate - first];
+    }
+
+    const DisparityInterval interval_;
+    const CostVolume& volume_;
+    const int size_; // of the tree
+    std::vector<Sample> samples_;
+};
+
+void prefer(const Plane& plane, const TreeWalk& walk, const DisparityTree& tree, CostVolume& volume)
+{
+    const int scale = CostVolume::scale, first = scale * tree.interval.first, count = tree.interval.size();
+    for (int i = 0; i < tree.size; ++i)
+    {
+        const int pixel = walk.pixels[i], d = cvRound(scale * plane.dot(basisOf(pixel, volume.size.width))) - first;
+        uchar* const costs = &volume.costs[volume.candidates[pixel].start()];
+        const int onPlane = std::min(std::max((d + scale / 2) / scale, 0), count - 1);
+        if (costs[onPlane] - *std::min_element(costs, costs + count) > mostContradiction)
+            continue;
+        HDP_VECTORIZED for (int k = 0; k < count; ++k) costs[k] =
+            (uchar)std::min(costs[k] + std::min(std::abs(scale * k - d), largestPenalty), 255);
+    }
+}
+
+} // namespace
+
+int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVolume& volume)
+{
+    std::vector<const DisparityTree*> trees;
+    for (const DisparityTree& tree : forest.trees)
+        if (tree.size >= minPixels && !tree.interval.empty())
+            trees.push_back(&tree);
+    std::vector<uchar> hasPlane(trees.size());
+    parallel_for_(Range(0, (int)trees.size()), [&](const Range& range) {
+        TreeWalk walk;
+        for (int t = range.start; t < range.end; ++t)
+        {
+            const DisparityTree& tree = *trees[t];
+            walkTree(forest, tree, walk);
+            const TreeSamples of(walk, tree, disparity, volume);
+            if (!of.haveContrast())
+                continue;
+            const Plane plane = of.findPlane();
+            hasPlane[t] = of.rise(plane) < mostRise && of.shareOn(plane) >= leastShare;
+            if (hasPlane[t])
+                prefer(plane, walk, tree, volume);
+        }
+    });
+    return (int)std::count(hasPlane.begin(), hasPlane.end(), 1);
+}
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv

@@ -1,0 +1,27 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_TREE_PLANES_HPP
+#define OPENCV_HDPSTEREO_TREE_PLANES_HPP
+
+#include "cost_volume.hpp"
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+/** Bare surfaces. A tree of pixels of similar colour is often one surface, and that is nearly a plane: where the costs of
+a pixel tell little, those of its whole tree do. The plane of a tree is one through three of its disparities, that which
+raises the costs least above those of the disparities, fitted to those near it. If it raises them by little and many of
+the disparities lie on it, other disparities get higher costs, except those of pixels whose costs contradict the plane.
+@param forest The forest that the volume belongs to.
+@param disparity CV_16UC1, the winners of the volume.
+@param volume The costs, to which those are added.
+@return Number of trees that have a plane. */
+CV_EXPORTS int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVolume& volume);
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
+
+#endif
