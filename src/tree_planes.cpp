@@ -28,8 +28,8 @@ const double mostRise = 4.5;    // of the mean cost, in units of the volume
 const double leastContrast = 1; // by which the mean of the candidates' costs exceeds that of the disparities
 const int largestRise = 64;     // of a pixel's, for pixels of other surfaces to count as such
 
-// In units of the volume: the most that a disparity off the plane costs, which grows by the volume's scale per pixel; and
-// by how much the cost on the plane may exceed the pixel's lowest one. Beyond, the pixel is one of another surface.
+// In units of the volume: the most that a disparity off the plane costs, which grows by the volume's scale per pixel;
+// and by how much the cost on the plane may exceed the pixel's lowest one. Beyond, the pixel is one of another surface.
 const int largestPenalty = 10;
 const int mostContradiction = 24;
 
