@@ -20,6 +20,7 @@ const int samples = 300;        // of its pixels, about
 const int triples = 60;         // planes that are tried
 const double leastBase = 0.05;  // area of the parallelogram of three pixels, as a share of the tree's
 const double steepest = 0.5;    // slope, in disparities per pixel
+const double tiltCost = 0.2;    // of a disparity between the ends of a plane: it is the flatter one of two
 const int fits = 4;             // to the disparities near the plane
 const double fitDistance = 1.5; // of those
 const double onDistance = 1;    // of disparities that lie on the plane
@@ -43,7 +44,7 @@ class TreeSamples
 {
 public:
     TreeSamples(const TreeWalk& walk, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
-        : interval_(tree.interval), volume_(volume), size_(tree.size)
+        : interval_(tree.interval), volume_(volume), size_(tree.size), begin_(0, volume.size.width, volume.size.height)
     {
         const ushort* const winners = disparity.ptr<ushort>();
         const int step = std::max(tree.size / samples, 1);
@@ -53,6 +54,11 @@ public:
             const double winner = winners[pixel] / (double)subpixelScale;
             const Sample sample = { pixel, basisOf(pixel, volume.size.width), winner, cost(pixel, winner) };
             samples_.push_back(sample);
+            for (int term = 1; term < 3; ++term)
+            {
+                begin_[term] = std::min(begin_[term], sample.basis[term]);
+                end_[term] = std::max(end_[term], sample.basis[term]);
+            }
         }
     }
 
@@ -74,17 +80,17 @@ public:
     {
         RNG rng(samples_.size());
         Plane best(samples_[0].disparity, 0, 0);
-        double least = rise(best);
+        double least = score(best);
         for (int i = 0; i < triples; ++i)
         {
             const Sample &a = any(rng), &b = any(rng), &c = any(rng);
             Plane plane;
             if (!findThrough(a, b, c, plane))
                 continue;
-            const double risen = rise(plane);
-            if (risen < least)
+            const double scored = score(plane);
+            if (scored < least)
             {
-                least = risen;
+                least = scored;
                 best = plane;
             }
         }
@@ -118,6 +124,12 @@ private:
         double disparity;
         int cost; // of the disparity
     };
+
+    double score(const Plane& plane) const
+    {
+        const Vec3d extent = end_ - begin_;
+        return rise(plane) + tiltCost * (std::abs(plane[1]) * extent[1] + std::abs(plane[2]) * extent[2]);
+    }
 
     //! The least squares of the disparities near a plane
     Plane fitted(const Plane& plane) const
@@ -157,7 +169,8 @@ private:
 
     const DisparityInterval interval_;
     const CostVolume& volume_;
-    const int size_; // of the tree
+    const int size_;    // of the tree
+    Vec3d begin_, end_; // of its columns and rows
     std::vector<Sample> samples_;
 };
 
