@@ -20,7 +20,7 @@ const int samples = 300;        // of its pixels, about
 const int triples = 60;         // planes that are tried
 const double leastBase = 0.05;  // area of the parallelogram of three pixels, as a share of the tree's
 const double steepest = 0.5;    // slope, in disparities per pixel
-const double tiltCost = 0.2;    // of a disparity between the ends of a plane: it is the flatter one of two
+const double tiltCost = 0.2;    // per disparity between the ends of the tree: of two planes, the flatter one
 const int fits = 4;             // to the disparities near the plane
 const double fitDistance = 1.5; // of those
 const double onDistance = 1;    // of disparities that lie on the plane
@@ -125,6 +125,7 @@ private:
         int cost; // of the disparity
     };
 
+    //! What the plane costs: its rise, and its tilt over the whole tree
     double score(const Plane& plane) const
     {
         const Vec3d extent = end_ - begin_;
