@@ -295,6 +295,27 @@ CameraMotion scaled(const CameraMotion& motion, double scale)
     return result;
 }
 
+void correctChange(const std::vector<float>& predicted, const std::vector<float>& measured, DisparityChange& change)
+{
+    const double deviation = 0.15;                        // of a measured disparity
+    const FitPrior<2> none = { Vec2d(), Vec2d(1, 0.02) }; // of the offset, and of the factor's difference from 1
+    std::vector<FitSample<2>> samples(predicted.size());
+    for (size_t i = 0; i < samples.size(); ++i)
+    {
+        const FitSample<2> sample = { Vec2d(1, predicted[i] + change.minDisparity), measured[i] - predicted[i],
+                                      deviation };
+        samples[i] = sample;
+    }
+    if (samples.empty())
+        return;
+    const Vec2d fit = fitRobustly(samples, none, Vec2d()).coefficients;
+    const float factor = (float)(1 + fit[1]);
+    change.offset = (float)fit[0];
+    change.ofX *= factor;
+    change.ofY *= factor;
+    change.constant *= factor;
+}
+
 BackwardMotion::BackwardMotion(const CameraMotion& motion, double minDisparity, double largest)
 {
     const Matx44d inverse = motion.forward.inv();
@@ -305,8 +326,10 @@ BackwardMotion::BackwardMotion(const CameraMotion& motion, double minDisparity, 
         y_[i] = (float)ofMap(1, i);
         w_[i] = (float)ofMap(3, i);
     }
-    const DisparityChange change = { (float)inverse(3, 0), (float)inverse(3, 1), (float)inverse(3, 2),
-                                     (float)inverse(3, 3), (float)minDisparity,  (float)largest };
+    const DisparityChange change = {
+        (float)inverse(3, 0), (float)inverse(3, 1), (float)inverse(3, 2), (float)inverse(3, 3), 0.f,
+        (float)minDisparity,  (float)largest
+    };
     change_ = change;
 }
 

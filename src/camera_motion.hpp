@@ -82,10 +82,10 @@ CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size 
 CV_EXPORTS CameraMotion scaled(const CameraMotion& motion, double scale);
 
 //! How the motion of the camera changes the disparity of what is now at (x, y):
-//! before = now / (ofX x + ofY y + ofDisparity now + constant). Disparities are in pixels.
+//! before = d / (ofX x + ofY y + ofDisparity d + constant), d = now - offset. Disparities are in pixels.
 struct DisparityChange
 {
-    float ofX, ofY, ofDisparity, constant;
+    float ofX, ofY, ofDisparity, constant, offset;
     float minDisparity, largest; // of a map, which counts from minDisparity; the next two do as well
 
     CV_ALWAYS_INLINE float ofRow(int y) const { return ofY * y + constant; }
@@ -94,11 +94,19 @@ struct DisparityChange
     {
         const float old = before + minDisparity, w = 1 - ofDisparity * old;
         const float positive = w > 0.1f ? w : 0.1f; // less is at the camera or behind it
-        const float disparity = old * place / positive - minDisparity;
+        const float disparity = old * place / positive + offset - minDisparity;
         const float notNegative = disparity > 0 ? disparity : 0;
         return notNegative < largest ? notNegative : largest;
     }
 };
+
+/** Corrects a change by what was measured: cameras shake against each other, and the motion is an estimate. The
+disparities become factor d + offset, both fitted robustly.
+@param predicted Disparities that DisparityChange::now() gave for pixels.
+@param measured Those of the same pixels now.
+@param change The change; its offset is 0. */
+CV_EXPORTS void correctChange(const std::vector<float>& predicted, const std::vector<float>& measured,
+                              DisparityChange& change);
 
 //! From a pixel of this frame to where it was; disparities count from minDisparity, up to largest, in pixels.
 class CV_EXPORTS BackwardMotion
@@ -117,6 +125,7 @@ public:
     }
 
     const DisparityChange& change() const { return change_; }
+    DisparityChange& change() { return change_; }
 
 private:
     Vec4f x_, y_, w_;

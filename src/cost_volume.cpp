@@ -4,6 +4,7 @@
 #include "precomp.hpp"
 #include "cost_volume.hpp"
 
+#include "vectorized.hpp"
 #include <cstring>
 
 namespace cv {
@@ -49,6 +50,22 @@ void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pi
     else
         for (int i = 0; i < count; ++i, own.firstRow += ownRows)
             candidates[pixels[i]] = own;
+}
+
+void CostVolume::prefer(int pixel, double disparity, int largest)
+{
+    const Candidates& own = candidates[pixel];
+    const int count = own.interval.size(), d = cvRound(scale * disparity) - scale * own.interval.first;
+    if (count <= 0)
+        return;
+    uchar* const raised = &costs[own.start()];
+    const int nearest = std::min(std::max((d + scale / 2) / scale, 0), count - 1);
+    uchar least = raised[nearest];
+    HDP_VECTORIZED for (int k = 0; k < count; ++k) least = std::min(least, raised[k]);
+    if (raised[nearest] - least > mostContradiction)
+        return;
+    HDP_VECTORIZED for (int k = 0; k < count; ++k) raised[k] =
+        (uchar)std::min(raised[k] + std::min(std::abs(scale * k - d), largest), 255);
 }
 
 } // namespace hdp

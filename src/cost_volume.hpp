@@ -15,8 +15,9 @@ struct CV_EXPORTS CostVolume
 {
     enum
     {
-        scale = 8, // of the costs, for their fractions
-        row = 16   // costs that are stored together
+        scale = 8,                    // of the costs, for their fractions
+        row = 16,                     // costs that are stored together
+        mostContradiction = 3 * scale // see prefer()
     };
     struct Candidates // of a pixel
     {
@@ -41,6 +42,12 @@ struct CV_EXPORTS CostVolume
     void create(const DisparityForest& forest);
     //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.
     void place(const DisparityForest& forest, size_t tree, const int* pixels);
+    /** Raises the costs of a pixel's other disparities: by a unit of cost per pixel of distance, up to a limit. If the
+    costs contradict, the one of this disparity exceeding the lowest by more than mostContradiction, they stay.
+    @param pixel y * width + x
+    @param disparity In pixels; one beyond the candidates counts as the nearest of them.
+    @param largest The most that a cost rises by, in units of the volume. */
+    void prefer(int pixel, double disparity, int largest);
 
 private:
     // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in the

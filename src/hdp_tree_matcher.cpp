@@ -271,6 +271,8 @@ private:
         const TemporalLayer layer = { scale, p_.minDisparity / (double)scale,
                                       largestDisparity(p_.numDisparities, finestLayer) };
         followVideo(left, layer, temporal_);
+        if (temporal_.age > 0)
+            findSources(temporal_);
     }
 
     //! Without the columns that are added to the images

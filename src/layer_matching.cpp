@@ -11,6 +11,7 @@
 #include "image_pyramid.hpp"
 #include "nonlocal_refinement.hpp"
 #include "sparse_matches.hpp"
+#include "temporal_prior.hpp"
 #include "tree_planes.hpp"
 
 namespace cv {
@@ -141,6 +142,8 @@ void aggregateTreeScanlines(const LayerInput& in, LayerBuffers& buffers, Matched
     const int large = std::min(cvRound(scale * meanP2 * p.P2), +VolumePenalties::largest);
     const VolumePenalties penalties = { scale * p.P1 / 2, large, p.gamma * edgeGamma }; // means of costs are smoother
     aggregateMeans(buffers.forest, matched.cost(), p.gamma * meanGamma, buffers.aggregation, buffers.volume);
+    if (in.isTop() && in.temporal && in.temporal->age > 1)
+        preferLastFrame(*in.temporal, 1 << (in.layer - in.settings.finestLayer), buffers.volume);
     const Mat& weights = buffers.forest.weights;
     aggregateVolume(buffers.volume, weights, penalties, buffers.volumeScanlines, matched.winner);
     if (in.isTop() && preferTreePlanes(buffers.forest, matched.winner, buffers.volume) > 0)

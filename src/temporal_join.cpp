@@ -7,6 +7,7 @@
 #include "temporal_join.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include <cstring>
+#include <numeric>
 
 namespace cv {
 namespace stereo {
@@ -27,16 +28,11 @@ void dispatchChange(const DisparityChange& change, int y, int step, int count, i
     CV_CPU_DISPATCH(changeDisparities, (change, y, step, count, finer), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-void dispatchCompare(const ushort* measured, const ushort* unmoved, const int* moved, int count, uchar* sources,
-                     uchar* different)
+void dispatchCompare(const ushort* measured, const ushort* unmoved, const int* moved, int count, int farthest,
+                     uchar* sources, uchar* different)
 {
-    CV_CPU_DISPATCH(compareDisparities, (measured, unmoved, moved, count, sources, different),
+    CV_CPU_DISPATCH(compareDisparities, (measured, unmoved, moved, count, farthest, sources, different),
                     CV_CPU_DISPATCH_MODES_ALL);
-}
-
-void dispatchSum(const uchar* const* rows, int radius, int width, ushort* columns, ushort* sums)
-{
-    CV_CPU_DISPATCH(sumSquares, (rows, radius, width, columns, sums), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 void dispatchAdd(const short* evidence, int sign, int length, short* columns)
@@ -55,130 +51,6 @@ void dispatchJoin(const ushort* measured, const TemporalRow& row, int width, con
     CV_CPU_DISPATCH(joinRow, (measured, row, width, rule, disparity, detail), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-//! The median of CV_8UC1
-int medianLevel(const Mat& image)
-{
-    int counts[256] = { 0 };
-    for (int y = 0; y < image.rows; ++y)
-        for (int x = 0; x < image.cols; ++x)
-            ++counts[image.ptr(y)[x]];
-    int level = 0;
-    for (int64 sum = counts[0]; 2 * sum < (int64)image.total(); sum += counts[level])
-        ++level;
-    return level;
-}
-
-//! Rows of an image around one, the nearest ones where there are none
-void rowsAround(const Mat& image, int y, int radius, const uchar** rows)
-{
-    for (int dy = -radius; dy <= radius; ++dy)
-        *rows++ = image.ptr(std::min(std::max(y + dy, 0), image.rows - 1));
-}
-
-//! Sums over the squares around the pixels of a row
-class SquareSums
-{
-public:
-    explicit SquareSums(int width) : columns_(width + 2 * maxRadius), sums_(width) {}
-
-    const ushort* operator()(const Mat& image, int y, int radius)
-    {
-        const uchar* rows[2 * maxRadius + 1];
-        rowsAround(image, y, radius, rows);
-        dispatchSum(rows, radius, image.cols, columns_.data() + maxRadius, sums_.data());
-        return sums_.data();
-    }
-
-private:
-    enum
-    {
-        maxRadius = 2
-    };
-    std::vector<ushort> columns_, sums_;
-};
-
-//! How far each pixel is from the mean around it
-void findContrast(const Mat& image, Mat& contrast)
-{
-    contrast.create(image.size(), CV_8U);
-    parallel_for_(Range(0, image.rows), [&](const Range& range) {
-        SquareSums sumsOf(image.cols);
-        for (int y = range.start; y < range.end; ++y)
-        {
-            const uchar* levels = image.ptr(y);
-            const ushort* sums = sumsOf(image, y, 2);
-            uchar* contrasts = contrast.ptr(y);
-            for (int x = 0; x < image.cols; ++x)
-                contrasts[x] = (uchar)(std::abs(25 * levels[x] - sums[x]) / 25);
-        }
-    });
-}
-
-//! The last frame as this one would show it if nothing moved but the camera: half a cell is the mean of two.
-void warpLastFrame(TemporalState& s)
-{
-    const Mat& before = s.last.grey[0];
-    const Point last(2 * before.cols - 2, 2 * before.rows - 2); // in half cells
-    const int side = V::block / V::cell;                        // of the squares that move together, in cells
-    static_assert(V::cell == 2, "Shifts are in half cells.");
-    s.warped.create(before.size(), CV_8U);
-    parallel_for_(Range(0, before.rows), [&](const Range& range) {
-        for (int y = range.start; y < range.end; ++y)
-        {
-            const Vec2s* shifts = s.shifts.ptr<Vec2s>(y * V::cell / V::block);
-            uchar* warped = s.warped.ptr(y);
-            for (int begin = 0; begin < before.cols; begin += side)
-            {
-                const Vec2s& shift = shifts[begin / side];
-                const int end = std::min(begin + side, before.cols), fromX = 2 * begin + shift[0];
-                const int fromY = std::min(std::max(2 * y + shift[1], 0), last.y);
-                const uchar *above = before.ptr(fromY / 2), *below = before.ptr((fromY + 1) / 2);
-                const bool isInside = fromX >= 0 && fromX + 2 * (end - begin - 1) <= last.x;
-                for (int x = begin; x < end; ++x)
-                {
-                    const int from = fromX + 2 * (x - begin);
-                    const int at = isInside ? from : std::min(std::max(from, 0), last.x);
-                    const int left = at >> 1, right = (at + 1) >> 1;
-                    warped[x] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) >> 2);
-                }
-            }
-        }
-    });
-}
-
-//! What looks different where the motion leads, by more than noise and by about the contrast, is something else.
-void findSources(TemporalState& s)
-{
-    const Mat &before = s.last.grey[0], &now = s.next.grey[0];
-    const bool isStill = s.motion.isStill;
-    if (!isStill)
-        warpLastFrame(s);
-    absdiff(now, isStill ? before : s.warped, s.change);
-    findContrast(now, s.contrast);
-    const int noise = T::leastNoise + T::noiseFactor * medianLevel(s.change);
-    s.sources.create(now.size(), CV_8U);
-    parallel_for_(Range(0, now.rows), [&](const Range& range) {
-        SquareSums changesOf(now.cols), contrastsOf(now.cols), sumsBefore(now.cols), sumsNow(now.cols);
-        for (int y = range.start; y < range.end; ++y)
-        {
-            const ushort *changes = changesOf(s.change, y, 1), *contrasts = contrastsOf(s.contrast, y, 2);
-            uchar* sources = s.sources.ptr(y);
-            for (int x = 0; x < now.cols; ++x)
-                sources[x] = changes[x] <= 9 * noise || 100 * 25 * changes[x] <= T::contrastShare * 9 * contrasts[x];
-            if (isStill)
-                continue; // 1 is SAME_PLACE
-            const ushort *there = sumsBefore(before, y, 1), *here = sumsNow(now, y, 1);
-            const Vec2s* shifts = s.shifts.ptr<Vec2s>(y * V::cell / V::block);
-            for (int x = 0; x < now.cols; ++x)
-            {
-                const bool isSame = std::abs(here[x] - there[x]) <= 9 * T::stillness / 2;
-                const bool isMoved = sources[x] && shifts[x * V::cell / V::block][0] != TemporalState::noShift;
-                sources[x] = (uchar)((isSame ? SAME_PLACE : 0) | (isMoved ? MOVED_PLACE : 0));
-            }
-        }
-    });
-}
-
 //! The cost of a pixel; half of the bits if the right image does not show its match
 int costOf(const CensusCost& cost, const Point& pixel, int disparity)
 {
@@ -190,12 +62,12 @@ int costOf(const CensusCost& cost, const Point& pixel, int disparity)
 struct RowScratch
 {
     explicit RowScratch(int width)
-        : unmoved(width), moved(width), unmovedCounts(width), movedCounts(width), choices(width), disparity(width),
-          detail(width)
+        : unmoved(width), moved(width), unmovedCounts(width), movedCounts(width), choices(width),
+          agrees(width + 2 * T::fringe), disparity(width), detail(width)
     {
     }
     std::vector<int> unmoved, moved; // disparities of the last frame
-    std::vector<uchar> unmovedCounts, movedCounts, choices;
+    std::vector<uchar> unmovedCounts, movedCounts, choices, agrees;
     std::vector<ushort> disparity;
     std::vector<uchar> detail;
 };
@@ -211,6 +83,24 @@ void takeMovedCells(const TemporalState& s, int y, std::vector<int>& finer)
         finer[j] = s.last.disparity.ptr<ushort>(at.y)[at.x] << TemporalFrame::detailBits;
     }
     dispatchChange(s.backward.change(), y, V::cell, s.sources.cols, finer.data());
+}
+
+void correctDrift(const Mat& measured, TemporalState& s)
+{
+    const float unit = 1.f / subpixelScale;
+    std::vector<float> predicted, now;
+    std::vector<int> moved(s.sources.cols);
+    for (int i = 0; i < s.sources.rows; i += T::driftStep)
+    {
+        takeMovedCells(s, i * V::cell, moved);
+        for (int j = 0; j < s.sources.cols; j += T::driftStep)
+            if (s.sources.ptr(i)[j] & MOVED_PLACE)
+            {
+                predicted.push_back(moved[j] / (float)TemporalFrame::scale);
+                now.push_back(measured.ptr<ushort>(i * V::cell)[j * V::cell] * unit);
+            }
+    }
+    correctChange(predicted, now, s.backward.change());
 }
 
 //! Adds what two pixels of a cell tell, those on its diagonal.
@@ -250,7 +140,7 @@ void compareCosts(const CensusCost& cost, const Mat& measured, TemporalState& s)
             if (!s.motion.isStill)
                 takeMovedCells(s, y, scratch.moved);
             dispatchCompare(measured.ptr<ushort>(y), s.last.disparity.ptr<ushort>(y), scratch.moved.data(), cells,
-                            s.sources.ptr(i), different);
+                            TemporalSources::farthest * subpixelScale / s.layer.scale, s.sources.ptr(i), different);
             int count = 0;
             for (int j = 0; j < cells; ++j)
             {
@@ -269,7 +159,8 @@ void compareCosts(const CensusCost& cost, const Mat& measured, TemporalState& s)
     });
 }
 
-TemporalChoice chooseCell(const short* sums, int sources, bool isStill)
+//! movedShare: TemporalJoin's, or wrongShare
+TemporalChoice chooseCell(const short* sums, int sources, bool isStill, int movedShare)
 {
     const int unmoved = sums[COST_UNMOVED], moved = sums[COST_MOVED];
     const bool hasUnmoved = (sources & SAME_PLACE) != 0, hasMoved = (sources & MOVED_PLACE) != 0;
@@ -277,16 +168,19 @@ TemporalChoice chooseCell(const short* sums, int sources, bool isStill)
         return hasUnmoved && 100 * unmoved <= T::keptShare * sums[SCALE_UNMOVED] ? UNMOVED : MEASURED;
     const int least = hasMoved ? std::min(moved, 0) : 0;
     const int scale = std::max(sums[SCALE_UNMOVED], sums[SCALE_MOVED]);
-    if (hasUnmoved && 100 * (unmoved - least) <= T::movedShare * scale)
+    if (hasUnmoved && 100 * (unmoved - least) <= movedShare * scale)
         return UNMOVED;
-    return hasMoved && 100 * moved <= T::movedShare * sums[SCALE_MOVED] ? MOVED : MEASURED;
+    return hasMoved && 100 * moved <= movedShare * sums[SCALE_MOVED] ? MOVED : MEASURED;
 }
 
-//! Chooses by the sums over a window around each cell; beside the image there is no evidence.
-void choose(TemporalState& s)
+/** Chooses by the sums over a window around each cell; beside the image there is no evidence.
+@return Whether much of what could be taken from the last frame is not: its pair was a wrong one, or this one is. */
+bool choose(TemporalState& s)
 {
     const Size cells = s.evidence.size();
     const int radius = T::window / 2, stripeHeight = 32, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
+    const bool isStill = s.motion.isStill, isNew = s.age == 1;
+    std::vector<int> sourceCounts(cells.height), contradicted(cells.height);
     s.choices.create(cells, CV_8U);
     parallel_for_(Range(0, stripes), [&](const Range& range) {
         const Range rows(range.start * stripeHeight, std::min(range.end * stripeHeight, cells.height));
@@ -305,24 +199,18 @@ void choose(TemporalState& s)
             const uchar* sources = s.sources.ptr(y);
             uchar* choices = s.choices.ptr(y);
             for (int x = 0; x < cells.width; ++x)
-                choices[x] = (uchar)chooseCell(&sums[x * EVIDENCE_CHANNELS], sources[x], s.motion.isStill);
+            {
+                const short* const ofCell = &sums[x * EVIDENCE_CHANNELS];
+                const TemporalChoice strict = chooseCell(ofCell, sources[x], isStill, T::wrongShare);
+                sourceCounts[y] += sources[x] != 0;
+                contradicted[y] += sources[x] != 0 && strict == MEASURED;
+                choices[x] = (uchar)(isNew ? strict : chooseCell(ofCell, sources[x], isStill, T::movedShare));
+            }
             add(y - radius, -1);
         }
     });
-}
-
-//! Whether most of what could be taken from the last frame is not: its pair was a wrong one, or this one is.
-bool isContradicted(const TemporalState& s)
-{
-    int64 sources = 0, contradicted = 0;
-    for (int y = 0; y < s.choices.rows; ++y)
-        for (int x = 0; x < s.choices.cols; ++x)
-        {
-            const int hasSource = s.sources.ptr(y)[x] != 0;
-            sources += hasSource;
-            contradicted += hasSource & (s.choices.ptr(y)[x] == MEASURED);
-        }
-    return 2 * contradicted > sources;
+    const int64 all = std::accumulate(sourceCounts.begin(), sourceCounts.end(), (int64)0);
+    return 100 * std::accumulate(contradicted.begin(), contradicted.end(), (int64)0) > T::contradictedShare * all;
 }
 
 //! The pixels of a row come from where the motion leads.
@@ -366,8 +254,10 @@ void joinRow(const Mat& measured, int y, RowScratch& scratch, TemporalState& s)
                    scratch.unmovedCounts.data());
     if (!s.motion.isStill)
         takeMoved(s, y, scratch);
-    const TemporalRow row = { scratch.choices.data(), scratch.unmoved.data(), scratch.moved.data(),
-                              scratch.unmovedCounts.data(), scratch.movedCounts.data() };
+    const TemporalRow row = {
+        scratch.agrees.data() + T::fringe, scratch.choices.data(),    scratch.unmoved.data(), scratch.moved.data(),
+        scratch.unmovedCounts.data(),      scratch.movedCounts.data()
+    };
     const int tolerance = std::max(T::tolerance / s.layer.scale, 1) * TemporalFrame::scale;
     const JoinRule rule = { tolerance, T::maxStep * TemporalFrame::scale,
                             s.motion.isStill ? T::maxCount : T::maxUnmovedCount, T::maxMovedCount, T::maxCount };
@@ -383,10 +273,10 @@ void beginAnew(const Mat& disparity, TemporalState& s)
 
 void join(const CensusCost& cost, Mat& disparity, TemporalState& s)
 {
-    findSources(s);
+    if (!s.motion.isStill)
+        correctDrift(disparity, s);
     compareCosts(cost, disparity, s);
-    choose(s);
-    if (isContradicted(s))
+    if (choose(s))
         return beginAnew(disparity, s);
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         RowScratch scratch(disparity.cols);

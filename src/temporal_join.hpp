@@ -5,7 +5,7 @@
 #define OPENCV_HDPSTEREO_TEMPORAL_JOIN_HPP
 
 #include "census_cost.hpp"
-#include "temporal_prediction.hpp"
+#include "temporal_sources.hpp"
 
 namespace cv {
 namespace stereo {
@@ -20,24 +20,17 @@ struct TemporalJoin
         sameDisparity = 1, // in pixels: costs of disparities no farther apart are not compared
         costOffset = 6,    // in bits of a census of 24
         keptShare = 26,  // percent of the measured disparity's cost, and costOffset, by which the last frame's may cost
-        movedShare = 33, // more; the same if the camera moved
-        tolerance = 4,   // between disparities that agree, in pixels of the image
-        maxStep = 1,     // towards the measured disparity, before it is divided by the weight, in pixels
-        maxCount = 4,    // frames that a disparity may stand for
+        movedShare = 60, // more; the same if the camera moved. A wrong pair contradicts its neighbours by more than
+        wrongShare = 33, // this, which also limits what the second frame takes from the first one
+        contradictedShare = 30, // percent of the cells with a source: if more of them contradict, a pair was wrong
+        fringe = 2,          // pixels beside one that agrees: what disagrees there, where the motion leads, is measured
+        driftStep = 12,      // from a cell that corrects the predicted disparities to the next
+        tolerance = 4,       // between disparities that agree, in pixels of the image
+        maxStep = 1,         // towards the measured disparity, before it is divided by the weight, in pixels
+        maxCount = 4,        // frames that a disparity may stand for
         maxUnmovedCount = 2, // and for its weight, if the camera moved: a disparity at the same place,
-        maxMovedCount = 1,   // and one where the motion leads
-        stillness = 5,       // halves of a grey level by which a cell that stands still changes at most
-        leastNoise = 3,      // grey levels, and
-        noiseFactor = 4,     // times the median of all changes: what is the same, and no more than moved as the camera
-        contrastShare = 70   // does, changes by no more, or by less than this percentage of the contrast around
+        maxMovedCount = 1    // and one where the motion leads
     };
-};
-
-//! What a cell may take from the last frame
-enum TemporalSource
-{
-    SAME_PLACE = 1, // the image stands still
-    MOVED_PLACE = 2 // where the camera's motion leads, the last frame looks the same
 };
 
 //! Of a cell, for the two disparities that the last frame may have for it
@@ -61,6 +54,7 @@ enum TemporalChoice
 //! What each pixel of a row takes, and what the frame before has for it
 struct TemporalRow
 {
+    uchar* agrees; // memory; on both sides of the row are TemporalJoin::fringe elements of 0
     const uchar* choices;
     const int *unmoved, *moved; // disparities
     const uchar *unmovedCounts, *movedCounts;
@@ -77,7 +71,7 @@ measured one, that of the last frame at the same place, if the image stands stil
 the camera takes there, if the image looks the same where it comes from. One of the last frame is kept unless the
 measured one has clearly lower costs in the window around. It moves towards the measured one if both agree, by less the
 more frames it stands for; if not, it stands for fewer frames, in the end for none, and the measured one is taken. If
-that is so for most of the pixels, the video begins anew.
+that is so for much of the pixels, the video begins anew.
 @param cost The layer's census cost.
 @param state What followVideo() found; this frame becomes the last one.
 @param disparity CV_16UC1, a disparity map; changed. */

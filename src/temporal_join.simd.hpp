@@ -28,14 +28,6 @@ void unpackRow(const ushort* disparity, const uchar* detail, int width, int* fin
 @param finer As of unpackRow(), changed. */
 void changeDisparities(const DisparityChange& change, int y, int step, int count, int* finer);
 
-/** Sums over the squares around the pixels of a row; beside it are the nearest ones.
-@param rows The rows of the squares.
-@param radius Of the squares.
-@param width Of the rows.
-@param columns Memory for a row, and radius elements on both sides.
-@param sums Receives the sums. */
-void sumSquares(const uchar* const* rows, int radius, int width, ushort* columns, ushort* sums);
-
 //! Adds a row times sign to columns.
 void addEvidence(const short* row, int sign, int length, short* columns);
 
@@ -45,15 +37,17 @@ void addEvidence(const short* row, int sign, int length, short* columns);
 @param sums Receives the sums. */
 void sumWindow(const short* columns, int length, short* sums);
 
-/** Compares the disparities of a row's cells. Two that are about the same count as one, the moved one.
+/** Compares the disparities of a row's cells. Two that are about the same count as one, the moved one; so do two that
+are far apart.
 @param measured Disparities of the pixels of the row.
 @param unmoved Those of the frame before at the same places.
 @param moved Those where the motion leads, of each cell, as of changeDisparities().
 @param count Number of cells.
+@param farthest TemporalSources::farthest, in units of a map.
 @param sources Of each cell, changed.
 @param different Receives which of the sources have another disparity than the measured one. */
-void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, uchar* sources,
-                        uchar* different);
+void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int farthest,
+                        uchar* sources, uchar* different);
 
 /** Joins a row of measured disparities with those of the frame before.
 @param measured The measured ones.
@@ -91,22 +85,6 @@ void changeDisparities(const DisparityChange& change, int y, int step, int count
         (int)(c.now(finer[i] * unit, i * columnFactor + rowFactor) * TemporalFrame::scale);
 }
 
-void sumSquares(const uchar* const* rows, int radius, int width, ushort* columns, ushort* sums)
-{
-    const uchar *first = rows[0], *last = rows[2 * radius];
-    const uchar *second = rows[radius == 2 ? 1 : 0], *fourth = rows[radius == 2 ? 3 : 0], *middle = rows[radius];
-    const int inner = radius == 2;
-    HDP_VECTORIZED for (int x = 0; x < width; ++x) columns[x] =
-        (ushort)(first[x] + middle[x] + last[x] + inner * (second[x] + fourth[x]));
-    for (int k = 1; k <= radius; ++k)
-    {
-        columns[-k] = columns[0];
-        columns[width - 1 + k] = columns[width - 1];
-    }
-    HDP_VECTORIZED for (int x = 0; x < width; ++x) sums[x] =
-        (ushort)(columns[x - 1] + columns[x] + columns[x + 1] + inner * (columns[x - radius] + columns[x + radius]));
-}
-
 void addEvidence(const short* row, int sign, int length, short* columns)
 {
     HDP_VECTORIZED for (int i = 0; i < length; ++i) columns[i] = (short)(columns[i] + sign * row[i]);
@@ -121,16 +99,17 @@ void sumWindow(const short* columns, int length, short* sums)
                 columns[i + 5 * c] + columns[i + 6 * c]);
 }
 
-void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, uchar* sources,
-                        uchar* different)
+void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int farthest,
+                        uchar* sources, uchar* different)
 {
     const int same = TemporalJoin::sameDisparity * subpixelScale;
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
         const int here = measured[j * VideoFollowing::cell], there = unmoved[j * VideoFollowing::cell];
         const int hasMoved = (sources[j] & MOVED_PLACE) != 0, where = moved[j] >> TemporalFrame::detailBits;
-        const int areSame = hasMoved & (std::abs(there - where) <= same);
-        const int hasUnmoved = (sources[j] & SAME_PLACE) != 0 && !areSame;
+        const int distance = std::abs(there - where);
+        const int isOther = (hasMoved ^ 1) | ((distance > same) & (distance <= farthest));
+        const int hasUnmoved = ((sources[j] & SAME_PLACE) != 0) & isOther;
         sources[j] = (uchar)(hasUnmoved * SAME_PLACE + hasMoved * MOVED_PLACE);
         different[j] = (uchar)((hasUnmoved & (std::abs(there - here) > same)) * SAME_PLACE +
                                (hasMoved & (std::abs(where - here) > same)) * MOVED_PLACE);
@@ -145,9 +124,19 @@ void joinRow(const ushort* measured, const TemporalRow& row, int width, const Jo
     const int half = 1 << (TemporalFrame::detailBits - 1);
     const int *unmoved = row.unmoved, *moved = row.moved;
     const uchar *unmovedCounts = row.unmovedCounts, *movedCounts = row.movedCounts, *choices = row.choices;
+    uchar* const agreesMoved = row.agrees;
+    static_assert(TemporalJoin::fringe == 2, "There are as many terms on each side.");
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        const int distance = std::abs((measured[x] << TemporalFrame::detailBits) - moved[x]);
+        agreesMoved[x] = (uchar)((choices[x] == MOVED) & (distance <= tolerance));
+    }
     HDP_VECTORIZED for (int x = 0; x < width; ++x) // without branches, so that it can be
     {
-        const int here = measured[x] << TemporalFrame::detailBits, choice = choices[x], isMoved = choice == MOVED;
+        const int isBeside = agreesMoved[x - 2] | agreesMoved[x - 1] | agreesMoved[x + 1] | agreesMoved[x + 2];
+        const int isFringe = (choices[x] == MOVED) & isBeside & (agreesMoved[x] ^ 1);
+        const int here = measured[x] << TemporalFrame::detailBits, choice = select(isFringe, MEASURED, choices[x]),
+                  isMoved = choice == MOVED;
         const int there = select(isMoved, moved[x], unmoved[x]), difference = here - there;
         const int count = select(isMoved, movedCounts[x], unmovedCounts[x]) & -(choice != MEASURED);
         const int limited = std::max(std::min(difference, maxStep), -maxStep);

@@ -17,7 +17,7 @@ struct VideoFollowing
     enum
     {
         cell = 2,      // side of the pixels of TemporalFrame::grey's finest level, in pixels of the layer
-        block = 8,     // side of the squares that move together
+        block = 4,     // side of the squares that move together
         cutShare = 60, // percent of its contrast by which a coarse image changes at a cut
         cutNoise = 4   // grey levels; what changes less is no cut
     };
@@ -68,7 +68,8 @@ struct TemporalState
 
     std::vector<TrackedPoint> points;
     Mat halved;
-    Mat warped, change, contrast, sources, evidence, choices; // of joinLastFrame(), per cell
+    Mat sources;                                     // CV_8UC1, see findSources()
+    Mat warped, change, contrast, evidence, choices; // of findSources() and joinLastFrame(), per cell
 
     //! In place of the x of a shift: the block was not in the last frame.
     enum

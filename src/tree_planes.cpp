@@ -6,7 +6,6 @@
 
 #include "disparity_units.hpp"
 #include "tree_walk.hpp"
-#include "vectorized.hpp"
 #include <numeric>
 
 namespace cv {
@@ -29,10 +28,7 @@ const double mostRise = 4.5;    // of the mean cost, in units of the volume
 const double leastContrast = 1; // by which the mean of the candidates' costs exceeds that of the disparities
 const int largestRise = 64;     // of a pixel's, for pixels of other surfaces to count as such
 
-// In units of the volume: the most that a disparity off the plane costs, which grows by the volume's scale per pixel;
-// and by how much the cost on the plane may exceed the pixel's lowest one. Beyond, the pixel is one of another surface.
-const int largestPenalty = 10;
-const int mostContradiction = 24;
+const int largestPenalty = 10; // of a disparity off the plane, in units of the volume
 
 //! d = coefficients . (1, x, y)
 typedef Vec3d Plane;
@@ -177,17 +173,8 @@ private:
 
 void prefer(const Plane& plane, const TreeWalk& walk, const DisparityTree& tree, CostVolume& volume)
 {
-    const int scale = CostVolume::scale, first = scale * tree.interval.first, count = tree.interval.size();
     for (int i = 0; i < tree.size; ++i)
-    {
-        const int pixel = walk.pixels[i], d = cvRound(scale * plane.dot(basisOf(pixel, volume.size.width))) - first;
-        uchar* const costs = &volume.costs[volume.candidates[pixel].start()];
-        const int onPlane = std::min(std::max((d + scale / 2) / scale, 0), count - 1);
-        if (costs[onPlane] - *std::min_element(costs, costs + count) > mostContradiction)
-            continue;
-        HDP_VECTORIZED for (int k = 0; k < count; ++k) costs[k] =
-            (uchar)std::min(costs[k] + std::min(std::abs(scale * k - d), largestPenalty), 255);
-    }
+        volume.prefer(walk.pixels[i], plane.dot(basisOf(walk.pixels[i], volume.size.width)), largestPenalty);
 }
 
 } // namespace

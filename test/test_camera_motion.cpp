@@ -112,6 +112,36 @@ TEST(HDPStereo_CameraMotion, backward)
     }
 }
 
+//! A third of the measured disparities are anything.
+TEST(HDPStereo_CameraMotion, corrected)
+{
+    RNG rng(45);
+    const double minDisparity = -3, factor = 1.008, offset = -0.3;
+    CameraMotion motion;
+    motion.forward = rigidMotion(Vec3d(.01, .02, -.01), Vec3d(.05, -.02, .1), 500, 0.4);
+    DisparityChange change = BackwardMotion(motion, minDisparity, 100).change();
+    const DisparityChange before = change;
+    std::vector<float> predicted, measured;
+    for (int i = 0; i < 600; ++i)
+    {
+        predicted.push_back((float)rng.uniform(1., 60.));
+        const double now = factor * (predicted.back() + minDisparity) + offset - minDisparity + rng.gaussian(0.2);
+        measured.push_back((float)(i % 3 ? now : rng.uniform(0., 60.)));
+    }
+    correctChange(predicted, measured, change);
+    for (int i = 0; i < 50; ++i)
+    {
+        const int x = rng.uniform(0, 600), y = rng.uniform(0, 400);
+        const float d = rng.uniform(8.f, 50.f);
+        const double uncorrected = before.now(d, before.ofX * x + before.ofRow(y)) + minDisparity;
+        EXPECT_NEAR(factor * uncorrected + offset - minDisparity, change.now(d, change.ofX * x + change.ofRow(y)), 0.1);
+    }
+
+    change = before;
+    correctChange(std::vector<float>(), std::vector<float>(), change);
+    EXPECT_EQ(before.now(20, 0.9f), change.now(20, 0.9f));
+}
+
 TEST(HDPStereo_CameraMotion, scaled)
 {
     const Matx44d motion = rigidMotion(Vec3d(.01, .02, -.01), Vec3d(.05, -.02, .1), 500, 0.4);

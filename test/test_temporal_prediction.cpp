@@ -235,6 +235,35 @@ TEST(HDPStereo_TemporalPrediction, wrong_pair)
     EXPECT_LE(ofTemporal, 1.05 * ofSingle);
 }
 
+//! Before moving cameras, too: from the next frame on there are no more errors than in single frames.
+TEST(HDPStereo_SlowTemporalPrediction, wrong_pair_and_camera)
+{
+    for (const Point3d& step : { Point3d(0.12, 0, 0), Point3d(0, 0, -0.0008) })
+        for (int preset : squarePresets)
+        {
+            SCOPED_TRACE(cv::format("preset %d, (%g, %g, %g)", preset, step.x, step.y, step.z));
+            SyntheticVideo video(frameSize, 10, 4), other(frameSize, 30, 4);
+            const Ptr<HDPTreeMatcher> single = createSingle(preset), temporal = createTemporal(preset);
+            const int wrong = 5;
+            int ofSingle = 0, ofTemporal = 0;
+            for (int i = 0; i < 12; ++i)
+            {
+                const SyntheticFrame frame = video.render(i, someBoards(), step * i);
+                if (i == wrong)
+                {
+                    match(*temporal, frame.left, other.render(i).right);
+                    continue;
+                }
+                const Mat expected = matchFrame(*single, frame), actual = matchFrame(*temporal, frame);
+                if (i < wrong)
+                    continue;
+                ofSingle += countWrong(expected, frame.truth, 2);
+                ofTemporal += countWrong(actual, frame.truth, 2);
+            }
+            EXPECT_LE(ofTemporal, 1.05 * ofSingle);
+        }
+}
+
 //! A video that stands still neither drifts nor freezes.
 TEST(HDPStereo_SlowTemporalPrediction, thousand_frames)
 {

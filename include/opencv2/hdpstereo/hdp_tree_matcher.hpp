@@ -393,17 +393,18 @@ public:
     /** @brief Whether the disparities of a pair are joined with those of the pair before, for videos.
 
     The left images give the motion of the camera, if there is any. It takes the last map to this frame: where a pixel
-    was before, and the disparity it then has now. Each pixel of the finest layer keeps the disparity that is predicted
-    so, if the left image looks the same there, or the one of the last frame at the same place if the image stands
-    still there, unless the measured one matches clearly better. If both agree, the result moves towards the measured
-    one by 1/2 to 1/5 of the difference, and if they do not for some frames, the measured one is taken. If the camera
-    moves, the census of fine layers does without its tolerance of noise, which costs faint texture. Maps have less noise
-    and flicker less, surfaces with little texture are more often right, and things that appear, move or vanish are
-    followed.
+    was before, and the disparity it then has now. If the camera moves, other disparities than this one cost up to 3
+    bits more on the top layer, as P(D_t | D_(t-1)), where the left image looks the same and the costs do not
+    contradict. Each pixel of the finest layer keeps the disparity that is predicted so, or the one of the last frame
+    at the same place if the image stands still there, unless the measured one matches clearly better. If both agree,
+    the result moves towards the measured one by 1/2 to 1/5 of the difference, and if they do not for some frames, the
+    measured one is taken. If the camera moves, the census of fine layers does without its tolerance of noise, which
+    costs faint texture. Maps have less noise and flicker less, surfaces with little texture are more often right, and
+    things that appear, move or vanish are followed.
 
     The result depends on the pairs before, from the first one on: the first compute(), one for images of another size
     or with another minDisparity, numDisparities or finestLayer, and one whose left image shows another scene or whose
-    disparities contradict most of the last ones begin anew, and so does the compute() after clear(), read() or one
+    disparities contradict much of the last ones begin anew, and so does the compute() after clear(), read() or one
     without temporal prediction. A pair that contradicts the last one is matched twice. One matcher is for one video. It
     keeps about 11 bytes per pixel more. See the tutorial for figures.
     @param useTemporalPrediction false by default: compute() depends on nothing but its arguments. true needs

@@ -1,0 +1,123 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "../src/temporal_prior.hpp"
+
+namespace opencv_test {
+namespace {
+
+using namespace hdp;
+
+const int candidates = 20, flatCost = 60; // of all candidates, in units of the volume
+const int side = 4;                       // of the volume's pixels
+const Size layerSize(64, 48);
+
+//! A volume whose costs are all the same
+CostVolume flatVolume(Size size)
+{
+    CostVolume volume;
+    volume.size = size;
+    volume.numDisparities = candidates;
+    volume.rows = 2 * size.area();
+    volume.costs.assign(volume.rows * CostVolume::row, (uchar)flatCost);
+    for (int i = 0; i < size.area(); ++i)
+    {
+        const CostVolume::Candidates own = { 2u * i, { 0, candidates - 1 } };
+        volume.candidates.push_back(own);
+    }
+    return volume;
+}
+
+//! What the last frame's disparity adds to the cost of a candidate
+int penalty(double disparity, int candidate)
+{
+    return std::min(cvRound(CostVolume::scale * std::abs(candidate - disparity)), 3 * CostVolume::scale);
+}
+
+//! The second frame of a video: everything moved to the left by a cell, and nothing else is known to be as it was.
+TemporalState movedState(ushort disparity)
+{
+    TemporalState s;
+    s.age = 1;
+    s.layer.scale = 1;
+    s.layer.largest = side * candidates * subpixelScale;
+    s.motion.isStill = false;
+    s.motion.forward(0, 3) = -VideoFollowing::cell;
+    s.backward = BackwardMotion(s.motion, 0, side * candidates);
+    s.last.disparity = Mat(layerSize, CV_16U, Scalar(disparity));
+    s.shifts = Mat(layerSize / (int)VideoFollowing::block, CV_16SC2, Scalar(VideoFollowing::cell, 0));
+    s.sources = Mat(layerSize / (int)VideoFollowing::cell, CV_8U, Scalar(0));
+    return s;
+}
+
+void expectCosts(const CostVolume& volume, int x, int y, double disparity)
+{
+    const uchar* costs = &volume.costs[volume.candidates[y * volume.size.width + x].start()];
+    for (int k = 0; k < candidates; ++k)
+        EXPECT_EQ(flatCost + (disparity < 0 ? 0 : penalty(disparity, k)), costs[k]) << Point(x, y) << ", " << k;
+}
+
+//! In columns of the volume: where the motion leads, at the same place, at both with one disparity or with two, new
+TEST(HDPStereo_TemporalPrior, sources)
+{
+    const double moved = 10, unmoved = 5, nearby = 10.5; // in pixels of the volume
+    const int places[] = { MOVED_PLACE, SAME_PLACE, MOVED_PLACE | SAME_PLACE, MOVED_PLACE | SAME_PLACE, 0 };
+    const double there[] = { unmoved, unmoved, nearby, unmoved, unmoved },
+                 expected[] = { moved, unmoved, moved, -1, -1 };
+    TemporalState s = movedState(0);
+    CostVolume volume = flatVolume(layerSize / side);
+    for (int i = 0; i < 5; ++i)
+    {
+        const int x = 3 * i * side + side / 2, half = side / 2; // one column of the volume in three is looked at
+        s.sources.colRange((x - half) / VideoFollowing::cell, (x + half) / VideoFollowing::cell).setTo(places[i]);
+        s.last.disparity.col(x).setTo(there[i] * side * subpixelScale);
+        s.last.disparity.col(x + VideoFollowing::cell).setTo(moved * side * subpixelScale);
+    }
+    preferLastFrame(s, side, volume);
+    for (int y = 0; y < volume.size.height; ++y)
+        for (int i = 0; i < 5; ++i)
+            expectCosts(volume, 3 * i, y, expected[i]);
+}
+
+//! Nothing moves: the costs stay.
+TEST(HDPStereo_TemporalPrior, still)
+{
+    TemporalState s = movedState(10 * side * subpixelScale);
+    s.motion.isStill = true;
+    s.sources.setTo(SAME_PLACE);
+    CostVolume volume = flatVolume(layerSize / side);
+    const std::vector<uchar> costs = volume.costs;
+    preferLastFrame(s, side, volume);
+    EXPECT_EQ(costs, volume.costs);
+}
+
+TEST(HDPStereo_CostVolume, prefer)
+{
+    const int largest = 12;
+    CostVolume volume = flatVolume(Size(4, 1));
+    const auto costsOf = [&](int pixel) { return &volume.costs[volume.candidates[pixel].start()]; };
+    const DisparityInterval none = { 1, 0 };
+    volume.candidates[1].interval = none;
+    costsOf(2)[15] = (uchar)(flatCost - CostVolume::mostContradiction - 1);
+    costsOf(3)[15] = (uchar)(flatCost - CostVolume::mostContradiction);
+    costsOf(3)[0] = 250;
+    std::vector<uchar> before = volume.costs;
+    for (int pixel = 0; pixel < 4; ++pixel)
+        volume.prefer(pixel, 7.25, largest);
+    for (int k = 0; k < candidates; ++k)
+    {
+        const int rise = std::min(cvRound(CostVolume::scale * std::abs(k - 7.25)), largest);
+        EXPECT_EQ(flatCost + rise, costsOf(0)[k]);
+        EXPECT_EQ(before[2 * CostVolume::row + k], costsOf(1)[k]) << "of a pixel without candidates";
+        EXPECT_EQ(before[4 * CostVolume::row + k], costsOf(2)[k]) << "of a contradicting pixel";
+        EXPECT_EQ(std::min(before[6 * CostVolume::row + k] + rise, 255), costsOf(3)[k]);
+    }
+    volume.prefer(0, 1e6, largest); // beyond the candidates, whose costs all rise by as much
+    EXPECT_EQ(flatCost + largest + largest, costsOf(0)[0]);
+    EXPECT_EQ(flatCost + largest + largest, costsOf(0)[candidates - 1]);
+}
+
+} // namespace
+} // namespace opencv_test
