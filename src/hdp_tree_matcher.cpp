@@ -53,6 +53,7 @@ public:
             result_.isFiltered = outputDisparity(finest, p_, settings, output_, disparity);
         });
         result_.shift = 0.5 * settings.extension + p_.minDisparity;
+        result_.brightness = 1 << pyramids_.brightening;
         result_.size = left.size();
         result_.settings = settings;
         result_.numDisparities = p_.numDisparities;
@@ -176,12 +177,15 @@ public:
 
     bool getLightAlignment(std::vector<double>& model) const CV_OVERRIDE
     {
-        const LightModel light = isMatched() ? result_.alignment.light : LightModel();
+        const LightModel light = isMatched() ? result_.alignment.light.scaled(1 / result_.brightness) : LightModel();
         model.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
         return isMatched() && result_.alignment.hasLight;
     }
 
-    double getNoiseLevel() const CV_OVERRIDE { return isMatched() ? result_.alignment.noise.deviation : 0; }
+    double getNoiseLevel() const CV_OVERRIDE
+    {
+        return isMatched() ? result_.alignment.noise.deviation / result_.brightness : 0;
+    }
 
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
     {
@@ -216,6 +220,7 @@ private:
         PairSettings settings;
         int numDisparities = 0;
         PairAlignment alignment;
+        double brightness = 1;   // of the levels that were matched, relative to those of the images
         double shift = 0;        // of the centre of the right image
         bool isFiltered = false; // OutputBuffers::rejected has a meaning
     };
@@ -237,7 +242,7 @@ private:
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
             buildPairPyramids(left, right, p_.minDisparity, settings.extension, settings.layers,
-                              p_.matchingCost == COST_CENSUS, pyramids_, images);
+                              p_.matchingCost == COST_CENSUS, lastBrightening(), pyramids_, images);
         });
 
         if (p_.maxRowOffset > 0 || p_.useLightAlignment || p_.noiseThreshold > 0)
@@ -264,12 +269,18 @@ private:
         return temporal_.age == age;
     }
 
+    int lastBrightening() const
+    {
+        return p_.useTemporalPrediction && !temporal_.last.disparity.empty() ? temporal_.layer.brightening
+                                                                             : noBrightening;
+    }
+
     //! What a frame has to do with the one before
     void follow(const Mat& left, int finestLayer)
     {
         const int scale = 1 << finestLayer;
         const TemporalLayer layer = { scale, p_.minDisparity / (double)scale,
-                                      largestDisparity(p_.numDisparities, finestLayer) };
+                                      largestDisparity(p_.numDisparities, finestLayer), pyramids_.brightening };
         followVideo(left, layer, temporal_);
         if (temporal_.age > 0)
             findSources(temporal_);

@@ -12,9 +12,9 @@ namespace hdp {
 
 namespace {
 
-void dispatchGrey(const uchar* pixels, int channels, int width, ushort* levels)
+void dispatchGrey(const uchar* pixels, int channels, int width, int times, ushort* levels)
 {
-    CV_CPU_DISPATCH(greyRow, (pixels, channels, width, levels), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(greyRow, (pixels, channels, width, times, levels), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 const int fewestBits = 8, mostBits = 16;
@@ -58,38 +58,77 @@ int countBits(const Mat& left, const Mat& right)
 
 Mat byteLevels(const Mat& image, int bits, Mat& buffer)
 {
-    if (image.type() == CV_8UC1 || image.type() == CV_8UC3)
-        return image;
-    if (image.type() == CV_8UC4)
+    const int channels = image.channels(), times = fewestBits - bits;
+    if (image.depth() == CV_16U)
     {
-        cvtColor(image, buffer, COLOR_BGRA2BGR);
+        buffer.create(image.size(), CV_8UC1);
+        convertRows<ushort, uchar>(image, buffer, [=](const ushort* pixels, uchar* levels, int width) {
+            if (times > 0)
+                HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (uchar)std::min(pixels[x] << times, 255);
+            else
+                HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (uchar)std::min(pixels[x] >> -times, 255);
+        });
         return buffer;
     }
-    buffer.create(image.size(), CV_8UC1);
-    const int shift = bits - fewestBits;
-    convertRows<ushort, uchar>(image, buffer, [=](const ushort* pixels, uchar* levels, int width) {
-        HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (uchar)std::min(pixels[x] >> shift, 255);
+    Mat colors = image;
+    if (channels == 4)
+    {
+        cvtColor(image, buffer, COLOR_BGRA2BGR);
+        colors = buffer;
+    }
+    if (times == 0)
+        return colors;
+    buffer.create(colors.size(), colors.type());
+    convertRows<uchar, uchar>(colors, buffer, [=](const uchar* pixels, uchar* levels, int width) {
+        const int count = width * std::min(channels, 3);
+        HDP_VECTORIZED for (int i = 0; i < count; ++i) levels[i] = (uchar)std::min(pixels[i] << times, 255);
     });
     return buffer;
 }
 
 void greyLevels(const Mat& image, int bits, Mat& grey)
 {
+    const int white = 256 * greyScale - 1, times = fewestBits - bits;
     grey.create(image.size(), CV_16U);
     if (image.depth() == CV_16U)
     {
-        const int shift = bits - fewestBits;
         return convertRows<ushort, ushort>(image, grey, [=](const ushort* pixels, ushort* levels, int width) {
-            HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
-                (ushort)std::min(pixels[x] * greyScale >> shift, 256 * greyScale - 1);
+            if (times > 0)
+                HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
+                    (ushort)std::min(pixels[x] * greyScale << times, white);
+            else
+                HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
+                    (ushort)std::min(pixels[x] * greyScale >> -times, white);
         });
     }
     const int channels = image.channels();
     convertRows<uchar, ushort>(image, grey, [=](const uchar* pixels, ushort* levels, int width) {
         if (channels > 1)
-            return dispatchGrey(pixels, channels, width, levels);
-        HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (ushort)(pixels[x] * greyScale);
+            return dispatchGrey(pixels, channels, width, times, levels);
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
+            (ushort)std::min(pixels[x] * greyScale << times, white);
     });
+}
+
+int countUnusedBits(const Mat& left, const Mat& right)
+{
+    const int most = 2, pixelsPerLamp = 128, step = std::max(left.rows / 64, 1); // some rows tell
+    int unused = 0;
+    for (; unused < most; ++unused)
+    {
+        const int limit = 256 * greyScale >> (unused + 1);
+        int64 bright = 0, all = 0;
+        for (int y = 0; y < left.rows; y += step, all += 2 * left.cols)
+        {
+            const ushort *l = left.ptr<ushort>(y), *r = right.ptr<ushort>(y);
+            int count = 0;
+            HDP_VECTORIZED for (int x = 0; x < left.cols; ++x) count += (l[x] >= limit) + (r[x] >= limit);
+            bright += count;
+        }
+        if (bright * pixelsPerLamp > all)
+            break;
+    }
+    return unused;
 }
 
 } // namespace hdp

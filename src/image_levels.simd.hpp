@@ -11,31 +11,32 @@ namespace stereo {
 namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! Grey levels of BGR pixels, see greyLevels(). channels: 3, or 4 with alpha.
-void greyRow(const uchar* pixels, int channels, int width, ushort* levels);
+//! Grey levels of BGR pixels, doubled some times, see greyLevels(). channels: 3, or 4 with alpha.
+void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
-template <int channels> void greyRow(const uchar* pixels, int width, ushort* levels)
+template <int channels> void greyRow(const uchar* pixels, int width, int times, ushort* levels)
 {
+    const unsigned shift = 14 - times, half = 1u << (shift - 1), white = 256 * greyScale - 1;
+    static_assert(65536 / greyScale == 1 << 14, "The weights are in 1 / 65536.");
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const uchar* bgr = pixels + channels * x;
-        levels[x] =
-            (ushort)((7471u * bgr[0] + 38470u * bgr[1] + 19595u * bgr[2] + 32768 / greyScale) / (65536 / greyScale));
+        levels[x] = (ushort)std::min((7471u * bgr[0] + 38470u * bgr[1] + 19595u * bgr[2] + half) >> shift, white);
     }
 }
 
 } // namespace
 
-void greyRow(const uchar* pixels, int channels, int width, ushort* levels)
+void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels)
 {
     if (channels == 3)
-        greyRow<3>(pixels, width, levels);
+        greyRow<3>(pixels, width, times, levels);
     else
-        greyRow<4>(pixels, width, levels);
+        greyRow<4>(pixels, width, times, levels);
 }
 
 #endif

@@ -30,6 +30,15 @@ struct LightModel
         return Coefficients(r, r * x, r * y, r * x * x, r * x * y, r * y * y, r * square * square, 1, r * r, r * r * r);
     }
     double at(double r, double x, double y) const { return coefficients.dot(basis(r, x, y)); }
+    //! The same for levels that are factor times as large
+    LightModel scaled(double factor) const
+    {
+        LightModel model = *this;
+        model.coefficients[7] *= factor;
+        model.coefficients[8] /= factor;
+        model.coefficients[9] /= factor * factor;
+        return model;
+    }
 };
 
 /** Finds how the light of the right image differs from that of the left one, from the mean levels around matched

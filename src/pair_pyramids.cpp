@@ -42,7 +42,7 @@ void checkPair(const Mat& left, const Mat& right)
 }
 
 void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int extension, int layers, bool census,
-                       PairPyramids& pyramids, std::vector<LayerImages>& images)
+                       int lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images)
 {
     Mat extended = left, shifted = right;
     if (minDisparity != 0)
@@ -55,17 +55,26 @@ void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int 
         copyMakeBorder(left, pyramids.extendedLeft, 0, 0, extension, 0, BORDER_REPLICATE);
         extended = pyramids.extendedLeft;
     }
-    const int bits = countBits(left, right);
-    buildPyramid(byteLevels(extended, bits, pyramids.leftBytes), layers, pyramids.left);
+    int bits = countBits(left, right);
+    pyramids.brightening = 0;
     if (census)
     {
         greyLevels(extended, bits, pyramids.leftLevels);
         greyLevels(shifted, bits, pyramids.rightLevels);
+        const int unused = countUnusedBits(pyramids.leftLevels, pyramids.rightLevels);
+        pyramids.brightening = unused == lastBrightening + 1 ? lastBrightening : unused;
+        if (pyramids.brightening > 0)
+        {
+            bits -= pyramids.brightening;
+            greyLevels(extended, bits, pyramids.leftLevels);
+            greyLevels(shifted, bits, pyramids.rightLevels);
+        }
         buildPyramid(pyramids.leftLevels, layers, pyramids.leftGrey);
         buildPyramid(pyramids.rightLevels, layers, pyramids.right);
     }
     else
         buildPyramid(byteLevels(shifted, bits, pyramids.rightBytes), layers, pyramids.right);
+    buildPyramid(byteLevels(extended, bits, pyramids.leftBytes), layers, pyramids.left);
     images.resize(layers);
     for (int layer = 0; layer < layers; ++layer)
     {

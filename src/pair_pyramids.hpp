@@ -30,9 +30,11 @@ struct PairPyramids
 {
     std::vector<Mat> left, leftGrey, right;
     Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels;
+    int brightening = 0; // how often the levels of the pair are doubled
 };
 
-/** The pyramids of a pair (section 2.1), for candidates that count from 0.
+/** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,
+see countUnusedBits(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well exposed.
 @param left CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param right Of the same size and type.
 @param minDisparity The disparity that candidate 0 stands for.
@@ -40,10 +42,14 @@ struct PairPyramids
 disparities are negative; a multiple of 2^(layers - 1).
 @param layers Number of layers.
 @param census Whether the matching cost gets grey levels, see greyLevels(), instead of byteLevels().
+@param lastBrightening That of the frame before: it is kept if one more is possible, so that a video seldom changes it.
 @param pyramids Memory to work in.
 @param images Receives the images of each layer. */
 void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int extension, int layers, bool census,
-                       PairPyramids& pyramids, std::vector<LayerImages>& images);
+                       int lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images);
+
+//! In place of lastBrightening: no pair was before.
+const int noBrightening = -2;
 
 //! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:
 //! shifted(x + extension) = right(x - minDisparity), the nearest column where there is none.

@@ -48,10 +48,12 @@ struct TemporalLayer
     int scale;           // pixels of the image in a side of a pixel
     double minDisparity; // that a map counts from, in pixels of the layer
     int largest;         // of a map, in its units
+    int brightening;     // of the pair, see PairPyramids
 
     bool operator==(const TemporalLayer& other) const
     {
-        return scale == other.scale && minDisparity == other.minDisparity && largest == other.largest;
+        return scale == other.scale && minDisparity == other.minDisparity && largest == other.largest &&
+               brightening == other.brightening;
     }
 };
 

@@ -53,8 +53,11 @@ in use stand for them. These are the fewest, 8 to 16, that are enough for all pi
 what is brighter, such as highlights and defective pixels, is white. The census sees the upper 10 of them; edge weights,
 COST_COLOR_GRADIENT and the grey difference of scanlines see 8. So images of 8 bits times 2^k give the same map as
 without the factor, if more than one pixel in 1024 has a level of 128 or more. Darker ones gain contrast: if the largest
-value of a 12-bit camera is 300, 9 bits are in use, and 300 becomes level 150. Each pair has its own number of bits; to
-keep the contrast of a sequence, scale it to 8 bits yourself.
+value of a 12-bit camera is 300, 9 bits are in use, and 300 becomes level 150. Each pair has its own number of bits.
+
+With COST_CENSUS, a dark pair of any type is brightened: its levels are doubled once or twice, if all pixels of both
+images but one in 128 stay below white, so that what counts in levels (edges, noise and its threshold) is more as if the
+pair were well exposed. getNoiseLevel() and getLightAlignment() are about the levels of the images.
 
 The result depends neither on the number of threads nor on the instruction set. A matcher may be used by one thread at a
 time; two matchers never share state. Its buffers are kept for the next pair.
@@ -443,8 +446,8 @@ public:
 
     A Gaussian of 3 x 3 pixels takes noise from the matching cost, and a median of as many from the edge weights, in each
     layer. Without noise both would cost details.
-    @param noiseThreshold Standard deviation of the grey levels, 255 being white, finite, >= 0. 0 (PRESET_PAPER): never
-    smoothed. 3 in the others. */
+    @param noiseThreshold Standard deviation of the grey levels, 255 being white, finite, >= 0; of a dark pair, when it is
+    brightened. 0 (PRESET_PAPER): never smoothed. 3 in the others. */
     CV_WRAP virtual void setNoiseThreshold(double noiseThreshold) = 0;
     /** @copybrief setNoiseThreshold @sa setNoiseThreshold */
     CV_WRAP virtual double getNoiseThreshold() const = 0;
