@@ -257,6 +257,8 @@ private:
         else
             temporal_ = TemporalState();
         const int age = temporal_.age;
+        if (age == 0 && pyramids_.isDimmed)
+            return false; // not the next frame after all
 
         layers_.resize(settings.layers);
         for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)

@@ -57,12 +57,14 @@ void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int 
     }
     int bits = countBits(left, right);
     pyramids.brightening = 0;
+    pyramids.isDimmed = false;
     if (census)
     {
         greyLevels(extended, bits, pyramids.leftLevels);
         greyLevels(shifted, bits, pyramids.rightLevels);
         const int unused = countUnusedBits(pyramids.leftLevels, pyramids.rightLevels);
-        pyramids.brightening = unused == lastBrightening + 1 ? lastBrightening : unused;
+        pyramids.isDimmed = unused == lastBrightening + 1;
+        pyramids.brightening = unused - pyramids.isDimmed;
         if (pyramids.brightening > 0)
         {
             bits -= pyramids.brightening;

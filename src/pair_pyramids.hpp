@@ -30,7 +30,8 @@ struct PairPyramids
 {
     std::vector<Mat> left, leftGrey, right;
     Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels;
-    int brightening = 0; // how often the levels of the pair are doubled
+    int brightening = 0;   // how often the levels of the pair are doubled
+    bool isDimmed = false; // once less than without a frame before
 };
 
 /** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,

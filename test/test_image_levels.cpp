@@ -325,21 +325,29 @@ TEST(HDPStereo_ImageTypes, dark_pairs_are_brightened)
     }
 }
 
-//! A video whose light changes by a half stays as bright as it was; a larger change begins anew.
+//! A video that becomes a little darker stays as it is; a cut begins anew, with the brightness of a single frame.
 TEST(HDPStereo_ImageTypes, brightness_of_a_video)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(320, 240), numDisparities, 26);
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities);
+    Mat grey;
+    cv::cvtColor(pair.left, grey, COLOR_BGR2GRAY);
+    std::vector<uchar> levels(grey.begin<uchar>(), grey.end<uchar>());
+    std::sort(levels.begin(), levels.end());
+    const double bright = levels[levels.size() * 127 / 128];
+    // From a pair with one brightest level to one with another: number of pixels unlike those of a single frame
     const auto change = [&](double before, double now) {
-        matcher->clear();
-        matcher->setUseTemporalPrediction(true);
-        match(*matcher, pair.left * before, pair.right * before);
-        const Mat joined = match(*matcher, pair.left * now, pair.right * now);
-        matcher->setUseTemporalPrediction(false);
-        return countDifferent(match(*matcher, pair.left * now, pair.right * now), joined);
+        const Ptr<HDPTreeMatcher> video = HDPTreeMatcher::create(0, numDisparities),
+                                  single = HDPTreeMatcher::create(0, numDisparities);
+        video->setUseTemporalPrediction(true);
+        match(*video, pair.left * (before / bright), pair.right * (before / bright));
+        const Mat left = pair.left * (now / bright), right = pair.right * (now / bright);
+        return countDifferent(match(*single, left, right), match(*video, left, right));
     };
-    EXPECT_EQ(0, change(1, 0.2));
-    EXPECT_EQ(0, change(0.2, 1));
+    EXPECT_LT(0, change(129, 125)); // kept
+    EXPECT_EQ(0, change(125, 129));
+    EXPECT_EQ(0, change(200, 100));
+    EXPECT_EQ(0, change(100, 200));
+    EXPECT_EQ(0, change(200, 50));
 }
 
 //! The mean error of a preset on grey levels of 12 bits, which are those of colours, and on the upper 8 of the bits.
