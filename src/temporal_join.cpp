@@ -179,7 +179,7 @@ bool choose(TemporalState& s)
 {
     const Size cells = s.evidence.size();
     const int radius = T::window / 2, stripeHeight = 32, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
-    const bool isStill = s.motion.isStill, isNew = s.age == 1;
+    const bool isStill = s.motion.isStill, isStrict = isStill || s.age == 1;
     std::vector<int> sourceCounts(cells.height), contradicted(cells.height);
     s.choices.create(cells, CV_8U);
     parallel_for_(Range(0, stripes), [&](const Range& range) {
@@ -204,7 +204,7 @@ bool choose(TemporalState& s)
                 const TemporalChoice strict = chooseCell(ofCell, sources[x], isStill, T::wrongShare);
                 sourceCounts[y] += sources[x] != 0;
                 contradicted[y] += sources[x] != 0 && strict == MEASURED;
-                choices[x] = (uchar)(isNew ? strict : chooseCell(ofCell, sources[x], isStill, T::movedShare));
+                choices[x] = (uchar)(isStrict ? strict : chooseCell(ofCell, sources[x], isStill, T::movedShare));
             }
             add(y - radius, -1);
         }

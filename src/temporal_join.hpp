@@ -71,7 +71,7 @@ measured one, that of the last frame at the same place, if the image stands stil
 the camera takes there, if the image looks the same where it comes from. One of the last frame is kept unless the
 measured one has clearly lower costs in the window around. It moves towards the measured one if both agree, by less the
 more frames it stands for; if not, it stands for fewer frames, in the end for none, and the measured one is taken. If
-that is so for much of the pixels, the video begins anew.
+that is so for many of the pixels, the video begins anew.
 @param cost The layer's census cost.
 @param state What followVideo() found; this frame becomes the last one.
 @param disparity CV_16UC1, a disparity map; changed. */
