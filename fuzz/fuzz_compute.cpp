@@ -549,7 +549,7 @@ void query(const HDPTreeMatcher& matcher, Size size, bool hasPair)
     matcher.getConfidence(confidence);
     require(confidence.size() == (hasPair ? size : Size()), "confidence of another size");
     matcher.getForest(trees, intervals);
-    require(trees.size() == intervals.size() && (!hasPair || !trees.empty()), "no forest");
+    require(trees.size() == intervals.size() && (!hasPair || !trees.empty() || matcher.getUseTemporalPrediction()), "no forest");
     std::vector<double> values;
     for (int layer = 0; layer < 17; ++layer)
     {

@@ -6,6 +6,7 @@
 
 #include "vectorized.hpp"
 #include <cstring>
+#include <numeric>
 
 namespace cv {
 namespace stereo {
@@ -37,6 +38,43 @@ void CostVolume::create(const DisparityForest& forest)
         costs.resize(rows * row);
 }
 
+void CostVolume::fill(const MatchingCost& cost, const Size& layerSize, const DisparityInterval& interval)
+{
+    size = layerSize;
+    numDisparities = interval.last + 1;
+    usualRows_ = rowsOf(interval);
+    rows = (size_t)size.area() * usualRows_;
+    candidates.resize(size.area());
+    if (costs.size() < rows * row)
+        costs.resize(rows * row);
+    parallel_for_(Range(0, size.height), [&](const Range& range) {
+        const int lanes = row;
+        std::vector<int> pixels(size.width);
+        std::vector<float> run(size.width * lanes);
+        for (int y = range.start; y < range.end; ++y)
+        {
+            const int first = y * size.width;
+            std::iota(pixels.begin(), pixels.end(), first);
+            for (int x = 0; x < size.width; ++x)
+            {
+                const Candidates own = { (unsigned)((first + x) * usualRows_), interval };
+                candidates[first + x] = own;
+            }
+            for (int r = 0; r < usualRows_; ++r)
+            {
+                cost.evaluate(pixels.data(), size.width, interval.first + r * row, lanes, run.data());
+                for (int x = 0; x < size.width; ++x)
+                {
+                    const float* const from = &run[x * lanes];
+                    uchar* const to = &costs[candidates[first + x].start() + r * row];
+                    HDP_VECTORIZED for (int k = 0; k < lanes; ++k) to[k] =
+                        (uchar)std::min((int)(scale * from[k] + 0.5f), 255);
+                }
+            }
+        }
+    });
+}
+
 void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pixels)
 {
     const int count = forest.trees[tree].size, ownRows = rowsOf(forest.trees[tree].interval);
@@ -52,18 +90,24 @@ void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pi
             candidates[pixels[i]] = own;
 }
 
+bool CostVolume::contradicts(int pixel, double disparity) const
+{
+    const Candidates& own = candidates[pixel];
+    const int count = own.interval.size(), nearest = (int)std::floor(disparity + 0.5) - own.interval.first;
+    if (count <= 0)
+        return false;
+    const uchar* const all = &costs[own.start()];
+    const uchar cost = all[std::min(std::max(nearest, 0), count - 1)];
+    uchar least = cost;
+    HDP_VECTORIZED for (int k = 0; k < count; ++k) least = std::min(least, all[k]);
+    return cost - least > mostContradiction;
+}
+
 void CostVolume::prefer(int pixel, double disparity, int largest)
 {
     const Candidates& own = candidates[pixel];
     const int count = own.interval.size(), d = cvRound(scale * disparity) - scale * own.interval.first;
-    if (count <= 0)
-        return;
     uchar* const raised = &costs[own.start()];
-    const int nearest = std::min(std::max((d + scale / 2) / scale, 0), count - 1);
-    uchar least = raised[nearest];
-    HDP_VECTORIZED for (int k = 0; k < count; ++k) least = std::min(least, raised[k]);
-    if (raised[nearest] - least > mostContradiction)
-        return;
     HDP_VECTORIZED for (int k = 0; k < count; ++k) raised[k] =
         (uchar)std::min(raised[k] + std::min(std::abs(scale * k - d), largest), 255);
 }

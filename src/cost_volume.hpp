@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_COST_VOLUME_HPP
 
 #include "disparity_forest.hpp"
+#include "matching_cost.hpp"
 
 namespace cv {
 namespace stereo {
@@ -17,7 +18,7 @@ struct CV_EXPORTS CostVolume
     {
         scale = 8,                    // of the costs, for their fractions
         row = 16,                     // costs that are stored together
-        mostContradiction = 3 * scale // see prefer()
+        mostContradiction = 3 * scale // see contradicts()
     };
     struct Candidates // of a pixel
     {
@@ -40,12 +41,16 @@ struct CV_EXPORTS CostVolume
 
     //! Provides the memory for the trees of a forest.
     void create(const DisparityForest& forest);
+    //! Takes the costs as they are, of the same candidates for all pixels.
+    void fill(const MatchingCost& cost, const Size& size, const DisparityInterval& interval);
     //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.
     void place(const DisparityForest& forest, size_t tree, const int* pixels);
-    /** Raises the costs of a pixel's other disparities: by a unit of cost per pixel of distance, up to a limit. If the
-    costs contradict, the one of this disparity exceeding the lowest by more than mostContradiction, they stay.
+    //! Whether the cost of a disparity exceeds the lowest one of the pixel by more than mostContradiction. One beyond the
+    //! candidates counts as the nearest of them.
+    bool contradicts(int pixel, double disparity) const;
+    /** Raises the costs of a pixel's other disparities: by a unit of cost per pixel of distance, up to a limit.
     @param pixel y * width + x
-    @param disparity In pixels; one beyond the candidates counts as the nearest of them.
+    @param disparity In pixels.
     @param largest The most that a cost rises by, in units of the volume. */
     void prefer(int pixel, double disparity, int largest);
 

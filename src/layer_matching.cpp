@@ -33,6 +33,9 @@ const double meanGamma = 0.2;
 const double meanP2 = 1.3;
 const double edgeGamma = 0.7;
 
+// Layers below one without trees
+const int repairingLayers = 2;
+
 // ScanlinePenalties::edgeSlope: on the finest layer the edges are those of surfaces, unless they are those of the noise.
 const int finestSlope = 5, usualSlope = 3;
 
@@ -112,18 +115,23 @@ void predict(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
     assignIntervals(in.upper->disparity, size, buffers.intervals, matched.pixelIntv);
 }
 
-//! Section 3.2. The median is that of the M+ systems, and of noisy pairs; as in the authors' program, the cost does not
-//! see it.
+//! What gives the edge weights. The median is that of the M+ systems, and of noisy pairs; as in the authors' program, the
+//! cost does not see it.
+const Mat& guideOf(const LayerInput& in, MatchedLayer& matched)
+{
+    if (!in.parameters.useMedianPrefilter && !in.alignment.isNoisy)
+        return in.images.guide;
+    medianBlur(in.images.guide, matched.guide, 3);
+    return matched.guide;
+}
+
+//! Section 3.2
 void growForest(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 {
     const MatcherParameters& p = in.parameters;
-    const bool hasMedian = p.useMedianPrefilter || in.alignment.isNoisy;
-    if (hasMedian)
-        medianBlur(in.images.guide, matched.guide, 3);
-    const Mat& guide = hasMedian ? matched.guide : in.images.guide;
     buffers.forestLayer = in.layer;
-    buildForest(guide, matched.pixelIntv, *p.treeStrategy, in.settings.beta, !p.usePrediction, buffers.forestBuffers,
-                buffers.forest);
+    buildForest(guideOf(in, matched), matched.pixelIntv, *p.treeStrategy, in.settings.beta, !p.usePrediction,
+                buffers.forestBuffers, buffers.forest);
 }
 
 bool hasTreeScanlines(const LayerInput& in)
@@ -134,20 +142,43 @@ bool hasTreeScanlines(const LayerInput& in)
     return p.usePrediction && aggregation == HDPTreeMatcher::AGGREGATION_TREE_SCANLINES;
 }
 
+VolumePenalties volumePenalties(const MatcherParameters& p)
+{
+    const int scale = CostVolume::scale, large = cvRound(scale * meanP2 * p.P2);
+    return { scale * p.P1 / 2, std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
+}
+
+bool hasPrior(const LayerInput& in) { return in.isTop() && in.temporal && hasPrior(*in.temporal); }
+
+void preferLastFrame(const LayerInput& in, bool areMeans, CostVolume& volume)
+{
+    preferLastFrame(*in.temporal, 1 << (in.layer - in.settings.finestLayer), areMeans, volume);
+}
+
 //! Scanlines over the means of the costs in the layer's trees
 void aggregateTreeScanlines(const LayerInput& in, LayerBuffers& buffers, MatchedLayer& matched)
 {
     const MatcherParameters& p = in.parameters;
-    const int scale = CostVolume::scale;
-    const int large = std::min(cvRound(scale * meanP2 * p.P2), +VolumePenalties::largest);
-    const VolumePenalties penalties = { scale * p.P1 / 2, large, p.gamma * edgeGamma }; // means of costs are smoother
+    const VolumePenalties penalties = volumePenalties(p);
     aggregateMeans(buffers.forest, matched.cost(), p.gamma * meanGamma, buffers.aggregation, buffers.volume);
-    if (in.isTop() && in.temporal && in.temporal->age > 1)
-        preferLastFrame(*in.temporal, 1 << (in.layer - in.settings.finestLayer), buffers.volume);
+    if (hasPrior(in))
+        preferLastFrame(in, true, buffers.volume);
     const Mat& weights = buffers.forest.weights;
     aggregateVolume(buffers.volume, weights, penalties, buffers.volumeScanlines, matched.winner);
     if (in.isTop() && preferTreePlanes(buffers.forest, matched.winner, buffers.volume) > 0)
         aggregateVolume(buffers.volume, weights, penalties, buffers.volumeScanlines, matched.winner);
+}
+
+//! What follows each winner-takes-all
+void finishWinners(const LayerInput& in, StageClock& clock, MatchedLayer& matched)
+{
+    if (in.settings.subpixel && in.layer > 0) // the last candidate may be beyond the range
+        min(matched.winner, largestDisparity(in), matched.winner);
+    if (in.parameters.fillOcclusions)
+        clock.run("occlusions", [&] {
+            matched.census.ofDisparities(matched.winner, matched.residual);
+            fillOccluded(matched.winner, matched.residual, in.images.right);
+        });
 }
 
 //! Sections 3.1 to 3.3
@@ -165,13 +196,34 @@ void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clo
         aggregateForest(buffers.forest, matched.cost(), p.gamma, in.settings.subpixel, buffers.aggregation,
                         matched.winner);
     });
-    if (in.settings.subpixel && in.layer > 0) // the last candidate may be beyond the range
-        min(matched.winner, largestDisparity(in), matched.winner);
-    if (p.fillOcclusions)
-        clock.run("occlusions", [&] {
-            matched.census.ofDisparities(matched.winner, matched.residual);
-            fillOccluded(matched.winner, matched.residual, in.images.right);
-        });
+    finishWinners(in, clock, matched);
+}
+
+//! Whether the top layer needs no trees: the last frame brings surfaces where texture is faint, as they would, and the
+//! scanlines of the layers below repair the rest.
+bool isPredictedByVideo(const LayerInput& in)
+{
+    return hasPrior(in) && hasTreeScanlines(in) &&
+           in.parameters.aggregation == HDPTreeMatcher::AGGREGATION_SCANLINES &&
+           in.layer - in.settings.finestLayer >= repairingLayers;
+}
+
+//! Scanlines over the costs as they are, and the last frame's prior
+void aggregateWithLastFrame(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
+{
+    buffers.forgetForest();
+    matched.searchRatio = 1;
+    clock.run("disparity prediction", [&] {
+        const DisparityInterval all = { 0, (ushort)(disparitiesOf(in) - 1) };
+        buffers.volume.fill(matched.cost(), in.images.guide.size(), all);
+        preferLastFrame(in, false, buffers.volume);
+    });
+    clock.run("cost aggregation", [&] {
+        weighEdges(guideOf(in, matched), matched.weights);
+        aggregateVolume(buffers.volume, matched.weights, volumePenalties(in.parameters), buffers.volumeScanlines,
+                        matched.winner);
+    });
+    finishWinners(in, clock, matched);
 }
 
 //! Predicted windows instead of trees. Each pass but the first takes its windows from the disparities of the one
@@ -243,7 +295,9 @@ void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, 
     matched.prior.clear();
     const bool hasTrees = in.parameters.aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES;
     clock.run("matching cost", [&] { prepareCost(in, matched); });
-    if (in.isTop() || hasTrees)
+    if (isPredictedByVideo(in))
+        aggregateWithLastFrame(in, buffers, clock, matched);
+    else if (in.isTop() || hasTrees)
         aggregateTrees(in, buffers, clock, matched);
     else
         aggregateScanlines(in, buffers, clock, matched);

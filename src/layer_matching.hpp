@@ -35,7 +35,7 @@ struct MatchedLayer
     ColorGradientCost colorGradient;
     const MatchingCost& cost() const { return isCensus ? static_cast<const MatchingCost&>(census) : colorGradient; }
 
-    Mat guide, pixelIntv;
+    Mat guide, pixelIntv, weights;
     WindowBuffers windowBuffers;
     Mat matches, windows;
     Mat winner, residual, filtered, lastPass, lastUnfiltered, stable;
@@ -60,7 +60,12 @@ struct LayerInput
 struct LayerBuffers
 {
     DisparityForest forest;
-    int forestLayer = -1; // the layer that the forest is of
+    int forestLayer = -1; // the layer that the forest is of; -1: none was built
+    void forgetForest()
+    {
+        forest = DisparityForest();
+        forestLayer = -1;
+    }
 
     SupportPointBuffers supportPoints;
     Mat points;

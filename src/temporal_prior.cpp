@@ -12,7 +12,8 @@ namespace {
 
 typedef VideoFollowing V;
 
-const int largestPenalty = 3 * CostVolume::scale; // of disparities that the last frame does not predict
+// Of disparities that the last frame does not predict. Means vary less than costs, and contradict more clearly.
+const int largestPenalty = 6 * CostVolume::scale, largestOfMeans = 3 * CostVolume::scale;
 
 //! In pixels; false if the last frame predicts none.
 bool predictDisparity(const TemporalState& s, const Point& pixel, float& disparity)
@@ -34,10 +35,10 @@ bool predictDisparity(const TemporalState& s, const Point& pixel, float& dispari
 
 } // namespace
 
-void preferLastFrame(const TemporalState& s, int side, CostVolume& volume)
+bool hasPrior(const TemporalState& s) { return s.age > 1 && !s.motion.isStill; }
+
+void preferLastFrame(const TemporalState& s, int side, bool areMeans, CostVolume& volume)
 {
-    if (s.motion.isStill)
-        return;
     const Size size = s.last.disparity.size();
     parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
@@ -45,9 +46,10 @@ void preferLastFrame(const TemporalState& s, int side, CostVolume& volume)
             {
                 const Point pixel(std::min(x * side + side / 2, size.width - 1),
                                   std::min(y * side + side / 2, size.height - 1));
+                const int own = y * volume.size.width + x;
                 float disparity;
-                if (predictDisparity(s, pixel, disparity))
-                    volume.prefer(y * volume.size.width + x, disparity / side, largestPenalty);
+                if (predictDisparity(s, pixel, disparity) && !(areMeans && volume.contradicts(own, disparity / side)))
+                    volume.prefer(own, disparity / side, areMeans ? largestOfMeans : largestPenalty);
             }
     });
 }

@@ -174,7 +174,12 @@ private:
 void prefer(const Plane& plane, const TreeWalk& walk, const DisparityTree& tree, CostVolume& volume)
 {
     for (int i = 0; i < tree.size; ++i)
-        volume.prefer(walk.pixels[i], plane.dot(basisOf(walk.pixels[i], volume.size.width)), largestPenalty);
+    {
+        const int pixel = walk.pixels[i];
+        const double disparity = plane.dot(basisOf(pixel, volume.size.width));
+        if (!volume.contradicts(pixel, disparity))
+            volume.prefer(pixel, disparity, largestPenalty);
+    }
 }
 
 } // namespace

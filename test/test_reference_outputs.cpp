@@ -97,34 +97,41 @@ TEST_P(HDPStereo_ReferenceOutputAloe, aloe)
     checkReference(std::string("aloe_") + GetParam().fileName + ".png", *createSystem(GetParam(), 64), left, right);
 }
 
-//! The last frame of a video
-TEST(HDPStereo_ReferenceOutputVideo, temporal_prediction)
+struct VideoCase
 {
-    for (const bool isMoving : { false, true })
-    {
-        const Size size(160, 120);
-        const Board board = { Rect2d(60, 30, 50, 60), 18, 3 };
-        SyntheticVideo video(size, 8.3, 3);
-        const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, 32);
-        matcher->setUseTemporalPrediction(true);
-        const auto render = [&](int i) {
-            return video.render(i, std::vector<Board>(1, board), Point3d(0.1, 0.05, 0.0005) * (isMoving ? i : 0));
-        };
-        for (int i = 0; i < 4; ++i)
-            match(*matcher, render(i).left, render(i).right);
-        const SyntheticFrame last = render(4);
-        try
-        {
-            checkReference(isMoving ? "video_moving.png" : "video_still.png", *matcher, last.left, last.right);
-        }
-        catch (const SkipTestException&)
-        {
-            if (isMoving)
-                throw;
-        }
-    }
+    const char* name;
+    bool isMoving;
+    int numDisparities; // 64: the last frame takes the place of trees on the top layer
+};
+
+//! The last frame of a video
+typedef testing::TestWithParam<VideoCase> HDPStereo_ReferenceOutputVideo;
+
+TEST_P(HDPStereo_ReferenceOutputVideo, temporal_prediction)
+{
+    const VideoCase& param = GetParam();
+    const Size size(160, 120);
+    const Board board = { Rect2d(60, 30, 50, 60), 18, 3 };
+    SyntheticVideo video(size, 8.3, 3);
+    const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, param.numDisparities);
+    matcher->setUseTemporalPrediction(true);
+    const auto render = [&](int i) {
+        return video.render(i, std::vector<Board>(1, board), Point3d(0.1, 0.05, 0.0005) * (param.isMoving ? i : 0));
+    };
+    for (int i = 0; i < 4; ++i)
+        match(*matcher, render(i).left, render(i).right);
+    const SyntheticFrame last = render(4);
+    checkReference(param.name, *matcher, last.left, last.right);
+    Mat trees;
+    matcher->getForest(trees, noArray());
+    EXPECT_EQ(param.numDisparities == 64, trees.empty());
 }
 
+const VideoCase videoCases[] = { { "video_still.png", false, 32 },
+                                 { "video_moving.png", true, 32 },
+                                 { "video_without_trees.png", true, 64 } };
+
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutputVideo, testing::ValuesIn(videoCases));
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutput, testing::ValuesIn(allSystems()));
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutputAloe, testing::ValuesIn(systemsOfAloe()));
 

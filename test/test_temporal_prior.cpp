@@ -30,17 +30,17 @@ CostVolume flatVolume(Size size)
     return volume;
 }
 
-//! What the last frame's disparity adds to the cost of a candidate
-int penalty(double disparity, int candidate)
+//! What the last frame's disparity adds to the cost of a candidate, or to its mean
+int penalty(double disparity, int candidate, bool isMean)
 {
-    return std::min(cvRound(CostVolume::scale * std::abs(candidate - disparity)), 3 * CostVolume::scale);
+    return std::min(cvRound(CostVolume::scale * std::abs(candidate - disparity)), (isMean ? 3 : 6) * CostVolume::scale);
 }
 
-//! The second frame of a video: everything moved to the left by a cell, and nothing else is known to be as it was.
+//! The third frame of a video: everything moved to the left by a cell, and nothing else is known to be as it was.
 TemporalState movedState(ushort disparity)
 {
     TemporalState s;
-    s.age = 1;
+    s.age = 2;
     s.layer.scale = 1;
     s.layer.largest = side * candidates * subpixelScale;
     s.motion.isStill = false;
@@ -52,11 +52,11 @@ TemporalState movedState(ushort disparity)
     return s;
 }
 
-void expectCosts(const CostVolume& volume, int x, int y, double disparity)
+void expectCosts(const CostVolume& volume, int x, int y, double disparity, bool areMeans)
 {
     const uchar* costs = &volume.costs[volume.candidates[y * volume.size.width + x].start()];
     for (int k = 0; k < candidates; ++k)
-        EXPECT_EQ(flatCost + (disparity < 0 ? 0 : penalty(disparity, k)), costs[k]) << Point(x, y) << ", " << k;
+        EXPECT_EQ(flatCost + (disparity < 0 ? 0 : penalty(disparity, k, areMeans)), costs[k]) << Point(x, y) << ", " << k;
 }
 
 //! In columns of the volume: where the motion leads, at the same place, at both with one disparity or with two, new
@@ -67,7 +67,6 @@ TEST(HDPStereo_TemporalPrior, sources)
     const double there[] = { unmoved, unmoved, nearby, unmoved, unmoved },
                  expected[] = { moved, unmoved, moved, -1, -1 };
     TemporalState s = movedState(0);
-    CostVolume volume = flatVolume(layerSize / side);
     for (int i = 0; i < 5; ++i)
     {
         const int x = 3 * i * side + side / 2, half = side / 2; // one column of the volume in three is looked at
@@ -75,48 +74,118 @@ TEST(HDPStereo_TemporalPrior, sources)
         s.last.disparity.col(x).setTo(there[i] * side * subpixelScale);
         s.last.disparity.col(x + VideoFollowing::cell).setTo(moved * side * subpixelScale);
     }
-    preferLastFrame(s, side, volume);
-    for (int y = 0; y < volume.size.height; ++y)
-        for (int i = 0; i < 5; ++i)
-            expectCosts(volume, 3 * i, y, expected[i]);
+    for (bool areMeans : { false, true })
+    {
+        CostVolume volume = flatVolume(layerSize / side);
+        preferLastFrame(s, side, areMeans, volume);
+        for (int y = 0; y < volume.size.height; ++y)
+            for (int i = 0; i < 5; ++i)
+                expectCosts(volume, 3 * i, y, expected[i], areMeans);
+    }
 }
 
-//! Nothing moves: the costs stay.
-TEST(HDPStereo_TemporalPrior, still)
+//! Means that contradict stay, other costs do not.
+TEST(HDPStereo_TemporalPrior, contradiction)
 {
     TemporalState s = movedState(10 * side * subpixelScale);
+    s.sources.setTo(MOVED_PLACE);
+    for (bool areMeans : { false, true })
+    {
+        CostVolume volume = flatVolume(layerSize / side);
+        volume.costs[15] = (uchar)(flatCost - CostVolume::mostContradiction - 1);
+        const std::vector<uchar> before = volume.costs;
+        preferLastFrame(s, side, areMeans, volume);
+        for (int k = 0; k < candidates; ++k)
+            EXPECT_EQ(before[k] + (areMeans ? 0 : penalty(10, k, false)), volume.costs[k]) << k;
+        expectCosts(volume, 1, 0, 10, areMeans);
+    }
+}
+
+//! None before a second pair has agreed, and none if nothing moves.
+TEST(HDPStereo_TemporalPrior, hasPrior)
+{
+    TemporalState s = movedState(0);
+    EXPECT_TRUE(hasPrior(s));
+    s.age = 1;
+    EXPECT_FALSE(hasPrior(s));
+    s.age = 2;
     s.motion.isStill = true;
-    s.sources.setTo(SAME_PLACE);
-    CostVolume volume = flatVolume(layerSize / side);
-    const std::vector<uchar> costs = volume.costs;
-    preferLastFrame(s, side, volume);
-    EXPECT_EQ(costs, volume.costs);
+    EXPECT_FALSE(hasPrior(s));
 }
 
 TEST(HDPStereo_CostVolume, prefer)
 {
     const int largest = 12;
-    CostVolume volume = flatVolume(Size(4, 1));
+    CostVolume volume = flatVolume(Size(3, 1));
     const auto costsOf = [&](int pixel) { return &volume.costs[volume.candidates[pixel].start()]; };
     const DisparityInterval none = { 1, 0 };
     volume.candidates[1].interval = none;
-    costsOf(2)[15] = (uchar)(flatCost - CostVolume::mostContradiction - 1);
-    costsOf(3)[15] = (uchar)(flatCost - CostVolume::mostContradiction);
-    costsOf(3)[0] = 250;
-    std::vector<uchar> before = volume.costs;
-    for (int pixel = 0; pixel < 4; ++pixel)
+    costsOf(2)[0] = 250;
+    const std::vector<uchar> before = volume.costs;
+    for (int pixel = 0; pixel < 3; ++pixel)
         volume.prefer(pixel, 7.25, largest);
     for (int k = 0; k < candidates; ++k)
     {
         const int rise = std::min(cvRound(CostVolume::scale * std::abs(k - 7.25)), largest);
         EXPECT_EQ(flatCost + rise, costsOf(0)[k]);
         EXPECT_EQ(before[2 * CostVolume::row + k], costsOf(1)[k]) << "of a pixel without candidates";
-        EXPECT_EQ(before[4 * CostVolume::row + k], costsOf(2)[k]) << "of a contradicting pixel";
-        EXPECT_EQ(std::min(before[6 * CostVolume::row + k] + rise, 255), costsOf(3)[k]);
+        EXPECT_EQ(std::min(before[4 * CostVolume::row + k] + rise, 255), costsOf(2)[k]);
     }
     volume.prefer(0, 1e6, largest); // beyond the candidates, whose costs all rise by as much
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[0]);
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[candidates - 1]);
+}
+
+TEST(HDPStereo_CostVolume, contradicts)
+{
+    CostVolume volume = flatVolume(Size(2, 1));
+    const DisparityInterval none = { 1, 0 };
+    volume.candidates[1].interval = none;
+    uchar* const costs = &volume.costs[0];
+    costs[15] = (uchar)(flatCost - CostVolume::mostContradiction);
+    EXPECT_FALSE(volume.contradicts(0, 7.25));
+    costs[15] = (uchar)(flatCost - CostVolume::mostContradiction - 1);
+    EXPECT_TRUE(volume.contradicts(0, 7.25));
+    EXPECT_TRUE(volume.contradicts(0, 1e6)) << "beyond the candidates";
+    EXPECT_TRUE(volume.contradicts(0, -1e6)) << "beyond the candidates";
+    EXPECT_FALSE(volume.contradicts(0, 14.5));
+    EXPECT_TRUE(volume.contradicts(0, 14.4));
+    EXPECT_FALSE(volume.contradicts(1, 7.25)) << "a pixel without candidates";
+}
+
+//! Costs with fractions, some too large for the volume
+class SomeCost : public MatchingCost
+{
+public:
+    static float of(int pixel, int disparity) { return ((pixel * 7 + disparity * 13) % 500) / 12.f; }
+    void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const CV_OVERRIDE
+    {
+        for (int i = 0; i < count; ++i)
+            for (int k = 0; k < lanes; ++k)
+                *cost++ = of(pixels[i], first + k);
+    }
+};
+
+//! In memory that held a larger volume before, too
+TEST(HDPStereo_CostVolume, fill)
+{
+    CostVolume volume;
+    for (const Size& size : { Size(9, 5), Size(4, 3) })
+    {
+        const DisparityInterval all = { 0, (ushort)(5 * size.width) };
+        volume.fill(SomeCost(), size, all);
+        EXPECT_EQ(size, volume.size);
+        EXPECT_EQ(all.last + 1, volume.numDisparities);
+        ASSERT_LE(volume.rows * CostVolume::row, volume.costs.size());
+        for (int pixel = 0; pixel < size.area(); ++pixel)
+        {
+            const CostVolume::Candidates& own = volume.candidates[pixel];
+            ASSERT_EQ(all.size(), own.interval.size());
+            ASSERT_LE((size_t)own.firstRow + own.rows(), volume.rows);
+            for (int k = 0; k < all.size(); ++k)
+                EXPECT_NEAR(std::min(CostVolume::scale * SomeCost::of(pixel, k), 255.f), volume.costs[own.start() + k], 0.501);
+        }
+    }
 }
 
 } // namespace

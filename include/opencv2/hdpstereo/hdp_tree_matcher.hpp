@@ -396,14 +396,15 @@ public:
     /** @brief Whether the disparities of a pair are joined with those of the pair before, for videos.
 
     The left images give the motion of the camera, if there is any. It takes the last map to this frame: where a pixel
-    was before, and the disparity it then has now. If the camera moves, other disparities than this one cost up to 3
-    bits more on the top layer, as P(D_t | D_(t-1)), where the left image looks the same and the costs do not
-    contradict. Each pixel of the finest layer keeps the disparity that is predicted so, or the one of the last frame
-    at the same place if the image stands still there, unless the measured one matches clearly better. If both agree,
-    the result moves towards the measured one by 1/2 to 1/5 of the difference, and if they do not for some frames, the
-    measured one is taken. If the camera moves, the census of fine layers does without its tolerance of noise, which
-    costs faint texture. Maps have less noise and flicker less, surfaces with little texture are more often right, and
-    things that appear, move or vanish are followed.
+    was before, and the disparity it then has now. If the camera moves, other disparities than this one cost up to
+    6 bits more on the top layer, as P(D_t | D_(t-1)), where the left image looks the same. With scanlines and two
+    layers and more below, this layer then does without trees; means over trees rise by up to 3 bits, unless they
+    contradict. Each pixel of the finest layer keeps the disparity that is predicted so, or the one of the last
+    frame at the same place if the image stands still there, unless the measured one matches clearly better. If
+    both agree, the result moves towards the measured one by 1/2 to 1/5 of the difference, and if they do not for
+    some frames, the measured one is taken. If the camera moves, the census of fine layers does without its
+    tolerance of noise, which costs faint texture. Maps have less noise and flicker less, surfaces with little
+    texture are more often right, and things that appear, move or vanish are followed.
 
     The result depends on the pairs before, from the first one on: the first compute(), one for images of another size
     or with another minDisparity, numDisparities or finestLayer, and one whose left image shows another scene or whose
@@ -485,7 +486,7 @@ public:
 
     With scanlines this is the top layer, whose trees search the full range. Either may be cv::noArray().
     @param trees Receives the number of each pixel's tree, from 0: CV_32SC1 of the layer's size. Empty before the first
-    compute() and after one that threw an exception.
+    compute(), after one that threw an exception, and if temporal prediction took the place of trees.
     @param intervals Receives the first and the last candidate of each pixel's tree, TreeIntv, counted from the smallest
     disparity: CV_16UC2 of the same size.
      */
