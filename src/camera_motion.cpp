@@ -177,13 +177,16 @@ void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& poi
 {
     const int top = (int)before.size() - 1;
     const Size grid(before[top].cols / T::spacing, before[top].rows / T::spacing);
+    std::vector<Point> places(grid.area());
+    parallel_for_(Range(0, grid.height), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            for (int x = 0; x < grid.width; ++x)
+                places[y * grid.width + x] = choosePlace(before, Point(x, y) * T::spacing);
+    });
     points.clear();
-    for (int y = 0; y < grid.height; ++y)
-        for (int x = 0; x < grid.width; ++x)
+    for (const Point& place : places)
+        if (place != nowhere)
         {
-            const Point place = choosePlace(before, Point(x, y) * T::spacing);
-            if (place == nowhere)
-                continue;
             TrackedPoint point;
             point.before = point.now = place * (1 << top);
             point.disparity = 0;

@@ -116,12 +116,13 @@ public:
     BackwardMotion(const CameraMotion& motion, double minDisparity, double largest);
 
     //! Where a pixel was if this is its disparity now; at negative coordinates if it is behind the camera
-    Point2f place(int x, int y, float disparity) const
+    CV_ALWAYS_INLINE Point2f place(int x, int y, float disparity) const
     {
-        const float w = w_[0] * x + w_[1] * y + w_[2] * disparity + w_[3], factor = w > 0.001f ? 1 / w : 0;
-        const Point2f place((x_[0] * x + x_[1] * y + x_[2] * disparity + x_[3]) * factor,
-                            (y_[0] * x + y_[1] * y + y_[2] * disparity + y_[3]) * factor);
-        return factor > 0 ? place : Point2f(-1, -1);
+        const float least = 0.001f, w = w_[0] * x + w_[1] * y + w_[2] * disparity + w_[3];
+        const float factor = 1 / (w > least ? w : least);
+        const float placeX = (x_[0] * x + x_[1] * y + x_[2] * disparity + x_[3]) * factor;
+        const float placeY = (y_[0] * x + y_[1] * y + y_[2] * disparity + y_[3]) * factor;
+        return Point2f(w > least ? placeX : -1, w > least ? placeY : -1);
     }
 
     const DisparityChange& change() const { return change_; }

@@ -106,10 +106,19 @@ bool CostVolume::contradicts(int pixel, double disparity) const
 void CostVolume::prefer(int pixel, double disparity, int largest)
 {
     const Candidates& own = candidates[pixel];
-    const int count = own.interval.size(), d = cvRound(scale * disparity) - scale * own.interval.first;
-    uchar* const raised = &costs[own.start()];
-    HDP_VECTORIZED for (int k = 0; k < count; ++k) raised[k] =
-        (uchar)std::min(raised[k] + std::min(std::abs(scale * k - d), largest), 255);
+    const int d = cvRound(scale * disparity) - scale * own.interval.first, end = scale * own.rows() * row + largest;
+    const short first = (short)std::min(std::max(d, -largest), end), most = (short)largest; // for vectors of 16 bits
+    uchar* raised = &costs[own.start()];
+    for (int r = 0; r < own.rows(); ++r, raised += row)
+    {
+        const short from = (short)(first - r * row * scale);
+        HDP_VECTORIZED for (short k = 0; k < row; ++k)
+        {
+            const short distance = (short)(k * scale - from), opposite = (short)-distance;
+            const short rise = std::min(std::max(distance, opposite), most);
+            raised[k] = (uchar)std::min((short)(raised[k] + rise), (short)255);
+        }
+    }
 }
 
 } // namespace hdp

@@ -203,8 +203,7 @@ void aggregateTrees(const LayerInput& in, LayerBuffers& buffers, StageClock& clo
 //! scanlines of the layers below repair the rest.
 bool isPredictedByVideo(const LayerInput& in)
 {
-    return hasPrior(in) && hasTreeScanlines(in) &&
-           in.parameters.aggregation == HDPTreeMatcher::AGGREGATION_SCANLINES &&
+    return hasPrior(in) && hasTreeScanlines(in) && in.parameters.aggregation == HDPTreeMatcher::AGGREGATION_SCANLINES &&
            in.layer - in.settings.finestLayer >= repairingLayers;
 }
 

@@ -35,6 +35,17 @@ void dispatchCompare(const ushort* measured, const ushort* unmoved, const int* m
                     CV_CPU_DISPATCH_MODES_ALL);
 }
 
+void dispatchCells(const ComparedRow* rows, const int* moved, const uchar* different, const int* cells, int count,
+                   int offset, short* evidence)
+{
+    CV_CPU_DISPATCH(compareCells, (rows, moved, different, cells, count, offset, evidence), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+int dispatchChoices(const short* sums, const uchar* sources, int count, bool isStill, int movedShare, uchar* choices)
+{
+    CV_CPU_DISPATCH(chooseCells, (sums, sources, count, isStill, movedShare, choices), CV_CPU_DISPATCH_MODES_ALL);
+}
+
 void dispatchAdd(const short* evidence, int sign, int length, short* columns)
 {
     CV_CPU_DISPATCH(addEvidence, (evidence, sign, length, columns), CV_CPU_DISPATCH_MODES_ALL);
@@ -49,13 +60,6 @@ void dispatchJoin(const ushort* measured, const TemporalRow& row, int width, con
                   uchar* detail)
 {
     CV_CPU_DISPATCH(joinRow, (measured, row, width, rule, disparity, detail), CV_CPU_DISPATCH_MODES_ALL);
-}
-
-//! The cost of a pixel; half of the bits if the right image does not show its match
-int costOf(const CensusCost& cost, const Point& pixel, int disparity)
-{
-    const int candidate = wholeDisparity(disparity);
-    return candidate > pixel.x ? cost.comparisons() / 2 : cost.at(pixel, candidate);
 }
 
 //! Memory for a row
@@ -103,29 +107,6 @@ void correctDrift(const Mat& measured, TemporalState& s)
     correctChange(predicted, now, s.backward.change());
 }
 
-//! Adds what two pixels of a cell tell, those on its diagonal.
-void compareCell(const CensusCost& cost, Point cell, const Mat& measured, const Mat& last, int moved, int sources,
-                 int offset, Vec4s& evidence)
-{
-    for (int i = 0; i < V::cell; ++i)
-    {
-        const Point pixel(V::cell * cell.x + i, V::cell * cell.y + i);
-        const int here = costOf(cost, pixel, measured.at<ushort>(pixel));
-        if (sources & SAME_PLACE)
-        {
-            const int there = costOf(cost, pixel, last.at<ushort>(pixel));
-            evidence[COST_UNMOVED] = (short)(evidence[COST_UNMOVED] + there - here);
-            evidence[SCALE_UNMOVED] = (short)(evidence[SCALE_UNMOVED] + here + offset);
-        }
-        if (sources & MOVED_PLACE)
-        {
-            const int there = costOf(cost, pixel, moved);
-            evidence[COST_MOVED] = (short)(evidence[COST_MOVED] + there - here);
-            evidence[SCALE_MOVED] = (short)(evidence[SCALE_MOVED] + here + offset);
-        }
-    }
-}
-
 //! Compares costs in each cell whose first pixel has another disparity in the last frame.
 void compareCosts(const CensusCost& cost, const Mat& measured, TemporalState& s)
 {
@@ -147,30 +128,23 @@ void compareCosts(const CensusCost& cost, const Mat& measured, TemporalState& s)
                 scratch.unmoved[count] = j;
                 count += different[j] != 0;
             }
-            Vec4s* evidence = s.evidence.ptr<Vec4s>(i);
-            std::fill(evidence, evidence + cells, Vec4s());
-            for (int k = 0; k < count; ++k)
+            short* const evidence = s.evidence.ptr<short>(i);
+            std::fill(evidence, evidence + cells * EVIDENCE_CHANNELS, (short)0);
+            ComparedRow compared[V::cell];
+            for (int k = 0; k < V::cell; ++k)
             {
-                const int j = scratch.unmoved[k];
-                compareCell(cost, Point(j, i), measured, s.last.disparity,
-                            scratch.moved[j] >> TemporalFrame::detailBits, different[j], offset, evidence[j]);
+                const ComparedRow row = { cost.leftPixels(y + k),
+                                          cost.rightPlane(0, y + k) + measured.cols - 1,
+                                          cost.planeStride(),
+                                          cost.planes(),
+                                          cost.comparisons() / 2,
+                                          measured.ptr<ushort>(y + k),
+                                          s.last.disparity.ptr<ushort>(y + k) };
+                compared[k] = row;
             }
+            dispatchCells(compared, scratch.moved.data(), different, scratch.unmoved.data(), count, offset, evidence);
         }
     });
-}
-
-//! movedShare: TemporalJoin's, or wrongShare
-TemporalChoice chooseCell(const short* sums, int sources, bool isStill, int movedShare)
-{
-    const int unmoved = sums[COST_UNMOVED], moved = sums[COST_MOVED];
-    const bool hasUnmoved = (sources & SAME_PLACE) != 0, hasMoved = (sources & MOVED_PLACE) != 0;
-    if (isStill)
-        return hasUnmoved && 100 * unmoved <= T::keptShare * sums[SCALE_UNMOVED] ? UNMOVED : MEASURED;
-    const int least = hasMoved ? std::min(moved, 0) : 0;
-    const int scale = std::max(sums[SCALE_UNMOVED], sums[SCALE_MOVED]);
-    if (hasUnmoved && 100 * (unmoved - least) <= movedShare * scale)
-        return UNMOVED;
-    return hasMoved && 100 * moved <= movedShare * sums[SCALE_MOVED] ? MOVED : MEASURED;
 }
 
 /** Chooses by the sums over a window around each cell; beside the image there is no evidence.
@@ -179,7 +153,7 @@ bool choose(TemporalState& s)
 {
     const Size cells = s.evidence.size();
     const int radius = T::window / 2, stripeHeight = 32, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
-    const bool isStill = s.motion.isStill, isStrict = isStill || s.age == 1;
+    const bool isStill = s.motion.isStill;
     std::vector<int> sourceCounts(cells.height), contradicted(cells.height);
     s.choices.create(cells, CV_8U);
     parallel_for_(Range(0, stripes), [&](const Range& range) {
@@ -197,15 +171,9 @@ bool choose(TemporalState& s)
             add(y + radius, 1);
             dispatchWindow(columns.data(), length, sums.data());
             const uchar* sources = s.sources.ptr(y);
-            uchar* choices = s.choices.ptr(y);
-            for (int x = 0; x < cells.width; ++x)
-            {
-                const short* const ofCell = &sums[x * EVIDENCE_CHANNELS];
-                const TemporalChoice strict = chooseCell(ofCell, sources[x], isStill, T::wrongShare);
-                sourceCounts[y] += sources[x] != 0;
-                contradicted[y] += sources[x] != 0 && strict == MEASURED;
-                choices[x] = (uchar)(isStrict ? strict : chooseCell(ofCell, sources[x], isStill, T::movedShare));
-            }
+            sourceCounts[y] = (int)(cells.width - std::count(sources, sources + cells.width, 0));
+            contradicted[y] = dispatchChoices(sums.data(), sources, cells.width, isStill,
+                                              s.age == 1 ? T::wrongShare : T::movedShare, s.choices.ptr(y));
             add(y - radius, -1);
         }
     });

@@ -51,6 +51,15 @@ enum TemporalChoice
     MOVED
 };
 
+//! What costs of a row's pixels are compared of
+struct ComparedRow
+{
+    const uchar *left, *right;        // CensusCost::leftPixels(), and rightPlane() for candidate 0 of the first pixel
+    size_t planeStride;               // see CensusCost
+    int planes, unseenCost;           // the cost of a match that the right image does not show
+    const ushort *measured, *unmoved; // disparities, the second those of the frame before
+};
+
 //! What each pixel of a row takes, and what the frame before has for it
 struct TemporalRow
 {

@@ -49,6 +49,27 @@ are far apart.
 void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int farthest,
                         uchar* sources, uchar* different);
 
+/** Adds up what the pixels on the diagonals of cells tell, see TemporalEvidence.
+@param rows The rows of the cells.
+@param moved As of compareDisparities().
+@param different As well.
+@param cells The cells to compare.
+@param count Their number.
+@param offset What a scale has beside the measured cost, per pixel.
+@param evidence Receives EVIDENCE_CHANNELS numbers per cell; those of other cells stay. */
+void compareCells(const ComparedRow* rows, const int* moved, const uchar* different, const int* cells, int count,
+                  int offset, short* evidence);
+
+/** Chooses for the cells of a row.
+@param sums Of the evidence over the window of each.
+@param sources Of each.
+@param count Number of cells.
+@param isStill Whether the camera is at rest.
+@param movedShare TemporalJoin's, for the choices.
+@param choices Receives a TemporalChoice of each.
+@return How many that have a source contradict it: with wrongShare in place of movedShare, they would be measured. */
+int chooseCells(const short* sums, const uchar* sources, int count, bool isStill, int movedShare, uchar* choices);
+
 /** Joins a row of measured disparities with those of the frame before.
 @param measured The measured ones.
 @param rows What the frame before has.
@@ -65,6 +86,68 @@ namespace {
 
 //! condition ? a : b, condition being 0 or 1, without a branch
 inline int select(int condition, int a, int b) { return b ^ ((a ^ b) & -condition); }
+
+inline int countBits(unsigned bits)
+{
+#ifdef __POPCNT__
+    return __builtin_popcount(bits);
+#else
+    return countCensusBits(bits);
+#endif
+}
+
+//! The cost of a pixel; half of the bits if the right image does not show its match
+template <int planes> inline int costOf(const ComparedRow& row, int x, int disparity)
+{
+    const int candidate = wholeDisparity(disparity);
+    if (candidate > x)
+        return row.unseenCost;
+    const uchar *left = row.left + 4 * x, *right = row.right - x + candidate;
+    unsigned bits = 0;
+    for (int plane = 0; plane < planes; ++plane, right += row.planeStride)
+        bits |= (unsigned)(left[plane] ^ *right) << (8 * plane);
+    return countBits(bits);
+}
+
+//! What a cell takes, of its sums over the window. isStill: 0 or 1
+inline int choiceOf(const short* sums, int sources, int isStill, int movedShare)
+{
+    typedef TemporalJoin T;
+    const int unmoved = sums[COST_UNMOVED], moved = sums[COST_MOVED];
+    const int scaleUnmoved = sums[SCALE_UNMOVED], scaleMoved = sums[SCALE_MOVED];
+    const int hasUnmoved = sources & 1, hasMoved = (sources >> 1) & (isStill ^ 1);
+    const int least = std::min(moved, 0) & -hasMoved;
+    const int scale = select(isStill, scaleUnmoved, std::max(scaleUnmoved, scaleMoved));
+    const int share = select(isStill, T::keptShare, movedShare);
+    const int takesUnmoved = hasUnmoved & (100 * (unmoved - least) <= share * scale);
+    const int takesMoved = hasMoved & (100 * moved <= movedShare * scaleMoved);
+    return select(takesUnmoved, UNMOVED, takesMoved * MOVED);
+}
+
+template <int planes>
+void compareCellsOf(const ComparedRow* rows, const int* moved, const uchar* different, const int* cells, int count,
+                    int offset, short* evidence)
+{
+    for (int k = 0; k < count; ++k)
+    {
+        const int j = cells[k], sources = different[j], movedHere = moved[j] >> TemporalFrame::detailBits;
+        int unmovedCost = 0, movedCost = 0, scale = 0;
+        for (int i = 0; i < VideoFollowing::cell; ++i)
+        {
+            const int x = VideoFollowing::cell * j + i, here = costOf<planes>(rows[i], x, rows[i].measured[x]);
+            scale += here + offset;
+            if (sources & SAME_PLACE)
+                unmovedCost += costOf<planes>(rows[i], x, rows[i].unmoved[x]) - here;
+            if (sources & MOVED_PLACE)
+                movedCost += costOf<planes>(rows[i], x, movedHere) - here;
+        }
+        short* const ofCell = evidence + j * EVIDENCE_CHANNELS;
+        ofCell[COST_UNMOVED] = (short)unmovedCost;
+        ofCell[COST_MOVED] = (short)movedCost;
+        ofCell[SCALE_UNMOVED] = (short)(sources & SAME_PLACE ? scale : 0);
+        ofCell[SCALE_MOVED] = (short)(sources & MOVED_PLACE ? scale : 0);
+    }
+}
 
 } // namespace
 
@@ -114,6 +197,30 @@ void compareDisparities(const ushort* measured, const ushort* unmoved, const int
         different[j] = (uchar)((hasUnmoved & (std::abs(there - here) > same)) * SAME_PLACE +
                                (hasMoved & (std::abs(where - here) > same)) * MOVED_PLACE);
     }
+}
+
+void compareCells(const ComparedRow* rows, const int* moved, const uchar* different, const int* cells, int count,
+                  int offset, short* evidence)
+{
+    const auto compare = rows[0].planes == 3   ? &compareCellsOf<3>
+                         : rows[0].planes == 2 ? &compareCellsOf<2>
+                                               : &compareCellsOf<1>;
+    compare(rows, moved, different, cells, count, offset, evidence);
+}
+
+int chooseCells(const short* sums, const uchar* sources, int count, bool isStill, int movedShare, uchar* choices)
+{
+    const int still = isStill;
+    int contradicting = 0;
+    static_assert(MEASURED == 0 && SAME_PLACE == 1 && MOVED_PLACE == 2, "choiceOf() relies on it.");
+    HDP_VECTORIZED for (int j = 0; j < count; ++j)
+    {
+        const short* const ofCell = sums + j * EVIDENCE_CHANNELS;
+        contradicting +=
+            (sources[j] != 0) & (choiceOf(ofCell, sources[j], still, TemporalJoin::wrongShare) == MEASURED);
+        choices[j] = (uchar)choiceOf(ofCell, sources[j], still, movedShare);
+    }
+    return contradicting;
 }
 
 void joinRow(const ushort* measured, const TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,

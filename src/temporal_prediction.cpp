@@ -3,6 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
 #include "temporal_prediction.hpp"
+#include "temporal_prediction.simd.hpp"
+#include "temporal_prediction.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "image_levels.hpp"
 #include "image_pyramid.hpp"
@@ -14,6 +16,16 @@ namespace hdp {
 namespace {
 
 typedef VideoFollowing T;
+
+bool dispatchStep(const BackwardMotion& motion, const Size& size, bool isFirst, const BlockRow& row)
+{
+    CV_CPU_DISPATCH(stepBack, (motion, size, isFirst, row), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchChange(const DisparityChange& change, const ushort* before, const BlockRow& row)
+{
+    CV_CPU_DISPATCH(changeBlocks, (change, before, row), CV_CPU_DISPATCH_MODES_ALL);
+}
 
 void buildGrey(const Mat& left, TemporalState& s)
 {
@@ -54,37 +66,36 @@ void findMotion(TemporalState& s)
 void findShifts(TemporalState& s)
 {
     const Size size = s.last.disparity.size();
-    const int steps = 4, maxLastStep = 2;
-    s.shifts.create((size.height + T::block - 1) / T::block, (size.width + T::block - 1) / T::block, CV_16SC2);
+    const int steps = 4, maxLastStep = 2, count = (size.width + T::block - 1) / T::block;
+    s.shifts.create((size.height + T::block - 1) / T::block, count, CV_16SC2);
     parallel_for_(Range(0, s.shifts.rows), [&](const Range& rows) {
+        std::vector<float> disparity(count);
+        std::vector<ushort> before(count);
+        std::vector<int> atX(count), atY(count), lastStep(count), state(count);
         for (int i = rows.start; i < rows.end; ++i)
         {
             const int y = std::min(i * T::block + T::block / 2, size.height - 1);
-            const DisparityChange change = s.backward.change();
-            const float unit = 1.f / subpixelScale, ofRow = change.ofRow(y);
-            Vec2s* const shifts = s.shifts.ptr<Vec2s>(i);
-            for (int j = 0; j < s.shifts.cols; ++j)
+            const BlockRow row = { y,          size.width, count,           disparity.data(),
+                                   atX.data(), atY.data(), lastStep.data(), state.data() };
+            for (int j = 0; j < count; ++j)
             {
-                const int x = std::min(j * T::block + T::block / 2, size.width - 1);
-                Point at(x, y);
-                float disparity = s.last.disparity.ptr<ushort>(y)[x] * unit;
-                int lastStep = 0;
-                bool isInside = true;
-                for (int step = 0; step < steps; ++step)
-                {
-                    const Point2f place = s.backward.place(x, y, disparity);
-                    isInside = place.x >= 0 && place.y >= 0 && place.x <= size.width - 1 && place.y <= size.height - 1;
-                    if (!isInside)
-                        break;
-                    const Point next((int)(place.x + 0.5f), (int)(place.y + 0.5f));
-                    lastStep = std::abs(next.x - at.x) + std::abs(next.y - at.y);
-                    at = next;
-                    if (lastStep == 0 && step > 0)
-                        break;
-                    disparity = change.now(s.last.disparity.ptr<ushort>(at.y)[at.x] * unit, change.ofX * x + ofRow);
-                }
-                shifts[j] = isInside && lastStep <= maxLastStep ? Vec2s((short)(at.x - x), (short)(at.y - y))
-                                                                : Vec2s((short)TemporalState::noShift, 0);
+                atX[j] = row.centre(j);
+                atY[j] = y;
+                disparity[j] = s.last.disparity.ptr<ushort>(y)[atX[j]] / (float)subpixelScale;
+                state[j] = BlockRow::MOVING;
+            }
+            for (int step = 0; step < steps && !dispatchStep(s.backward, size, step == 0, row); ++step)
+            {
+                for (int j = 0; j < count; ++j)
+                    before[j] = s.last.disparity.ptr<ushort>(atY[j])[atX[j]];
+                dispatchChange(s.backward.change(), before.data(), row);
+            }
+            Vec2s* const shifts = s.shifts.ptr<Vec2s>(i);
+            for (int j = 0; j < count; ++j)
+            {
+                const bool isFound = state[j] != BlockRow::OUTSIDE && lastStep[j] <= maxLastStep;
+                shifts[j] = isFound ? Vec2s((short)(atX[j] - row.centre(j)), (short)(atY[j] - y))
+                                    : Vec2s((short)TemporalState::noShift, 0);
             }
         }
     });

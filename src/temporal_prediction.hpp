@@ -95,6 +95,25 @@ inline Point shifted(int x, int y, const Vec2s& shift, Size size)
                  std::min(std::max(y + shift[1], 0), size.height - 1));
 }
 
+//! A row of blocks that findShifts() follows to where they were
+struct BlockRow
+{
+    enum State
+    {
+        MOVING,
+        ARRIVED,
+        OUTSIDE // of the last frame
+    };
+    int y, width, count;               // of the blocks' centres, of the layer, number of blocks
+    float* disparity;                  // of the centres now, if they were at (atX, atY)
+    int *atX, *atY, *lastStep, *state; // lastStep: sum of both coordinates' changes
+
+    CV_ALWAYS_INLINE int centre(int j) const
+    {
+        return std::min(j * VideoFollowing::block + VideoFollowing::block / 2, width - 1);
+    }
+};
+
 /** Finds how the cameras moved since the last frame, and where everything was then. The first frame, one of another
 size or with other disparities, and one that shows another scene begin anew.
 @param left The left image of the finest layer that is matched, see greyLevels().

@@ -56,7 +56,8 @@ void expectCosts(const CostVolume& volume, int x, int y, double disparity, bool 
 {
     const uchar* costs = &volume.costs[volume.candidates[y * volume.size.width + x].start()];
     for (int k = 0; k < candidates; ++k)
-        EXPECT_EQ(flatCost + (disparity < 0 ? 0 : penalty(disparity, k, areMeans)), costs[k]) << Point(x, y) << ", " << k;
+        EXPECT_EQ(flatCost + (disparity < 0 ? 0 : penalty(disparity, k, areMeans)), costs[k])
+            << Point(x, y) << ", " << k;
 }
 
 //! In columns of the volume: where the motion leads, at the same place, at both with one disparity or with two, new
@@ -183,7 +184,8 @@ TEST(HDPStereo_CostVolume, fill)
             ASSERT_EQ(all.size(), own.interval.size());
             ASSERT_LE((size_t)own.firstRow + own.rows(), volume.rows);
             for (int k = 0; k < all.size(); ++k)
-                EXPECT_NEAR(std::min(CostVolume::scale * SomeCost::of(pixel, k), 255.f), volume.costs[own.start() + k], 0.501);
+                EXPECT_NEAR(std::min(CostVolume::scale * SomeCost::of(pixel, k), 255.f), volume.costs[own.start() + k],
+                            0.501);
         }
     }
 }
