@@ -33,6 +33,9 @@ void rightCensusRow(const CensusWindow& window, const short* grey, int cols, uch
 //! CensusCost::evaluate()
 void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
 
+//! CensusCost::evaluateScaled()
+void scaleCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int scale, uchar* cost);
+
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
@@ -115,8 +118,9 @@ template <int count, typename Word> inline Word countInBytes(Word a, Word b, Wor
     return (nibbles & repeated<Word>(0x0f)) + ((nibbles >> 4) & repeated<Word>(0x0f));
 }
 
-template <int lanes, int count, typename Word>
-void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, float* cost)
+//! Calls store(bits, number, position): so many costs in bits, those of pixel i from position i * lanes on.
+template <int lanes, int count, typename Word, typename Store>
+void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, const Store& store)
 {
     // Bits are counted in all words of a block at once, in order to fill vectors.
     const int block = lanes > 16 ? 1 : 32, words = lanes / (int)sizeof(Word);
@@ -143,38 +147,50 @@ void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int 
         }
         HDP_VECTORIZED for (int k = 0; k < pixelCount * words; ++k) bits[k] = countInBytes<count>(
             differences[0][k], differences[count > 1 ? 1 : 0][k], differences[count > 2 ? 2 : 0][k]);
-        const uchar* bytes = reinterpret_cast<const uchar*>(bits);
-        HDP_VECTORIZED for (int k = 0; k < pixelCount * lanes; ++k) cost[k] = bytes[k];
-        cost += pixelCount * lanes;
+        store(reinterpret_cast<const uchar*>(bits), pixelCount * lanes, begin * lanes);
     }
 }
 
-template <int lanes> void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, float* cost)
+template <int lanes, typename Store>
+void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, const Store& store)
 {
     typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
     if (planes.count == 3)
-        evaluateCosts<lanes, 3, Word>(planes, pixels, size, first, cost);
+        evaluateCosts<lanes, 3, Word>(planes, pixels, size, first, store);
     else if (planes.count == 2)
-        evaluateCosts<lanes, 2, Word>(planes, pixels, size, first, cost);
+        evaluateCosts<lanes, 2, Word>(planes, pixels, size, first, store);
     else
-        evaluateCosts<lanes, 1, Word>(planes, pixels, size, first, cost);
+        evaluateCosts<lanes, 1, Word>(planes, pixels, size, first, store);
 }
 
 } // namespace
 
 void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost)
 {
+    const auto store = [=](const uchar* bits, int number, int position) {
+        float* const to = cost + position;
+        HDP_VECTORIZED for (int k = 0; k < number; ++k) to[k] = bits[k];
+    };
     switch (lanes)
     {
     case 4:
-        return evaluateCosts<4>(planes, pixels, count, first, cost);
+        return evaluateCosts<4>(planes, pixels, count, first, store);
     case 8:
-        return evaluateCosts<8>(planes, pixels, count, first, cost);
+        return evaluateCosts<8>(planes, pixels, count, first, store);
     case 16:
-        return evaluateCosts<16>(planes, pixels, count, first, cost);
+        return evaluateCosts<16>(planes, pixels, count, first, store);
     default:
-        return evaluateCosts<32>(planes, pixels, count, first, cost);
+        return evaluateCosts<32>(planes, pixels, count, first, store);
     }
+}
+
+void scaleCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int scale, uchar* cost)
+{
+    evaluateCosts<CensusCost::scaledLanes>(planes, pixels, count, first,
+                                           [=](const uchar* bits, int number, int position) {
+        uchar* const to = cost + position;
+        HDP_VECTORIZED for (int k = 0; k < number; ++k) to[k] = (uchar)(bits[k] * scale);
+    });
 }
 
 #endif

@@ -38,8 +38,9 @@ void CostVolume::create(const DisparityForest& forest)
         costs.resize(rows * row);
 }
 
-void CostVolume::fill(const MatchingCost& cost, const Size& layerSize, const DisparityInterval& interval)
+void CostVolume::fill(const CensusCost& cost, const Size& layerSize, const DisparityInterval& interval)
 {
+    static_assert(+CensusCost::scaledLanes == +row, "A row of costs is computed at once.");
     size = layerSize;
     numDisparities = interval.last + 1;
     usualRows_ = rowsOf(interval);
@@ -48,28 +49,23 @@ void CostVolume::fill(const MatchingCost& cost, const Size& layerSize, const Dis
     if (costs.size() < rows * row)
         costs.resize(rows * row);
     parallel_for_(Range(0, size.height), [&](const Range& range) {
-        const int lanes = row;
         std::vector<int> pixels(size.width);
-        std::vector<float> run(size.width * lanes);
+        std::vector<uchar> run(size.width * row);
         for (int y = range.start; y < range.end; ++y)
         {
             const int first = y * size.width;
             std::iota(pixels.begin(), pixels.end(), first);
-            for (int x = 0; x < size.width; ++x)
+            for (int pixel : pixels)
             {
-                const Candidates own = { (unsigned)((first + x) * usualRows_), interval };
-                candidates[first + x] = own;
+                const Candidates own = { (unsigned)(pixel * usualRows_), interval };
+                candidates[pixel] = own;
             }
             for (int r = 0; r < usualRows_; ++r)
             {
-                cost.evaluate(pixels.data(), size.width, interval.first + r * row, lanes, run.data());
-                for (int x = 0; x < size.width; ++x)
-                {
-                    const float* const from = &run[x * lanes];
-                    uchar* const to = &costs[candidates[first + x].start() + r * row];
-                    HDP_VECTORIZED for (int k = 0; k < lanes; ++k) to[k] =
-                        (uchar)std::min((int)(scale * from[k] + 0.5f), 255);
-                }
+                cost.evaluateScaled(pixels.data(), size.width, interval.first + r * row, scale, run.data());
+                uchar* to = &costs[candidates[first].start() + r * row];
+                for (int x = 0; x < size.width; ++x, to += usualRows_ * row)
+                    std::memcpy(to, &run[x * row], row);
             }
         }
     });

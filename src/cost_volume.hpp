@@ -4,8 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_COST_VOLUME_HPP
 #define OPENCV_HDPSTEREO_COST_VOLUME_HPP
 
+#include "census_cost.hpp"
 #include "disparity_forest.hpp"
-#include "matching_cost.hpp"
 
 namespace cv {
 namespace stereo {
@@ -42,7 +42,7 @@ struct CV_EXPORTS CostVolume
     //! Provides the memory for the trees of a forest.
     void create(const DisparityForest& forest);
     //! Takes the costs as they are, of the same candidates for all pixels.
-    void fill(const MatchingCost& cost, const Size& size, const DisparityInterval& interval);
+    void fill(const CensusCost& cost, const Size& size, const DisparityInterval& interval);
     //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.
     void place(const DisparityForest& forest, size_t tree, const int* pixels);
     //! Whether the cost of a disparity exceeds the lowest one of the pixel by more than mostContradiction. One beyond the

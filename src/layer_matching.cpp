@@ -214,7 +214,7 @@ void aggregateWithLastFrame(const LayerInput& in, LayerBuffers& buffers, StageCl
     matched.searchRatio = 1;
     clock.run("disparity prediction", [&] {
         const DisparityInterval all = { 0, (ushort)(disparitiesOf(in) - 1) };
-        buffers.volume.fill(matched.cost(), in.images.guide.size(), all);
+        buffers.volume.fill(matched.census, in.images.guide.size(), all);
         preferLastFrame(in, false, buffers.volume);
     });
     clock.run("cost aggregation", [&] {

@@ -154,40 +154,34 @@ TEST(HDPStereo_CostVolume, contradicts)
     EXPECT_FALSE(volume.contradicts(1, 7.25)) << "a pixel without candidates";
 }
 
-//! Costs with fractions, some too large for the volume
-class SomeCost : public MatchingCost
-{
-public:
-    static float of(int pixel, int disparity) { return ((pixel * 7 + disparity * 13) % 500) / 12.f; }
-    void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const CV_OVERRIDE
-    {
-        for (int i = 0; i < count; ++i)
-            for (int k = 0; k < lanes; ++k)
-                *cost++ = of(pixels[i], first + k);
-    }
-};
-
 //! In memory that held a larger volume before, too
 TEST(HDPStereo_CostVolume, fill)
 {
+    RNG rng(5);
     CostVolume volume;
-    for (const Size& size : { Size(9, 5), Size(4, 3) })
-    {
-        const DisparityInterval all = { 0, (ushort)(5 * size.width) };
-        volume.fill(SomeCost(), size, all);
-        EXPECT_EQ(size, volume.size);
-        EXPECT_EQ(all.last + 1, volume.numDisparities);
-        ASSERT_LE(volume.rows * CostVolume::row, volume.costs.size());
-        for (int pixel = 0; pixel < size.area(); ++pixel)
+    for (int blockSize : { 7, 5, 3 })
+        for (const Size& imageSize : { Size(70, 5), Size(9, 4) })
         {
-            const CostVolume::Candidates& own = volume.candidates[pixel];
-            ASSERT_EQ(all.size(), own.interval.size());
-            ASSERT_LE((size_t)own.firstRow + own.rows(), volume.rows);
-            for (int k = 0; k < all.size(); ++k)
-                EXPECT_NEAR(std::min(CostVolume::scale * SomeCost::of(pixel, k), 255.f), volume.costs[own.start() + k],
-                            0.501);
+            const DisparityInterval all = { 0, (ushort)(imageSize.width / 2) };
+            Mat left(imageSize, CV_16UC1), right(imageSize, CV_16UC1);
+            rng.fill(left, RNG::UNIFORM, 0, 5);
+            rng.fill(right, RNG::UNIFORM, 0, 5);
+            CensusCost cost;
+            cost.prepare(left, right, all.size(), blockSize);
+            volume.fill(cost, imageSize, all);
+            EXPECT_EQ(imageSize, volume.size);
+            EXPECT_EQ(all.last + 1, volume.numDisparities);
+            ASSERT_LE(volume.rows * CostVolume::row, volume.costs.size());
+            for (int pixel = 0; pixel < imageSize.area(); ++pixel)
+            {
+                const CostVolume::Candidates& own = volume.candidates[pixel];
+                ASSERT_EQ(all.size(), own.interval.size());
+                ASSERT_LE((size_t)own.firstRow + own.rows(), volume.rows);
+                const Point at(pixel % imageSize.width, pixel / imageSize.width);
+                for (int k = 0; k < all.size(); ++k)
+                    ASSERT_EQ(CostVolume::scale * cost.at(at, k), volume.costs[own.start() + k]) << at << ", " << k;
+            }
         }
-    }
 }
 
 } // namespace
