@@ -40,7 +40,7 @@ class TreeSamples
 {
 public:
     TreeSamples(const TreeWalk& walk, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
-        : interval_(tree.interval), volume_(volume), size_(tree.size), begin_(0, volume.size.width, volume.size.height)
+        : leastRise_(), interval_(tree.interval), size_(tree.size), begin_(0, volume.size.width, volume.size.height)
     {
         const ushort* const winners = disparity.ptr<ushort>();
         const int step = std::max(tree.size / samples, 1);
@@ -48,7 +48,10 @@ public:
         {
             const int pixel = walk.pixels[i];
             const double winner = winners[pixel] / (double)subpixelScale;
-            const Sample sample = { pixel, basisOf(pixel, volume.size.width), winner, cost(pixel, winner) };
+            const uchar* const costs = &volume.costs[volume.candidates[pixel].start()];
+            Sample sample = { costs, basisOf(pixel, volume.size.width), winner, 0 };
+            sample.cost = costAt(sample, winner);
+            leastRise_[samples_.size() % phases] += *std::min_element(costs, costs + interval_.size()) - sample.cost;
             samples_.push_back(sample);
             for (int term = 1; term < 3; ++term)
             {
@@ -64,10 +67,7 @@ public:
         const int candidates = interval_.size();
         int64 sum = 0; // of the differences from the winner's cost
         for (const Sample& sample : samples_)
-        {
-            const uchar* const costs = &volume_.costs[volume_.candidates[sample.pixel].start()];
-            sum += std::accumulate(costs, costs + candidates, 0) - candidates * sample.cost;
-        }
+            sum += std::accumulate(sample.costs, sample.costs + candidates, 0) - candidates * sample.cost;
         return sum >= leastContrast * candidates * samples_.size();
     }
 
@@ -76,14 +76,14 @@ public:
     {
         RNG rng(samples_.size());
         Plane best(samples_[0].disparity, 0, 0);
-        double least = score(best);
+        double least = score(best, DBL_MAX);
         for (int i = 0; i < triples; ++i)
         {
             const Sample &a = any(rng), &b = any(rng), &c = any(rng);
             Plane plane;
             if (!findThrough(a, b, c, plane))
                 continue;
-            const double scored = score(plane);
+            const double scored = score(plane, least);
             if (scored < least)
             {
                 least = scored;
@@ -99,8 +99,8 @@ public:
     double rise(const Plane& plane) const
     {
         int sum = 0;
-        for (const Sample& sample : samples_)
-            sum += std::min(cost(sample.pixel, plane.dot(sample.basis)) - sample.cost, +largestRise);
+        for (int phase = 0; phase < phases; ++phase)
+            sum += riseOf(plane, phase);
         return sum / (double)samples_.size();
     }
 
@@ -115,17 +115,37 @@ public:
 private:
     struct Sample
     {
-        int pixel;
+        const uchar* costs; // of the candidates
         Vec3d basis;
         double disparity;
         int cost; // of the disparity
     };
 
-    //! What the plane costs: its rise, and its tilt over the whole tree
-    double score(const Plane& plane) const
+    //! By how much the plane raises the costs of every eighth sample, in sum
+    int riseOf(const Plane& plane, int phase) const
+    {
+        int sum = 0;
+        for (size_t i = phase; i < samples_.size(); i += phases)
+            sum += std::min(costAt(samples_[i], plane.dot(samples_[i].basis)) - samples_[i].cost, +largestRise);
+        return sum;
+    }
+
+    //! What the plane costs: its rise, and its tilt over the whole tree; or some number that is not below the limit,
+    //! if it is not, which some of the samples may tell.
+    double score(const Plane& plane, double limit) const
     {
         const Vec3d extent = end_ - begin_;
-        return rise(plane) + tiltCost * (std::abs(plane[1]) * extent[1] + std::abs(plane[2]) * extent[2]);
+        const double tilt = tiltCost * (std::abs(plane[1]) * extent[1] + std::abs(plane[2]) * extent[2]);
+        int sum = std::accumulate(leastRise_, leastRise_ + phases, 0);
+        double least = 0;
+        for (int phase = 0; phase < phases; ++phase)
+        {
+            sum += riseOf(plane, phase) - leastRise_[phase];
+            least = sum / (double)samples_.size() + tilt;
+            if (least >= limit)
+                break;
+        }
+        return least;
     }
 
     //! The least squares of the disparities near a plane
@@ -157,15 +177,15 @@ private:
         return std::abs(plane[1]) <= steepest && std::abs(plane[2]) <= steepest;
     }
 
-    int cost(int pixel, double disparity) const
+    int costAt(const Sample& sample, double disparity) const
     {
         const int first = interval_.first, last = interval_.last;
-        const int candidate = cvRound(std::min(std::max(disparity, (double)first), (double)last));
-        return volume_.costs[volume_.candidates[pixel].start() + candidate - first];
+        return sample.costs[cvRound(std::min(std::max(disparity, (double)first), (double)last)) - first];
     }
 
+    static const int phases = 8; // of the samples
+    int leastRise_[phases];      // the lowest that riseOf() may be
     const DisparityInterval interval_;
-    const CostVolume& volume_;
     const int size_;    // of the tree
     Vec3d begin_, end_; // of its columns and rows
     std::vector<Sample> samples_;

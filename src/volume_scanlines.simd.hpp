@@ -136,7 +136,7 @@ public:
                 }
                 const size_t start = candidates[pixel].start();
                 int large = p_.large[weights[i > 0 ? 2 * pixel + direction.edge : 0]];
-                const Pixel own = { interval.first, interval.size(), rows * CostVolume::row,
+                const Pixel own = { interval.first, interval.size(), (int)alignSize(interval.size(), WordLanes::count),
                                     costs + start,  sums + start,    role == LAST ? total : sums + start };
                 if (!last[k].reaches(own))
                     large = enter(own, large, last[k], before + k * lineLength);

@@ -241,7 +241,8 @@ private:
         if (method != method_ || left_-- > 0)
             return;
         if (kind_ == 0)
-            CV_Error(Error::StsError, "out of trees");
+            // Not CV_Error(): opencv_ts's handler of errors is not for several threads.
+            throw cv::Exception(Error::StsError, "out of trees", CV_Func, __FILE__, __LINE__);
         if (kind_ == 1)
             throw std::runtime_error("out of trees");
         throw OutOfTrees();
