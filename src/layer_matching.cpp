@@ -142,6 +142,7 @@ bool hasTreeScanlines(const LayerInput& in)
     return p.usePrediction && aggregation == HDPTreeMatcher::AGGREGATION_TREE_SCANLINES;
 }
 
+//! Means of costs are smoother, and so is what the last frame predicts: half of P1.
 VolumePenalties volumePenalties(const MatcherParameters& p)
 {
     const int scale = CostVolume::scale, large = cvRound(scale * meanP2 * p.P2);
