@@ -34,8 +34,7 @@ void CostVolume::create(const DisparityForest& forest)
         if (rowsOf(tree.interval) > usualRows_)
             rows += (size_t)tree.size * rowsOf(tree.interval);
     }
-    if (costs.size() < rows * row)
-        costs.resize(rows * row);
+    provideCosts();
 }
 
 void CostVolume::fill(const CensusCost& cost, const Size& layerSize, const DisparityInterval& interval)
@@ -46,8 +45,7 @@ void CostVolume::fill(const CensusCost& cost, const Size& layerSize, const Dispa
     usualRows_ = rowsOf(interval);
     rows = (size_t)size.area() * usualRows_;
     candidates.resize(size.area());
-    if (costs.size() < rows * row)
-        costs.resize(rows * row);
+    provideCosts();
     parallel_for_(Range(0, size.height), [&](const Range& range) {
         std::vector<int> pixels(size.width);
         std::vector<uchar> run(size.width * row);
@@ -57,7 +55,7 @@ void CostVolume::fill(const CensusCost& cost, const Size& layerSize, const Dispa
             std::iota(pixels.begin(), pixels.end(), first);
             for (int pixel : pixels)
             {
-                const Candidates own = { (unsigned)(pixel * usualRows_), interval };
+                const Candidates own = { (unsigned)pixel * usualRows_, interval };
                 candidates[pixel] = own;
             }
             for (int r = 0; r < usualRows_; ++r)
@@ -69,6 +67,12 @@ void CostVolume::fill(const CensusCost& cost, const Size& layerSize, const Dispa
             }
         }
     });
+}
+
+void CostVolume::provideCosts()
+{
+    if (costs.size() < rows * row)
+        costs.resize(rows * row);
 }
 
 void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pixels)
@@ -102,12 +106,13 @@ bool CostVolume::contradicts(int pixel, double disparity) const
 void CostVolume::prefer(int pixel, double disparity, int largest)
 {
     const Candidates& own = candidates[pixel];
-    const int d = cvRound(scale * disparity) - scale * own.interval.first, end = scale * own.rows() * row + largest;
-    const short first = (short)std::min(std::max(d, -largest), end), most = (short)largest; // for vectors of 16 bits
+    const int d = cvRound(scale * disparity) - scale * own.interval.first;
+    const short most = (short)largest; // 16 bits, for more of them in a vector
     uchar* raised = &costs[own.start()];
     for (int r = 0; r < own.rows(); ++r, raised += row)
     {
-        const short from = (short)(first - r * row * scale);
+        // Farther from the row, all of it rises by the largest
+        const short from = (short)std::min(std::max(d - r * row * scale, -largest), row * scale + largest);
         HDP_VECTORIZED for (short k = 0; k < row; ++k)
         {
             const short distance = (short)(k * scale - from), opposite = (short)-distance;

@@ -55,6 +55,8 @@ struct CV_EXPORTS CostVolume
     void prefer(int pixel, double disparity, int largest);
 
 private:
+    void provideCosts(); // for the rows
+
     // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in the
     // order of the trees.
     int usualRows_ = 0;

@@ -137,6 +137,23 @@ TEST(HDPStereo_CostVolume, prefer)
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[candidates - 1]);
 }
 
+//! More candidates than 16 bits hold units of
+TEST(HDPStereo_CostVolume, prefer_of_many)
+{
+    const int many = 9000, largest = 12;
+    const double disparity = 8123.25;
+    CostVolume volume;
+    volume.size = Size(1, 1);
+    volume.rows = CostVolume::rowsOf({ 0, many - 1 });
+    volume.costs.assign(volume.rows * CostVolume::row, (uchar)flatCost);
+    const CostVolume::Candidates own = { 0, { 0, many - 1 } };
+    volume.candidates.push_back(own);
+    volume.prefer(0, disparity, largest);
+    for (int k = 0; k < many; ++k)
+        ASSERT_EQ(flatCost + std::min(cvRound(CostVolume::scale * std::abs(k - disparity)), largest), volume.costs[k])
+            << k;
+}
+
 TEST(HDPStereo_CostVolume, contradicts)
 {
     CostVolume volume = flatVolume(Size(2, 1));
