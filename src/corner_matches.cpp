@@ -30,11 +30,14 @@ void dispatchTensors(const ushort* first, size_t step, int count, int* columns, 
     CV_CPU_DISPATCH(structureTensors, (first, step, count, columns, xx, xy, yy), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-void dispatchCorrelate(const ushort* left, const ushort* right, size_t step, int count, int sum, double variance,
-                       int* memory, float* correlations)
+void dispatchSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales)
 {
-    CV_CPU_DISPATCH(correlate, (left, right, step, count, sum, variance, memory, correlations),
-                    CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(windowSums, (first, step, count, columns, sums, scales), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchCorrelate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations)
+{
+    CV_CPU_DISPATCH(correlate, (left, sum, scale, area, correlations), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 void dispatchCut(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9])
@@ -90,27 +93,17 @@ void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matche
     });
 }
 
-//! Memory of the search, per thread
-struct Correlations
+void measureWindows(const Mat& image, SearchWindows& windows)
 {
-    std::vector<int> memory;
-    std::vector<float> values; // of the candidates, by rows, then by columns
-};
-
-//! The variance of a window, times the square of its pixels
-double windowVariance(const ushort* window, size_t step, int& sum)
-{
-    const int side = CornerMatching::searchSide;
-    int square = 0;
-    sum = 0;
-    for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; ++x)
-        {
-            const int value = window[y * step + x];
-            sum += value;
-            square += value * value;
-        }
-    return (double)((int64)square * side * side - (int64)sum * sum);
+    const int reach = CornerMatching::searchSide - 1, width = image.cols - reach, height = image.rows - reach;
+    windows.sums.create(height, width, CV_32S);
+    windows.scales.create(height, width, CV_32F);
+    parallel_for_(Range(0, height), [&](const Range& rows) {
+        std::vector<int> columns(2 * image.cols);
+        for (int y = rows.start; y < rows.end; ++y)
+            dispatchSums(image.ptr<ushort>(y), image.step1(), width, columns.data(), windows.sums.ptr<int>(y),
+                         windows.scales.ptr<float>(y));
+    });
 }
 
 //! Whether no candidate that is not beside the best one is nearly as good
@@ -127,30 +120,37 @@ bool isUnique(const std::vector<float>& values, int columns, int best)
     return rivals == 0;
 }
 
-void findMatch(const Mat& left, const Mat& right, int numDisparities, Correlations& c, CornerMatch& match)
+void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, int numDisparities,
+               std::vector<float>& correlations, CornerMatch& match)
 {
     match.isValid = false;
     const int side = CornerMatching::searchSide, pixels = side * side, rows = 2 * CornerMatching::searchRadius + 1;
     const Point first = match.left - Point(side / 2, side / 2);
-    const int x0 = std::max(first.x - numDisparities + 1, 0), count = first.x - x0 + 1;
+    const int least = SearchArea::leastColumns;
+    const int x0 = std::max(first.x + 1 - std::max(numDisparities, least), 0), count = first.x + 1 - x0;
+    const int y0 = first.y - CornerMatching::searchRadius, columns = std::max(count, least);
     const ushort* const window = left.ptr<ushort>(first.y) + first.x;
-    int sum;
-    const double variance = windowVariance(window, left.step1(), sum);
-    if (variance < leastContrast * leastContrast * pixels * pixels)
+    int memory[2 * CornerMatching::searchSide], sum;
+    float scale;
+    dispatchSums(window, left.step1(), 1, memory, &sum, &scale);
+    if (scale == 0 || scale * leastContrast * pixels > 1)
         return;
-    c.memory.resize(5 * count + 2 * side);
-    c.values.resize(rows * count);
-    for (int i = 0; i < rows; ++i)
-    {
-        const int y = first.y + i - CornerMatching::searchRadius;
-        dispatchCorrelate(window, right.ptr<ushort>(y) + x0, left.step1(), count, sum, variance, c.memory.data(),
-                          &c.values[i * count]);
-    }
-    const int best = (int)(std::max_element(c.values.begin(), c.values.end()) - c.values.begin());
-    if (c.values[best] < leastCorrelation || !isUnique(c.values, count, best))
+    const SearchArea area = { right.ptr<ushort>(y0) + x0,
+                              windows.sums.ptr<int>(y0) + x0,
+                              windows.scales.ptr<float>(y0) + x0,
+                              right.step1(),
+                              windows.sums.step1(),
+                              rows,
+                              columns };
+    correlations.resize(rows * columns);
+    dispatchCorrelate(window, sum, scale, area, correlations.data());
+    for (int end = columns; end <= rows * columns; end += columns) // negative disparities
+        std::fill(correlations.begin() + end - (columns - count), correlations.begin() + end, -1.f);
+    const int best = (int)(std::max_element(correlations.begin(), correlations.end()) - correlations.begin());
+    if (correlations[best] < leastCorrelation || !isUnique(correlations, columns, best))
         return;
-    match.x = x0 + best % count + side / 2;
-    match.y = match.left.y + best / count - CornerMatching::searchRadius;
+    match.x = x0 + best % columns + side / 2;
+    match.y = y0 + best / columns + side / 2;
     match.variance = wholeVariance;
     match.isValid = true;
 }
@@ -240,14 +240,15 @@ int buildCoarse(const std::vector<Mat>& layers, std::vector<Mat>& pyramid)
 
 } // namespace
 
-void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, int spacing,
+void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, int spacing, SearchWindows& windows,
                        std::vector<CornerMatch>& matches)
 {
     findCorners(left, spacing, matches);
+    measureWindows(right, windows);
     parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
-        Correlations correlations;
+        std::vector<float> correlations; // of a corner, by rows, then by columns
         for (int i = range.start; i < range.end; ++i)
-            findMatch(left, right, numDisparities, correlations, matches[i]);
+            findMatch(left, right, windows, numDisparities, correlations, matches[i]);
     });
 }
 
@@ -271,7 +272,7 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
         return;
     const int spacing = std::max(CornerMatching::spacing >> coarse.layer, (int)CornerMatching::leastSpacing);
     findCornerMatches(coarseLeft, coarseRight, layerDisparities(numDisparities, coarse.layer, true), spacing,
-                      coarse.matches);
+                      coarse.windows, coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
 }
 

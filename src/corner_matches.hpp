@@ -39,14 +39,35 @@ struct CornerMatch
     bool isValid;
 };
 
+//! What is known of all windows of the search in an image, by their first pixels
+struct SearchWindows
+{
+    Mat sums, scales; // 1 / sqrt(variance times the square of the pixels), 0 without texture; both of levels less 512
+};
+
+//! Some of them
+struct SearchArea
+{
+    const ushort* pixels;
+    const int* sums;
+    const float* scales;
+    size_t step, sumStep; // from a row to the next
+    int rows, columns;    // at least leastColumns
+    enum
+    {
+        leastColumns = 8
+    };
+};
+
 /** Matches the corners of a coarse layer over all disparities and some rows by normalised cross-correlation.
 @param left CV_16UC1, values up to 1023.
 @param right Of the same size and type.
 @param numDisparities Of the layer.
 @param spacing Side of a cell of the grid, at least.
+@param windows Memory to work in.
 @param matches Receives one match per corner, to whole pixels. */
 CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, int spacing,
-                                  std::vector<CornerMatch>& matches);
+                                  SearchWindows& windows, std::vector<CornerMatch>& matches);
 
 /** Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.
 @param left CV_16UC1, values up to 1023.
@@ -58,6 +79,7 @@ CV_EXPORTS void trackCornerMatches(const Mat& left, const Mat& right, std::vecto
 struct CoarseMatches
 {
     std::vector<Mat> left, right; // grey, layer by layer; memory that is kept from pair to pair
+    SearchWindows windows;        // the same
     int layer = 0;
     std::vector<CornerMatch> matches; // tracked on this layer; empty if it is too small
 };

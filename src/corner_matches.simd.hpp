@@ -23,17 +23,22 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param yy */
 void structureTensors(const ushort* first, size_t step, int count, int* columns, int* xx, int* xy, int* yy);
 
-/** The normalised cross-correlation of a window with those that begin at count columns of the right image.
-@param left First pixel of the window.
-@param right First pixel of the first window of the right image.
-@param step From a row to the next, of both, in pixels.
+/** What the correlations of the windows that begin in a row have in common.
+@param first First pixel of the first window.
+@param step From a row to the next, in pixels.
 @param count Number of windows.
-@param sum Of the left window.
-@param variance Of the left window, times the square of its pixels.
-@param memory For 5 * count + 2 * searchSide numbers.
-@param correlations Receives -1 to 1; 0 for a right window without texture. */
-void correlate(const ushort* left, const ushort* right, size_t step, int count, int sum, double variance, int* memory,
-               float* correlations);
+@param columns Memory for 2 * (count + searchSide - 1) numbers.
+@param sums Receives theirs, see SearchWindows.
+@param scales The same. */
+void windowSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales);
+
+/** The normalised cross-correlation of a window with those of an area.
+@param left First pixel of the window, in an image with the area's step.
+@param sum Of the window, see windowSums().
+@param scale The same.
+@param area The area.
+@param correlations Receives -1 to 1, row by row; 0 without texture. */
+void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations);
 
 /** The left window of trackCornerMatches(), its gradients over two pixels, and its sums.
 @param left First pixel of the window.
@@ -61,6 +66,7 @@ void trackingSums(const ushort* right, size_t step, int fx, int fy, const short*
 namespace {
 
 const int windowPixels = CornerMatching::trackWidth * CornerMatching::trackHeight;
+const short middle = 512; // of levels up to 1023
 
 } // namespace
 
@@ -98,54 +104,74 @@ void structureTensors(const ushort* first, size_t step, int count, int* columns,
     }
 }
 
-void correlate(const ushort* left, const ushort* right, size_t step, int count, int sum, double variance, int* memory,
-               float* correlations)
+// Levels count from here, so that all numbers below have 32 bits: |level| <= 512, and n^2 512^2 < 2^31 for n pixels.
+void windowSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales)
 {
-    const int side = CornerMatching::searchSide, width = count + side - 1;
-    int *const products = memory, *const sums = products + count, *const squares = sums + count;
-    int *const columnSums = squares + count, *const columnSquares = columnSums + width;
+    const int side = CornerMatching::searchSide, pixels = side * side, width = count + side - 1;
+    int *const columnSums = columns, *const columnSquares = columns + width;
     HDP_VECTORIZED for (int i = 0; i < width; ++i)
     {
-        int columnSum = 0, columnSquare = 0;
+        int sum = 0, square = 0;
         for (int y = 0; y < CornerMatching::searchSide; ++y)
         {
-            const short value = (short)right[y * step + i];
-            columnSum += value;
-            columnSquare += value * value;
+            const short value = (short)(first[y * step + i] - middle);
+            sum += value;
+            square += value * value;
         }
-        columnSums[i] = columnSum;
-        columnSquares[i] = columnSquare;
+        columnSums[i] = sum;
+        columnSquares[i] = square;
     }
     HDP_VECTORIZED for (int i = 0; i < count; ++i)
     {
-        int rightSum = 0, square = 0;
+        int sum = 0, square = 0;
         for (int x = 0; x < CornerMatching::searchSide; ++x)
         {
-            rightSum += columnSums[i + x];
+            sum += columnSums[i + x];
             square += columnSquares[i + x];
         }
-        sums[i] = rightSum;
-        squares[i] = square;
-        products[i] = 0;
+        sums[i] = sum;
+        const int variance = square * pixels - sum * sum;
+        scales[i] = variance > 0 ? 1 / std::sqrt((float)variance) : 0.f;
     }
+}
+
+void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations)
+{
+    const int side = CornerMatching::searchSide, pixels = side * side, lanes = SearchArea::leastColumns;
+    short window[CornerMatching::searchSide * CornerMatching::searchSide];
     for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            window[y * side + x] = (short)(left[y * area.step + x] - middle);
+    for (int row = 0; row < area.rows; ++row, correlations += area.columns)
     {
-        const ushort *const l = left + y * step, *const r = right + y * step;
-        HDP_VECTORIZED for (int i = 0; i < count; ++i)
+        const int* const sums = area.sums + row * area.sumStep;
+        const float* const scales = area.scales + row * area.sumStep;
+        for (int end = lanes;; end = std::min(end + lanes, area.columns)) // the last ones perhaps twice
         {
-            int product = 0;
-            for (int x = 0; x < CornerMatching::searchSide; ++x)
-                product += (short)l[x] * (short)r[i + x];
-            products[i] += product;
+            const int first = end - lanes;
+            int products[lanes] = {};
+            for (int y = 0; y < side; ++y)
+            {
+                const short* const l = window + y * side;
+                const ushort* const r = area.pixels + (row + y) * area.step + first;
+                HDP_FOR_LANES(k, lanes)
+                {
+                    int product = 0;
+                    for (int x = 0; x < CornerMatching::searchSide; ++x)
+                        product += l[x] * (short)r[k + x];
+                    products[k] += product;
+                }
+            }
+            HDP_FOR_LANES(k, lanes)
+            {
+                const int product = products[k] - sum * middle;
+                // The difference has 32 bits, what it is of has not.
+                const int covariance = (int)((unsigned)product * pixels - (unsigned)sum * (unsigned)sums[first + k]);
+                correlations[first + k] = (float)covariance * scale * scales[first + k];
+            }
+            if (end == area.columns)
+                break;
         }
-    }
-    const double pixels = side * side, leftSum = sum; // all numbers below 2^53: exact
-    HDP_VECTORIZED for (int i = 0; i < count; ++i)
-    {
-        const double rightSum = sums[i], rightVariance = squares[i] * pixels - rightSum * rightSum;
-        const double covariance = products[i] * pixels - leftSum * rightSum;
-        const float correlation = (float)(covariance / std::sqrt(variance * std::max(rightVariance, 1.)));
-        correlations[i] = rightVariance > 0 ? correlation : 0.f;
     }
 }
 

@@ -167,8 +167,9 @@ TEST(HDPStereo_RowAlignment, matches_correlate_best)
     Mat left, right;
     hdp::greyLevels(pair.left, 8, left);
     hdp::greyLevels(misalign(pair.right, makeModel(1)), 8, right);
+    hdp::SearchWindows windows;
     std::vector<hdp::CornerMatch> matches;
-    hdp::findCornerMatches(left, right, 25, hdp::CornerMatching::leastSpacing, matches);
+    hdp::findCornerMatches(left, right, 25, hdp::CornerMatching::leastSpacing, windows, matches);
     int valid = 0, oneRow = 0;
     for (const hdp::CornerMatch& match : matches)
     {
@@ -185,6 +186,30 @@ TEST(HDPStereo_RowAlignment, matches_correlate_best)
     }
     EXPECT_GE(valid, 100);
     EXPECT_GE(oneRow, 0.9 * valid);
+}
+
+//! Fewer than the search has in a vector; at the left border the image ends before them
+TEST(HDPStereo_RowAlignment, matches_within_few_disparities)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(120, 90), 4, 3);
+    Mat left, right;
+    hdp::greyLevels(pair.left, 8, left);
+    hdp::greyLevels(pair.right, 8, right);
+    hdp::SearchWindows windows;
+    std::vector<hdp::CornerMatch> matches;
+    hdp::findCornerMatches(left, right, 4, hdp::CornerMatching::leastSpacing, windows, matches);
+    int valid = 0, atBorder = 0;
+    for (const hdp::CornerMatch& match : matches)
+    {
+        if (!match.isValid)
+            continue;
+        ++valid;
+        atBorder += match.left.x < hdp::SearchArea::leastColumns + hdp::CornerMatching::searchSide / 2;
+        EXPECT_GE(match.left.x, match.x);
+        EXPECT_LE(match.left.x - match.x, 3);
+    }
+    EXPECT_GE(valid, 100);
+    EXPECT_GE(atBorder, 3);
 }
 
 TEST(HDPStereo_RowAlignment, matches_are_tracked_to_a_fraction)
