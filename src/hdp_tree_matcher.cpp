@@ -241,8 +241,10 @@ private:
     {
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
-            buildPairPyramids(left, right, p_.minDisparity, settings.extension, settings.layers,
-                              p_.matchingCost == COST_CENSUS, lastBrightening(), pyramids_, images);
+            const PyramidSettings pyramid = { p_.minDisparity,       settings.extension,
+                                              settings.layers,       p_.matchingCost == COST_CENSUS,
+                                              p_.noiseThreshold > 0, lastBrightening() };
+            buildPairPyramids(left, right, pyramid, pyramids_, images);
         });
 
         if (p_.maxRowOffset > 0 || p_.useLightAlignment || p_.noiseThreshold > 0)

@@ -2,9 +2,11 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
+#include "pair_pyramids.hpp"
+
+#include "block_smoothing.hpp"
 #include "image_levels.hpp"
 #include "image_pyramid.hpp"
-#include "pair_pyramids.hpp"
 
 namespace cv {
 namespace stereo {
@@ -41,9 +43,10 @@ void checkPair(const Mat& left, const Mat& right)
         CV_Error(Error::StsOutOfRange, "left must have less than 2^31 bytes");
 }
 
-void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int extension, int layers, bool census,
-                       int lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images)
+void buildPairPyramids(const Mat& left, const Mat& right, const PyramidSettings& settings, PairPyramids& pyramids,
+                       std::vector<LayerImages>& images)
 {
+    const int minDisparity = settings.minDisparity, extension = settings.extension, layers = settings.layers;
     Mat extended = left, shifted = right;
     if (minDisparity != 0)
     {
@@ -58,12 +61,12 @@ void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int 
     int bits = countBits(left, right);
     pyramids.brightening = 0;
     pyramids.isDimmed = false;
-    if (census)
+    if (settings.isCensus)
     {
         greyLevels(extended, bits, pyramids.leftLevels);
         greyLevels(shifted, bits, pyramids.rightLevels);
         const int unused = countUnusedBits(pyramids.leftLevels, pyramids.rightLevels);
-        pyramids.isDimmed = unused == lastBrightening + 1;
+        pyramids.isDimmed = unused == settings.lastBrightening + 1;
         pyramids.brightening = unused - pyramids.isDimmed;
         if (pyramids.brightening > 0)
         {
@@ -71,6 +74,8 @@ void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int 
             greyLevels(extended, bits, pyramids.leftLevels);
             greyLevels(shifted, bits, pyramids.rightLevels);
         }
+        if (settings.smoothsBlocks)
+            smoothBlocks(pyramids.leftLevels, pyramids.rightLevels);
         buildPyramid(pyramids.leftLevels, layers, pyramids.leftGrey);
         buildPyramid(pyramids.rightLevels, layers, pyramids.right);
     }
@@ -81,7 +86,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, int minDisparity, int 
     for (int layer = 0; layer < layers; ++layer)
     {
         images[layer].guide = pyramids.left[layer];
-        images[layer].left = census ? pyramids.leftGrey[layer] : pyramids.left[layer];
+        images[layer].left = settings.isCensus ? pyramids.leftGrey[layer] : pyramids.left[layer];
         images[layer].right = pyramids.right[layer];
     }
     pyramids.left[0].release(); // may be the caller's

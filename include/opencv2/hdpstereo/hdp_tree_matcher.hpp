@@ -446,9 +446,10 @@ public:
     /** @brief Noise from which both images are smoothed before they are matched, see getNoiseLevel().
 
     A Gaussian of 3 x 3 pixels takes noise from the matching cost, and a median of as many from the edge weights, in each
-    layer. Without noise both would cost details.
+    layer. Without noise both would cost details. The blocks of strong JPEG compression, where both images show them, are
+    smoothed whatever the noise is.
     @param noiseThreshold Standard deviation of the grey levels, 255 being white, finite, >= 0; of a dark pair, when it is
-    brightened. 0 (PRESET_PAPER): never smoothed. 3 in the others. */
+    brightened. 0 (PRESET_PAPER): never smoothed, nor are blocks. 3 in the others. */
     CV_WRAP virtual void setNoiseThreshold(double noiseThreshold) = 0;
     /** @copybrief setNoiseThreshold @sa setNoiseThreshold */
     CV_WRAP virtual double getNoiseThreshold() const = 0;
