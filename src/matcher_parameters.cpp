@@ -337,12 +337,14 @@ PairSettings resolve(const MatcherParameters& p, const Mat& left)
     settings.layers = p.usePrediction ? countLayers(size, layers) : 1;
     settings.finestLayer = std::min(p.finestLayer, settings.layers - 1);
     settings.windowSide = windowSide(p);
-    settings.extension = p.minDisparity < 0 ? (int)alignSize(-p.minDisparity, 1 << (settings.layers - 1)) : 0;
+    const int missing =
+        std::min(-p.minDisparity, p.numDisparities); // columns that the first ones have their matches in
+    settings.extension = missing > 0 ? (int)alignSize(missing, 1 << (settings.layers - 1)) : 0;
     const int64 width = (int64)size.width + settings.extension;
     if (width > maxSide || width * size.height * (int64)left.elemSize() > INT_MAX)
         CV_Error(Error::StsOutOfRange,
-                 format("minDisparity must not be %d for an image of %d x %d: as many columns are added to it",
-                        p.minDisparity, size.width, size.height));
+                 format("minDisparity must not be %d for an image of %d x %d: %d columns are added to it",
+                        p.minDisparity, size.width, size.height, settings.extension));
     settings.subpixel = p.useSubpixel || p.aggregation != M::AGGREGATION_TREES;
 
     if (predictsIntervals && settings.model->getNumLayers() < settings.layers - 1)

@@ -540,28 +540,31 @@ TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
     }
 }
 
-//! With negative disparities the first columns of the left image have their matches, too.
+//! With negative disparities the first columns of the left image have their matches, too, far from 0 as well.
 TEST(HDPStereo_MatcherContract, negative_disparities_up_to_the_left_border)
 {
     RNG rng(37);
-    const int shift = 14, width = 200;
-    const Mat canvas = patchyImage(rng, Size(width + shift, 120), CV_8UC3, 8);
-    const Mat left = canvas.colRange(shift, width + shift), right = canvas.colRange(0, width);
-    for (const System& system : allSystems())
-        for (int minDisparity : { -31, -17 })
-        {
-            SCOPED_TRACE(testing::Message() << system.name << " from " << minDisparity);
-            const Ptr<HDPTreeMatcher> matcher = createSystem(system, 32, minDisparity);
-            const Mat wrong = cv::abs(match(*matcher, left, right) + 16 * shift) > 16;
-            EXPECT_LE(cv::countNonZero(wrong.colRange(0, shift)), (int)wrong.rows * shift / 20);
-            Mat confidence, trees, intervals;
-            matcher->getConfidence(confidence);
-            EXPECT_EQ(left.size(), confidence.size());
-            EXPECT_GE(cv::mean(confidence.colRange(shift, width - 32))[0], 100);
-            matcher->getForest(trees, intervals);
-            EXPECT_EQ(left.cols * trees.rows / left.rows, trees.cols); // of a layer of the image alone
-            EXPECT_EQ(trees.size(), intervals.size());
-        }
+    const int width = 300;
+    for (const int shift : { 14, 64 })
+    {
+        const Mat canvas = patchyImage(rng, Size(width + shift, 120), CV_8UC3, 8);
+        const Mat left = canvas.colRange(shift, width + shift), right = canvas.colRange(0, width);
+        for (const System& system : allSystems())
+            for (int minDisparity : { -shift - 17, -shift - 3 })
+            {
+                SCOPED_TRACE(testing::Message() << system.name << " from " << minDisparity);
+                const Ptr<HDPTreeMatcher> matcher = createSystem(system, 32, minDisparity);
+                const Mat wrong = cv::abs(match(*matcher, left, right) + 16 * shift) > 16;
+                EXPECT_LE(cv::countNonZero(wrong.colRange(0, shift)), (int)wrong.rows * shift / 20);
+                Mat confidence, trees, intervals;
+                matcher->getConfidence(confidence);
+                EXPECT_EQ(left.size(), confidence.size());
+                EXPECT_GE(cv::mean(confidence.colRange(shift, width - shift - 64))[0], 100);
+                matcher->getForest(trees, intervals);
+                EXPECT_EQ(left.cols * trees.rows / left.rows, trees.cols); // of a layer of the image alone
+                EXPECT_EQ(trees.size(), intervals.size());
+            }
+    }
 }
 
 TEST(HDPStereo_MatcherContract, equal_images_have_disparity_0)

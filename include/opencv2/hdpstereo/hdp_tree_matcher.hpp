@@ -35,8 +35,8 @@ pixels, and fewer columns than there are disparities.
 @ref tutorial_hdpstereo_matching explains the algorithm, how to choose a preset, and what each parameter does.
 
 The parameters of cv::StereoMatcher mean what they mean there:
-- minDisparity: the smallest disparity in pixels, of any sign. A negative one adds that many columns on the left of the
-  images, where the first columns have their matches.
+- minDisparity: the smallest disparity in pixels, of any sign. A negative one adds that many columns, or numDisparities
+  if that is less, on the left of the images, where the first columns have their matches.
 - numDisparities: the number of candidates, > 0, not necessarily a multiple of 16. The largest disparity is
   minDisparity + numDisparities - 1; 16 times this one and 16 times (minDisparity - 1) must fit into CV_16S.
 - blockSize: the side of the matching cost's square window. All values are accepted, and as with cv::StereoSGBM an even
