@@ -22,8 +22,6 @@ const int leastSteps = 64;              // between blocks, for a mean
 const double leastStep = 0.25 * greyScale;
 const int smoothedSteps = 4; // times the mean
 
-inline ushort difference(ushort a, ushort b) { return (ushort)(std::max(a, b) - std::min(a, b)); }
-
 //! Adds what a row's pixels tell of the steps before them, by columns.
 void addSteps(const ushort* row, int width, ushort* steps, ushort* counts)
 {

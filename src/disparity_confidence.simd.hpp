@@ -88,8 +88,6 @@ namespace {
 
 typedef DisparityConfidence Constants;
 
-inline ushort difference(ushort a, ushort b) { return (ushort)(std::max(a, b) - std::min(a, b)); }
-
 } // namespace
 
 void distanceFromAbove(const ushort* above, const ushort* row, const ushort* below, int width, const Range& columns,

@@ -17,11 +17,12 @@ struct ScanlinePenalties
 {
     int small, large; // for a step of one disparity and for a larger one between neighbours of one grey level,
                       // 0..largest
-    int edgeSlope;    // halves of a bit by which large falls per grey level between them, >= 0
+    int edgeSlope;    // halves of a bit by which large falls per grey level between them, 0..largestSlope
     int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..largestPrior
     enum
     {
         largest = 100,
+        largestSlope = 64, // times the largest difference of grey levels, in their units, it has 16 bits
         largestPrior = 4
     };
 };

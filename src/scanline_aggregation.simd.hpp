@@ -148,13 +148,11 @@ private:
     //! large(p, q) between each pixel of a row and its neighbours to the right and in the next row
     void weighEdges(const ushort* row, const ushort* next, uchar* edges) const
     {
-        // Words: even ten times finestSlope of layer_matching times the largest difference is one.
         const ushort large = (ushort)p_.penalties.large, least = std::min((ushort)p_.penalties.small, large);
         const ushort slope = (ushort)p_.penalties.edgeSlope;
         const int last = width_ - 1;
         const auto penalty = [&](ushort p, ushort q) {
-            const ushort difference = (ushort)(std::max(p, q) - std::min(p, q));
-            const ushort fall = (ushort)((ushort)(difference * slope) / (2 * greyScale));
+            const ushort fall = (ushort)((ushort)(difference(p, q) * slope) / (2 * greyScale));
             return (uchar)std::max((ushort)(std::max(large, fall) - fall), least);
         };
         HDP_VECTORIZED for (int x = 0; x < last; ++x)

@@ -50,8 +50,6 @@ const int maxLeftRightDifference = 2;
 const int maxNeighbourDifference = 4;
 const int minSupporters = 4;
 
-inline uchar difference(uchar a, uchar b) { return (uchar)(std::max(a, b) - std::min(a, b)); }
-
 //! The gradients at a pixel; the image is mirrored if mirror is -1.
 template <int mirror> struct PixelGradients
 {
@@ -80,7 +78,7 @@ template <int mirror> struct PixelGradients
 
 template <int mirror> bool hasTexture(const PixelGradients<mirror>& pixel)
 {
-    return pixel.sum(0, [](int, uchar gradient) { return difference(gradient, 128); }) >= minTexture;
+    return pixel.sum(0, [](int, uchar gradient) { return difference(gradient, (uchar)128); }) >= minTexture;
 }
 
 //! L1 distances of a descriptor to those of Grid::lanes pixels of the other image, which follow one another.

@@ -4,6 +4,9 @@
 #ifndef OPENCV_HDPSTEREO_VECTORIZED_HPP
 #define OPENCV_HDPSTEREO_VECTORIZED_HPP
 
+#include "opencv2/core/cvdef.h"
+#include <algorithm>
+
 /** HDP_VECTORIZED before a loop whose rounds are independent of one another, for the compiler to make vector operations
 of: what a round writes is neither read nor written in another, and GCC does not unroll the loop before it could see that
 it is one for vectors. HDP_FOR_LANES(k, lanes) is such a loop over 4, 8, 16 or 32 lanes, a number that is known to the
@@ -22,5 +25,16 @@ compiler, in groups of 8 that are unrolled. */
 #define HDP_FOR_LANES(k, lanes)                                                                                        \
     HDP_UNROLLED for (int group = 0; group < (lanes); group += (lanes) < 8 ? (lanes) : 8)                              \
         HDP_VECTORIZED for (int k = group; k < group + ((lanes) < 8 ? (lanes) : 8); ++k)
+
+namespace cv {
+namespace stereo {
+namespace hdp {
+
+//! |a - b| of numbers without sign, in their own lanes; always inlined, so that no instruction set has a symbol of it
+template <typename T> CV_ALWAYS_INLINE T difference(T a, T b) { return (T)(std::max(a, b) - std::min(a, b)); }
+
+} // namespace hdp
+} // namespace stereo
+} // namespace cv
 
 #endif
