@@ -28,10 +28,9 @@ void addSteps(const ushort* row, int width, ushort* steps, ushort* counts)
     HDP_VECTORIZED for (int x = 3; x < width - 2; ++x)
     {
         const ushort step = difference(row[x - 1], row[x]);
-        const int isFlat = (difference(row[x - 3], row[x - 2]) <= flatChange) &
-                           (difference(row[x - 2], row[x - 1]) <= flatChange) &
-                           (difference(row[x], row[x + 1]) <= flatChange) &
-                           (difference(row[x + 1], row[x + 2]) <= flatChange) & (step <= largestStep);
+        const ushort before = std::max(difference(row[x - 3], row[x - 2]), difference(row[x - 2], row[x - 1])),
+                     after = std::max(difference(row[x], row[x + 1]), difference(row[x + 1], row[x + 2]));
+        const int isFlat = (before <= flatChange) & (after <= flatChange) & (step <= largestStep);
         steps[x] = (ushort)(steps[x] + (isFlat ? step : 0));
         counts[x] = (ushort)(counts[x] + isFlat);
     }
