@@ -39,15 +39,14 @@ void addSteps(const ushort* row, int width, ushort* steps, ushort* counts)
 //! Takes the step before a column away.
 void smoothStep(ushort* row, int x, double limit)
 {
-    const int white = 256 * greyScale - 1;
     const int twice = 3 * (row[x] - row[x - 1]) - (row[x + 1] - row[x - 2]); // the step
     if (std::abs(twice) >= limit)
         return;
     for (int i = 0; i < side / 2; ++i)
     {
         const int part = (twice * (side - 1 - 2 * i) + 2 * side) >> 5;
-        row[x - 1 - i] = (ushort)std::min(std::max(row[x - 1 - i] + part, 0), white);
-        row[x + i] = (ushort)std::min(std::max(row[x + i] - part, 0), white);
+        row[x - 1 - i] = (ushort)std::min(std::max(row[x - 1 - i] + part, 0), whiteLevel);
+        row[x + i] = (ushort)std::min(std::max(row[x + i] - part, 0), whiteLevel);
     }
 }
 

@@ -134,6 +134,11 @@ template <int lanes> void takeWinners(const float* costs, int size, const Range&
     }
 }
 
+template <int lanes> inline void roundMeans(const float* costs, float factor, uchar* means)
+{
+    HDP_FOR_LANES(k, lanes) means[k] = (uchar)std::min((int)(costs[k] * factor + 0.5f), 255);
+}
+
 template <int lanes>
 void storeMeans(const float* costs, const int* pixels, int size, const float* factors, const Range& run,
                 CostVolume& volume)
@@ -141,16 +146,17 @@ void storeMeans(const float* costs, const int* pixels, int size, const float* fa
     uchar* const stored = volume.costs.data();
     for (int i = 0; i < size; ++i, costs += lanes)
     {
-        const float factor = factors[i];
-        uchar means[lanes];
-        HDP_FOR_LANES(k, lanes) means[k] = (uchar)std::min((int)(costs[k] * factor + 0.5f), 255);
         const CostVolume::Candidates& own = volume.candidates[pixels[i]];
         const int at = run.start - own.interval.first;
         uchar* const first = stored + own.start() + at;
-        if (at + lanes <= own.rows() * CostVolume::row) // a size that the compiler knows; the last ones are padding
-            std::memcpy(first, means, lanes);
-        else
-            std::memcpy(first, means, run.size());
+        if (at + lanes <= own.rows() * CostVolume::row) // the last ones are padding
+        {
+            roundMeans<lanes>(costs, factors[i], first);
+            continue;
+        }
+        uchar means[lanes];
+        roundMeans<lanes>(costs, factors[i], means);
+        std::memcpy(first, means, run.size());
     }
 }
 

@@ -88,17 +88,17 @@ Mat byteLevels(const Mat& image, int bits, Mat& buffer)
 
 void greyLevels(const Mat& image, int bits, Mat& grey)
 {
-    const int white = 256 * greyScale - 1, times = fewestBits - bits;
+    const int times = fewestBits - bits;
     grey.create(image.size(), CV_16U);
     if (image.depth() == CV_16U)
     {
         return convertRows<ushort, ushort>(image, grey, [=](const ushort* pixels, ushort* levels, int width) {
             if (times > 0)
                 HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
-                    (ushort)std::min(pixels[x] * greyScale << times, white);
+                    (ushort)std::min(pixels[x] * greyScale << times, whiteLevel);
             else
                 HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
-                    (ushort)std::min(pixels[x] * greyScale >> -times, white);
+                    (ushort)std::min(pixels[x] * greyScale >> -times, whiteLevel);
         });
     }
     const int channels = image.channels();
@@ -106,7 +106,7 @@ void greyLevels(const Mat& image, int bits, Mat& grey)
         if (channels > 1)
             return dispatchGrey(pixels, channels, width, times, levels);
         HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
-            (ushort)std::min(pixels[x] * greyScale << times, white);
+            (ushort)std::min(pixels[x] * greyScale << times, whiteLevel);
     });
 }
 

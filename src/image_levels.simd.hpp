@@ -20,7 +20,7 @@ namespace {
 
 template <int channels> void greyRow(const uchar* pixels, int width, int times, ushort* levels)
 {
-    const unsigned shift = 14 - times, half = 1u << (shift - 1), white = 256 * greyScale - 1;
+    const unsigned shift = 14 - times, half = 1u << (shift - 1), white = whiteLevel;
     static_assert(65536 / greyScale == 1 << 14, "The weights are in 1 / 65536.");
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {

@@ -366,7 +366,6 @@ private:
     //! A row's disparities, with winnerFraction(), and residuals
     void finishRow(int group, ushort* disparity, uchar* residual) const
     {
-        const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers, rounded to the nearest
         const float directions = p_.hasFromBelow ? 4 : 3, blunt = 15 * directions, sharp = 25 * directions;
         const int last = p_.validCandidates() - 1, large = p_.penalties.large, largest = p_.largest;
         const short *firstOfLow = tables_.first(0), *firstOfHigh = tables_.first(1);
@@ -384,8 +383,7 @@ private:
                 ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
             const float slope = (float)std::max(std::max(before, after) - sum, 1);
             const float rise = (float)((before - after) & -isInner);
-            const float offset = subpixelScale * winnerFraction(rise, slope, blunt, sharp);
-            const int tip = whole * subpixelScale + (int)((offset + wholes) - wholes);
+            const int tip = whole * subpixelScale + subpixelUnits(winnerFraction(rise, slope, blunt, sharp));
             disparity[x] = (ushort)std::min(std::max(tip, 0), largest);
         }
         HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - large);

@@ -42,7 +42,7 @@ struct VolumeProblem
 
     enum
     {
-        maxScanlines = 64,       // that are followed side by side
+        maxScanlines = 32,       // that are followed side by side
         margin = CostVolume::row // before and behind the candidates of a pixel, for the first and the last one to have
                                  // neighbours
     };

@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "volume_scanlines.hpp"
+#include "vectorized.hpp"
 #include "winner_fraction.hpp"
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "byte_lanes.simd.hpp"
@@ -96,7 +97,7 @@ public:
     {
         FIRST,  // begins the sums
         MIDDLE, // adds to them
-        LAST    // takes the winners
+        LAST    // takes the winners, of scanlines that are side by side in memory
     };
 
     LineBlock(const VolumeProblem& problem, int scanlines, int length, short* lines)
@@ -119,10 +120,12 @@ public:
         const WordLanes small = WordLanes::repeat(p_.small);
         short *before = before_, *here = here_;
         LastPixel last[VolumeProblem::maxScanlines];
+        Winners winners;
 
         for (int i = 0; i < length; ++i)
         {
-            ptrdiff_t pixel = direction.first + i * direction.along;
+            const ptrdiff_t first = direction.first + i * direction.along;
+            ptrdiff_t pixel = first;
             for (int k = 0; k < scanlines; ++k, pixel += direction.across)
             {
                 const DisparityInterval interval = candidates[pixel].interval;
@@ -131,7 +134,7 @@ public:
                 {
                     last[k] = LastPixel();
                     if (role == LAST)
-                        disparity[pixel] = 0;
+                        winners.setNone(k);
                     continue;
                 }
                 const size_t start = candidates[pixel].start();
@@ -145,8 +148,10 @@ public:
                         ? step<role, true>(own, small, large, before + k * lineLength, here + k * lineLength, last[k])
                         : step<role, false>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
                 if (role == LAST)
-                    disparity[pixel] = disparityOf(total, interval, lowest);
+                    findWinner(total, interval, lowest, k, winners);
             }
+            if (role == LAST)
+                takeDisparities(winners, scanlines, disparity + first);
             std::swap(before, here);
         }
     }
@@ -229,26 +234,49 @@ private:
         return role == LAST ? lowestSum.minimum() : 0;
     }
 
-    //! The disparity of the first candidate with the lowest sum
-    ushort disparityOf(const short* sums, const DisparityInterval& interval, int lowest) const
+    //! Of a pixel of each scanline: the winner, and what winnerFraction() is given
+    struct Winners
+    {
+        ushort whole[VolumeProblem::maxScanlines];
+        short rise[VolumeProblem::maxScanlines], slope[VolumeProblem::maxScanlines];
+
+        void set(int k, int disparity, int sumsRise, int sumsSlope)
+        {
+            whole[k] = (ushort)disparity;
+            rise[k] = (short)sumsRise;
+            slope[k] = (short)sumsSlope;
+        }
+        void setNone(int k) { set(k, 0, 0, 1); }
+    };
+
+    //! The first candidate with the lowest sum
+    static void findWinner(const short* sums, const DisparityInterval& interval, int lowest, int scanline,
+                           Winners& winners)
     {
         const WordLanes searched = WordLanes::repeat(lowest);
         int first = 0;
         while (!v_check_any(WordLanes::load(sums + first).equals(searched)))
             first += WordLanes::count;
         const int k = first + v_scan_forward(WordLanes::load(sums + first).equals(searched));
-        const int whole = (interval.first + k) * subpixelScale, last = interval.size() - 1;
+        const int last = interval.size() - 1;
         if (last < 2)
-            return (ushort)whole;
+            return winners.set(scanline, interval.first + k, 0, 1);
         // Beyond the first and the last candidate: the slope beside them, or that which leaves the tip at the end
         const int before = k > 0 ? sums[k - 1] : lowest + std::max(sums[2] - sums[1], sums[1] - lowest);
         const int after =
             k < last ? sums[k + 1] : lowest + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - lowest);
-        const int slope = std::max(std::max(before, after) - lowest, 1);
+        winners.set(scanline, interval.first + k, before - after, std::max(std::max(before, after) - lowest, 1));
+    }
+
+    static void takeDisparities(const Winners& winners, int scanlines, ushort* disparity)
+    {
         const float unit = 4 * CostVolume::scale, blunt = 8 * unit,
                     sharp = 14 * unit; // of the costs of four directions
-        const float fraction = winnerFraction((float)(before - after), (float)slope, blunt, sharp);
-        return (ushort)(whole + cvRound(subpixelScale * fraction));
+        HDP_VECTORIZED for (int k = 0; k < scanlines; ++k)
+        {
+            const float fraction = winnerFraction((float)winners.rise[k], (float)winners.slope[k], blunt, sharp);
+            disparity[k] = (ushort)(winners.whole[k] * subpixelScale + subpixelUnits(fraction));
+        }
     }
 
     enum

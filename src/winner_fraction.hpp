@@ -4,6 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_WINNER_FRACTION_HPP
 #define OPENCV_HDPSTEREO_WINNER_FRACTION_HPP
 
+#include "disparity_units.hpp"
 #include "opencv2/core.hpp"
 #include <algorithm>
 #include <cmath>
@@ -28,6 +29,13 @@ CV_ALWAYS_INLINE float winnerFraction(float rise, float slope, float blunt, floa
     const float share = rootShare * std::min(std::max((slope - blunt) / (sharp - blunt), 0.f), 1.f);
     const float root = std::copysign(std::sqrt(std::abs(u)), u);
     return 0.5f * (u + share * (root - u));
+}
+
+//! In units of a disparity map, rounded to the nearest as cvRound() does, but in vectors, too
+CV_ALWAYS_INLINE int subpixelUnits(float fraction)
+{
+    const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers
+    return (int)((subpixelScale * fraction + wholes) - wholes);
 }
 
 } // namespace hdp
