@@ -5,7 +5,6 @@
 #include "census_cost.hpp"
 #include "census_cost.simd.hpp"
 #include "census_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "disparity_units.hpp"
 
 namespace cv {
 namespace stereo {
@@ -27,6 +26,11 @@ void dispatchLeftCensus(const CensusWindow& window, const short* grey, int cols,
 void dispatchRightCensus(const CensusWindow& window, const short* grey, int cols, uchar* row, size_t planeSize)
 {
     CV_CPU_DISPATCH(rightCensusRow, (window, grey, cols, row, planeSize), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+void dispatchOfDisparities(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost)
+{
+    CV_CPU_DISPATCH(censusCostOfRow, (planes, y, disparity, cost), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 } // namespace
@@ -96,12 +100,7 @@ void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
     costs.create(disparity.size(), CV_8U);
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
-        {
-            const ushort* candidate = disparity.ptr<ushort>(y);
-            uchar* cost = costs.ptr(y);
-            for (int x = 0; x < disparity.cols; ++x)
-                cost[x] = (uchar)at(Point(x, y), wholeDisparity(candidate[x]));
-        }
+            dispatchOfDisparities(planes_, y, disparity.ptr<ushort>(y), costs.ptr(y));
     });
 }
 

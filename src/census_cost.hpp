@@ -63,17 +63,6 @@ public:
     //! The cost of one candidate of each pixel, CV_8UC1. disparity: CV_16UC1, a disparity map.
     void ofDisparities(const Mat& disparity, Mat& costs) const;
 
-    //! The cost of a candidate of a pixel, in bits
-    int at(const Point& pixel, int candidate) const
-    {
-        const uchar* left = leftPixels(pixel.y) + 4 * pixel.x;
-        const uchar* right = rightPlane(0, pixel.y) + planes_.width - 1 - pixel.x + candidate;
-        unsigned bits = 0;
-        for (int plane = 0; plane < planes(); ++plane, right += planeStride())
-            bits |= (unsigned)(left[plane] ^ *right) << (8 * plane);
-        return countCensusBits(bits);
-    }
-
     //! The number of planes of 8 bits that hold the census of a pixel
     int planes() const { return planes_.count; }
     //! The number of comparisons in the census of a pixel

@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "census_cost.hpp"
+#include "disparity_units.hpp"
 #include "image_levels.hpp"
 #include "vectorized.hpp"
 #include <cstring>
@@ -35,6 +36,9 @@ void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count
 
 //! CensusCost::evaluateScaled()
 void scaleCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int scale, uchar* cost);
+
+//! CensusCost::ofDisparities() for row y
+void censusCostOfRow(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -191,6 +195,41 @@ void scaleCensusCost(const CensusPlanes& planes, const int* pixels, int count, i
         uchar* const to = cost + position;
         HDP_VECTORIZED for (int k = 0; k < number; ++k) to[k] = (uchar)(bits[k] * scale);
     });
+}
+
+namespace {
+
+template <int count> void costOfRow(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost)
+{
+    const int block = 64;
+    const uchar* left = planes.left + y * planes.leftStep;
+    const uchar* right = planes.right + y * planes.rightStep + planes.width - 1;
+    unsigned differences[block];
+    for (int begin = 0; begin < planes.width; begin += block)
+    {
+        const int size = std::min(block, planes.width - begin);
+        for (int i = 0, x = begin; i < size; ++i, ++x)
+        {
+            const uchar* match = right - x + wholeDisparity(disparity[x]);
+            unsigned bits = 0;
+            HDP_UNROLLED for (int plane = 0; plane < count; ++plane) bits |=
+                (unsigned)(left[4 * x + plane] ^ match[plane * planes.rightPlane]) << (8 * plane);
+            differences[i] = bits;
+        }
+        HDP_VECTORIZED for (int i = 0; i < size; ++i) cost[begin + i] = (uchar)countCensusBits(differences[i]);
+    }
+}
+
+} // namespace
+
+void censusCostOfRow(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost)
+{
+    if (planes.count == 3)
+        costOfRow<3>(planes, y, disparity, cost);
+    else if (planes.count == 2)
+        costOfRow<2>(planes, y, disparity, cost);
+    else
+        costOfRow<1>(planes, y, disparity, cost);
 }
 
 #endif
