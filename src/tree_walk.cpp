@@ -36,11 +36,12 @@ void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk
     size_t count = 1;
     for (int i = 0; count > 0; ++i)
     {
-        const TreeWalk::Step step = pending[--count];
-        const int p = step.pixel;
+        // One by one: what was written in parts a moment ago is slow to read at once.
+        const TreeWalk::Step& step = pending[--count];
+        const int p = step.pixel, parent = step.parent, parentLink = step.parentLink;
         pixels[i] = p;
-        parents[i] = step.parent;
-        edges[i] = weights[2 * p + edgeOffsets[step.parentLink]];
+        parents[i] = parent;
+        edges[i] = weights[2 * p + edgeOffsets[parentLink]];
 
         // All four neighbours are written and only children are counted: branches would often be mispredicted.
         if (count + 4 > capacity)
@@ -49,7 +50,7 @@ void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk
             walk.pending.resize(capacity);
             pending = walk.pending.data();
         }
-        const int children = links[p] & ~step.parentLink;
+        const int children = links[p] & ~parentLink;
         const TreeWalk::Step above = { p - width, i, TreeLink::BELOW };
         const TreeWalk::Step left = { p - 1, i, TreeLink::RIGHT };
         const TreeWalk::Step below = { p + width, i, TreeLink::ABOVE };
