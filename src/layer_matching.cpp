@@ -252,8 +252,9 @@ void aggregateScanlines(const LayerInput& in, LayerBuffers& buffers, StageClock&
         clock.run("cost aggregation", [&] {
             const int slope = in.isFinest() && !in.alignment.isNoisy ? finestSlope : usualSlope;
             const ScanlinePenalties penalties = { p.P1, p.P2, slope, pass == 0 ? 1 : 2 };
-            // The direction from below costs half as much as the others together: where it is cheap, or worth it
-            const bool hasFromBelow = !in.isFinest() || pass > 0;
+            // The direction from below costs half as much as the others together: at full size, it waits for the second
+            // pass.
+            const bool hasFromBelow = in.layer > 0 || pass > 0;
             aggregateScanlines(matched.census, in.images.left, disparities, largestDisparity(in), matched.windows,
                                penalties, hasFromBelow, buffers.scanlines, matched.winner, matched.residual);
         });

@@ -323,9 +323,9 @@ public:
     spanning tree of the whole image is not.
 
     HDPTreeMatcher::AGGREGATION_SCANLINES (the others): semi-global matching of the costs themselves, from the left,
-    from the right and from above, in the layers before the finest one and in later passes from below, too, over 16
-    candidates per pixel around the disparity of the layer above and, if there may be one, that of another surface. It
-    has no use for the prediction model, delta0, beta, the margin and the prior.
+    from the right, from above and, but for the first pass at full size, from below, over 16 candidates per pixel around
+    the disparity of the layer above and, if there may be one, that of another surface. It has no use for the prediction
+    model, delta0, beta, the margin and the prior.
 
     Both need HDPTreeMatcher::COST_CENSUS. */
     CV_WRAP virtual void setAggregation(int aggregation) = 0;
