@@ -7,8 +7,8 @@
 #   packages          projects that build with the module, in all of the ways that INSTALL.md names
 #   performance       one round of the performance tests: that they run, not how fast
 #   documentation     the reference and the tutorials, without a warning
-#   web               the web page, in Chromium
-# What cannot run for want of something is shown as skipped.
+# What cannot run for want of something is shown as skipped. The web page has tests of its own, scripts/check_web.sh, which
+# first build OpenCV for WebAssembly.
 
 foreach(kind test perf)
   if(kind STREQUAL "perf" AND HDPSTEREO_SANITIZE)
@@ -189,12 +189,3 @@ if(NOT DOXYGEN OR NOT BIBTEX)
   set(missing "doxygen or bibtex")
 endif()
 add_optional_check(documentation documentation "${missing}" "${PROJECT_SOURCE_DIR}/scripts/docs.sh")
-
-set(missing "")
-find_program(EMCC emcc)
-find_program(CHROMIUM chromium)
-find_program(NPM npm)
-if(NOT EMCC OR NOT CHROMIUM OR NOT NPM OR NOT HDPSTEREO_SAMPLES OR NOT HDPSTEREO_TOOLS)
-  set(missing "emscripten, chromium, npm, HDPSTEREO_SAMPLES or HDPSTEREO_TOOLS in this build")
-endif()
-add_optional_check(web web "${missing}" "${PROJECT_SOURCE_DIR}/scripts/check_web.sh" "${CMAKE_BINARY_DIR}")
