@@ -166,7 +166,7 @@ TEST(HDPStereo_Threads, any_number)
     for (int i = 0; i < matchers; ++i)
     {
         std::vector<Result> expected;
-        for (int count : { 1, 0, 5, 64, -1 }) // 0: without any; negative: as many as OpenCV likes
+        for (int count : { 1, 0, 2, 5, 64, -1 }) // 0: without any; negative: as many as OpenCV likes
         {
             SCOPED_TRACE(testing::Message() << "matcher " << i << ", threads " << count);
             cv::setNumThreads(count);
@@ -303,12 +303,12 @@ TEST(HDPStereo_Threads, strategy_that_throws)
         for (ThrowingTree::Method method : { ThrowingTree::ORDER_EDGES, ThrowingTree::MAY_JOIN,
                                              ThrowingTree::UNITES_INTERVALS, ThrowingTree::LINKS_TREES })
             for (int calls : { 0, 500 })
-            {
-                const bool byWeight = (i + method + calls / 500) % 2 != 0;
-                SCOPED_TRACE(testing::Message() << "matcher " << i << ", method " << (int)method << " after " << calls
-                                                << " calls, by weight " << byWeight);
-                expectUsableAfterThrowing(i, byWeight, method, calls, (i + calls) % 3);
-            }
+                for (bool byWeight : { false, true })
+                {
+                    SCOPED_TRACE(testing::Message() << "matcher " << i << ", method " << (int)method << " after "
+                                                    << calls << " calls, by weight " << byWeight);
+                    expectUsableAfterThrowing(i, byWeight, method, calls, (i + calls) % 3);
+                }
 }
 
 TEST(HDPStereo_Threads, strategies_that_throw_in_eight_threads)
