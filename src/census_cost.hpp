@@ -27,6 +27,16 @@ struct CensusWindow
     ptrdiff_t step;        // from a row to the next, in elements
 };
 
+//! Where the census of a pixel differs from that of its match: a byte of each plane. right: in the first plane
+template <int planes>
+CV_ALWAYS_INLINE unsigned censusDifference(const uchar* left, const uchar* right, size_t rightPlane)
+{
+    unsigned bits = 0;
+    for (int plane = 0; plane < planes; ++plane, right += rightPlane)
+        bits |= (unsigned)(left[plane] ^ *right) << (8 * plane);
+    return bits;
+}
+
 //! The number of bits set in the lower 24
 inline int countCensusBits(unsigned bits)
 {

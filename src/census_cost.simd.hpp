@@ -209,13 +209,8 @@ template <int count> void costOfRow(const CensusPlanes& planes, int y, const ush
     {
         const int size = std::min(block, planes.width - begin);
         for (int i = 0, x = begin; i < size; ++i, ++x)
-        {
-            const uchar* match = right - x + wholeDisparity(disparity[x]);
-            unsigned bits = 0;
-            HDP_UNROLLED for (int plane = 0; plane < count; ++plane) bits |=
-                (unsigned)(left[4 * x + plane] ^ match[plane * planes.rightPlane]) << (8 * plane);
-            differences[i] = bits;
-        }
+            differences[i] =
+                censusDifference<count>(left + 4 * x, right - x + wholeDisparity(disparity[x]), planes.rightPlane);
         HDP_VECTORIZED for (int i = 0; i < size; ++i) cost[begin + i] = (uchar)countCensusBits(differences[i]);
     }
 }

@@ -102,11 +102,7 @@ template <int planes> inline int costOf(const ComparedRow& row, int x, int dispa
     const int candidate = wholeDisparity(disparity);
     if (candidate > x)
         return row.unseenCost;
-    const uchar *left = row.left + 4 * x, *right = row.right - x + candidate;
-    unsigned bits = 0;
-    for (int plane = 0; plane < planes; ++plane, right += row.planeStride)
-        bits |= (unsigned)(left[plane] ^ *right) << (8 * plane);
-    return countBits(bits);
+    return countBits(censusDifference<planes>(row.left + 4 * x, row.right - x + candidate, row.planeStride));
 }
 
 //! What a cell takes, of its sums over the window. isStill: 0 or 1
