@@ -159,7 +159,7 @@ check_mingw()
     install_packages build-essential cmake g++-mingw-w64-x86-64-posix libopencv-dev
     cmake -S "$checkout" -B "$build/release" # makes the headers of dispatch
     local file
-    for file in "$checkout"/src/*.cpp; do
+    for file in "$checkout"/src/*.cpp "$checkout"/src/*/*.cpp; do
         echo "$file"
         x86_64-w64-mingw32-g++-posix -fsyntax-only -std=c++11 -Wall -Wextra -Werror -D__OPENCV_BUILD=1 \
             -I"$checkout/include" -I"$checkout/src" -I"$build/release/dispatch" -idirafter /usr/include/opencv4 \

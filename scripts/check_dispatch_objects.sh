@@ -14,7 +14,8 @@ stages=$(dirname "${BASH_SOURCE[0]}")/../src
 objects=()
 while read -r object; do
     stage=$(basename "$object")
-    [ ! -e "$stages/${stage%%.*}.simd.hpp" ] || objects+=("$object") # else it is left from an older build
+    # One without a source is left from an older build.
+    [ -z "$(find "$stages" -name "${stage%%.*}.simd.hpp")" ] || objects+=("$object")
 done < <(find "$1" -ipath '*hdpstereo*' -iregex '.*[.]\(avx\|sse\)[^/.]*[.]cpp[.]o' | sort)
 [ ${#objects[@]} -gt 0 ] || { echo "$1 has no objects of dispatched stages" >&2; exit 2; }
 

@@ -3,18 +3,17 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
 
-#include "disparity_confidence.hpp"
-#include "disparity_output.hpp"
-#include "disparity_units.hpp"
-#include "image_pyramid.hpp"
+#include "map/disparity_confidence.hpp"
+#include "map/disparity_output.hpp"
+#include "base/disparity_units.hpp"
+#include "pair/image_pyramid.hpp"
 #include "layer_matching.hpp"
-#include "matcher_parameters.hpp"
-#include "pair_alignment.hpp"
-#include "pair_pyramids.hpp"
-#include "stage_clock.hpp"
+#include "plan/matcher_parameters.hpp"
+#include "pair/pair_alignment.hpp"
+#include "pair/pair_pyramids.hpp"
+#include "base/stage_clock.hpp"
 
-namespace cv {
-namespace stereo {
+namespace cv { namespace stereo {
 
 using namespace hdp;
 
@@ -332,5 +331,4 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities,
     return makePtr<HDPTreeMatcherImpl>(parameters);
 }
 
-} // namespace stereo
-} // namespace cv
+}} // namespace cv::stereo

@@ -4,19 +4,17 @@
 #include "precomp.hpp"
 #include "layer_matching.hpp"
 
-#include "candidate_windows.hpp"
-#include "disparity_prediction.hpp"
-#include "disparity_refinement.hpp"
-#include "image_levels.hpp"
-#include "image_pyramid.hpp"
-#include "nonlocal_refinement.hpp"
-#include "sparse_matches.hpp"
-#include "temporal_prior.hpp"
-#include "tree_planes.hpp"
+#include "scanlines/candidate_windows.hpp"
+#include "forest/disparity_prediction.hpp"
+#include "map/disparity_refinement.hpp"
+#include "pair/image_levels.hpp"
+#include "pair/image_pyramid.hpp"
+#include "paper/nonlocal_refinement.hpp"
+#include "scanlines/sparse_matches.hpp"
+#include "video/temporal_prior.hpp"
+#include "forest/tree_planes.hpp"
 
-namespace cv {
-namespace stereo {
-namespace hdp {
+namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
@@ -309,6 +307,4 @@ void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, 
     clock.run("disparity median", [&] { filter(in, matched); });
 }
 
-} // namespace hdp
-} // namespace stereo
-} // namespace cv
+}}} // namespace cv::stereo::hdp

@@ -4,23 +4,21 @@
 #ifndef OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 #define OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 
-#include "candidate_windows.hpp"
-#include "census_cost.hpp"
-#include "color_gradient_cost.hpp"
-#include "disparity_forest.hpp"
-#include "forest_aggregation.hpp"
-#include "matcher_parameters.hpp"
-#include "pair_alignment.hpp"
-#include "pair_pyramids.hpp"
-#include "scanline_aggregation.hpp"
-#include "stage_clock.hpp"
-#include "support_points.hpp"
-#include "temporal_join.hpp"
-#include "volume_scanlines.hpp"
+#include "scanlines/candidate_windows.hpp"
+#include "cost/census_cost.hpp"
+#include "paper/color_gradient_cost.hpp"
+#include "forest/disparity_forest.hpp"
+#include "forest/forest_aggregation.hpp"
+#include "plan/matcher_parameters.hpp"
+#include "pair/pair_alignment.hpp"
+#include "pair/pair_pyramids.hpp"
+#include "scanlines/scanline_aggregation.hpp"
+#include "base/stage_clock.hpp"
+#include "paper/support_points.hpp"
+#include "video/temporal_join.hpp"
+#include "scanlines/volume_scanlines.hpp"
 
-namespace cv {
-namespace stereo {
-namespace hdp {
+namespace cv { namespace stereo { namespace hdp {
 
 //! A layer's result, and memory that is kept for the next pair
 struct MatchedLayer
@@ -80,8 +78,6 @@ struct LayerBuffers
 //! Section 3: from the disparities of the layer above to those of this layer
 void matchLayer(const LayerInput& input, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched);
 
-} // namespace hdp
-} // namespace stereo
-} // namespace cv
+}}} // namespace cv::stereo::hdp
 
 #endif

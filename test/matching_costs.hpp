@@ -5,7 +5,7 @@
 #define OPENCV_HDPSTEREO_TEST_MATCHING_COSTS_HPP
 
 #include "test_precomp.hpp"
-#include "../src/matching_cost.hpp"
+#include "../src/cost/matching_cost.hpp"
 
 namespace opencv_test {
 

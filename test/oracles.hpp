@@ -8,13 +8,13 @@
 // Nothing here calls the library, except for the strategies' Rule 1 and 2 and the parameters of the prediction model.
 
 #include "test_precomp.hpp"
-#include "../src/census_cost.hpp"
-#include "../src/color_gradient_cost.hpp"
-#include "../src/disparity_confidence.hpp"
-#include "../src/disparity_forest.hpp"
-#include "../src/disparity_prediction.hpp"
-#include "../src/scanline_aggregation.hpp"
-#include "../src/volume_scanlines.hpp"
+#include "../src/cost/census_cost.hpp"
+#include "../src/paper/color_gradient_cost.hpp"
+#include "../src/map/disparity_confidence.hpp"
+#include "../src/forest/disparity_forest.hpp"
+#include "../src/forest/disparity_prediction.hpp"
+#include "../src/scanlines/scanline_aggregation.hpp"
+#include "../src/scanlines/volume_scanlines.hpp"
 
 namespace opencv_test {
 namespace oracle {

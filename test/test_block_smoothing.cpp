@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 
-#include "../src/block_smoothing.hpp"
-#include "../src/image_levels.hpp"
+#include "../src/pair/block_smoothing.hpp"
+#include "../src/pair/image_levels.hpp"
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 

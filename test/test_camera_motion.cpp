@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "synthetic_video.hpp"
-#include "../src/camera_motion.hpp"
+#include "../src/video/camera_motion.hpp"
 
 namespace opencv_test {
 namespace {

@@ -4,8 +4,8 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/candidate_windows.hpp"
-#include "../src/sparse_matches.hpp"
+#include "../src/scanlines/candidate_windows.hpp"
+#include "../src/scanlines/sparse_matches.hpp"
 
 namespace opencv_test {
 namespace {

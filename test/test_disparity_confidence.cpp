@@ -6,12 +6,12 @@
 #include "oracles.hpp"
 #include "synthetic_pair.hpp"
 #include "systems.hpp"
-#include "../src/census_cost.hpp"
-#include "../src/color_gradient_cost.hpp"
-#include "../src/disparity_confidence.hpp"
-#include "../src/disparity_units.hpp"
-#include "../src/image_levels.hpp"
-#include "../src/pair_pyramids.hpp"
+#include "../src/cost/census_cost.hpp"
+#include "../src/paper/color_gradient_cost.hpp"
+#include "../src/map/disparity_confidence.hpp"
+#include "../src/base/disparity_units.hpp"
+#include "../src/pair/image_levels.hpp"
+#include "../src/pair/pair_pyramids.hpp"
 
 namespace opencv_test {
 namespace {

@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/tree_walk.hpp"
+#include "../src/forest/tree_walk.hpp"
 
 namespace opencv_test {
 namespace {

@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/disparity_refinement.hpp"
+#include "../src/map/disparity_refinement.hpp"
 
 namespace opencv_test {
 namespace {

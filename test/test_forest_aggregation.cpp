@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/forest_aggregation.hpp"
+#include "../src/forest/forest_aggregation.hpp"
 
 namespace opencv_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "oracles.hpp"
 #include "synthetic_pair.hpp"
 #include "systems.hpp"
-#include "../src/image_levels.hpp"
+#include "../src/pair/image_levels.hpp"
 
 namespace opencv_test {
 namespace {

@@ -4,8 +4,8 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/image_pyramid.hpp"
-#include "../src/pair_pyramids.hpp"
+#include "../src/pair/image_pyramid.hpp"
+#include "../src/pair/pair_pyramids.hpp"
 
 namespace opencv_test {
 namespace {

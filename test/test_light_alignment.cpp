@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 
-#include "../src/image_levels.hpp"
-#include "../src/light_alignment.hpp"
+#include "../src/pair/image_levels.hpp"
+#include "../src/pair/light_alignment.hpp"
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 

@@ -4,8 +4,8 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/disparity_refinement.hpp"
-#include "../src/nonlocal_refinement.hpp"
+#include "../src/map/disparity_refinement.hpp"
+#include "../src/paper/nonlocal_refinement.hpp"
 
 namespace opencv_test {
 namespace {

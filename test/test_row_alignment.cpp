@@ -3,9 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 
-#include "../src/image_levels.hpp"
-#include "../src/row_alignment.hpp"
-#include "../src/corner_matches.hpp"
+#include "../src/pair/image_levels.hpp"
+#include "../src/pair/row_alignment.hpp"
+#include "../src/pair/corner_matches.hpp"
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 

@@ -8,14 +8,14 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/scanline_aggregation.hpp"
-#include "../src/sparse_matches.hpp"
+#include "../src/scanlines/scanline_aggregation.hpp"
+#include "../src/scanlines/sparse_matches.hpp"
 
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_END
 #define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_emulated {
 #define CV_CPU_OPTIMIZATION_NAMESPACE_END }
-#include "../src/scanline_aggregation.simd.hpp"
+#include "../src/scanlines/scanline_aggregation.simd.hpp"
 
 namespace opencv_test {
 namespace {

@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/sparse_matches.hpp"
+#include "../src/scanlines/sparse_matches.hpp"
 
 namespace opencv_test {
 namespace {

@@ -5,7 +5,7 @@
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "synthetic_pair.hpp"
-#include "../src/support_points.hpp"
+#include "../src/paper/support_points.hpp"
 
 namespace opencv_test {
 namespace {

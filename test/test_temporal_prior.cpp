@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/temporal_prior.hpp"
+#include "../src/video/temporal_prior.hpp"
 
 namespace opencv_test {
 namespace {

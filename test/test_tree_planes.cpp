@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 #include "helpers.hpp"
-#include "../src/tree_planes.hpp"
-#include "../src/tree_walk.hpp"
+#include "../src/forest/tree_planes.hpp"
+#include "../src/forest/tree_walk.hpp"
 
 namespace opencv_test {
 namespace {

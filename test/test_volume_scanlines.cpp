@@ -8,13 +8,13 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/volume_scanlines.hpp"
+#include "../src/scanlines/volume_scanlines.hpp"
 
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_END
 #define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_emulated {
 #define CV_CPU_OPTIMIZATION_NAMESPACE_END }
-#include "../src/volume_scanlines.simd.hpp"
+#include "../src/scanlines/volume_scanlines.simd.hpp"
 
 namespace opencv_test {
 namespace {

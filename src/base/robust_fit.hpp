@@ -1,0 +1,100 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_ROBUST_FIT_HPP
+#define OPENCV_HDPSTEREO_ROBUST_FIT_HPP
+
+#include "opencv2/core.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! What a linear model of some terms is fitted to: value = coefficients . basis
+template <int terms> struct FitSample
+{
+    Vec<double, terms> basis;
+    double value;
+    double deviation; // expected of the value
+};
+
+//! What is expected before any sample is seen
+template <int terms> struct FitPrior
+{
+    Vec<double, terms> coefficients, deviations;
+};
+
+template <int terms> struct RobustFit
+{
+    Vec<double, terms> coefficients;
+    Matx<double, terms, terms> covariance; // of the coefficients
+};
+
+inline double medianOf(std::vector<double> values)
+{
+    const size_t middle = values.size() / 2;
+    std::nth_element(values.begin(), values.begin() + middle, values.end());
+    return values[middle];
+}
+
+//! Distances of the samples from a model, in units of their deviations
+template <int terms>
+std::vector<double> fitResiduals(const std::vector<FitSample<terms>>& samples, const Vec<double, terms>& coefficients)
+{
+    std::vector<double> residuals;
+    residuals.reserve(samples.size());
+    for (const FitSample<terms>& sample : samples)
+        residuals.push_back(std::abs(sample.value - coefficients.dot(sample.basis)) / sample.deviation);
+    return residuals;
+}
+
+/** Least squares, reweighted for Cauchy's distribution of the residuals.
+@param samples Not empty.
+@param prior
+@param start Where the iteration begins. */
+template <int terms>
+RobustFit<terms> fitRobustly(const std::vector<FitSample<terms>>& samples, const FitPrior<terms>& prior,
+                             const Vec<double, terms>& start)
+{
+    const int iterations = 6;
+    const double outlier = 2; // residual, in standard deviations, at which the weight of a sample is a half
+    RobustFit<terms> fit;
+    fit.coefficients = start;
+    for (int iteration = 0; iteration < iterations; ++iteration)
+    {
+        const std::vector<double> residuals = fitResiduals(samples, fit.coefficients);
+        const double scale = std::max(1.4826 * medianOf(residuals), 1.); // at least the deviations that are expected
+        Matx<double, terms, terms> information;
+        Vec<double, terms> sum;
+        for (int i = 0; i < terms; ++i)
+        {
+            information(i, i) = 1 / (prior.deviations[i] * prior.deviations[i]);
+            sum[i] = prior.coefficients[i] * information(i, i);
+        }
+        for (size_t s = 0; s < samples.size(); ++s)
+        {
+            const FitSample<terms>& sample = samples[s];
+            const double relative = residuals[s] / (scale * outlier), deviation = scale * sample.deviation;
+            const double weight = 1 / ((1 + relative * relative) * deviation * deviation);
+            for (int i = 0; i < terms; ++i)
+            {
+                const double weighted = weight * sample.basis[i];
+                sum[i] += weighted * sample.value;
+                for (int j = 0; j <= i; ++j)
+                    information(i, j) += weighted * sample.basis[j];
+            }
+        }
+        for (int i = 0; i < terms; ++i)
+            for (int j = i + 1; j < terms; ++j)
+                information(i, j) = information(j, i);
+        fit.covariance = information.inv(DECOMP_CHOLESKY);
+        fit.coefficients = fit.covariance * sum;
+    }
+    return fit;
+}
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,107 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_CENSUS_COST_HPP
+#define OPENCV_HDPSTEREO_CENSUS_COST_HPP
+
+#include "matching_cost.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! The census of a pair, as CensusCost holds it, see CensusCost::leftPixels() and CensusCost::rightPlane()
+struct CensusPlanes
+{
+    int width; // of the image
+    int count; // of planes
+    const uchar *left, *right;
+    size_t leftStep, rightStep; // from a row to the next
+    size_t rightPlane;          // from a plane to the next
+};
+
+//! What the census of a row of grey levels compares
+struct CensusWindow
+{
+    int radius, tolerance; // see CensusCost::prepare(); 1 to 3
+    ptrdiff_t step;        // from a row to the next, in elements
+};
+
+//! Where the census of a pixel differs from that of its match: a byte of each plane. right: in the first plane
+template <int planes>
+CV_ALWAYS_INLINE unsigned censusDifference(const uchar* left, const uchar* right, size_t rightPlane)
+{
+    unsigned bits = 0;
+    for (int plane = 0; plane < planes; ++plane, right += rightPlane)
+        bits |= (unsigned)(left[plane] ^ *right) << (8 * plane);
+    return bits;
+}
+
+//! The number of bits set in the lower 24
+inline int countCensusBits(unsigned bits)
+{
+    bits -= (bits >> 1) & 0x555555;
+    bits = (bits & 0x333333) + ((bits >> 2) & 0x333333);
+    bits = (bits + (bits >> 4)) & 0x0f0f0f;
+    return (int)((bits + (bits >> 8) + (bits >> 16)) & 31);
+}
+
+/** The census cost: the number of pixels, of every second one in the window as on a checkerboard, that are clearly darker
+than the centre in one image and not in the other. The census of a pixel has a bit for each of them, in planes of 8 bits: 3
+for a window of 7 x 7 pixels, 2 for 5, 1 for 3. */
+class CV_EXPORTS CensusCost CV_FINAL : public MatchingCost
+{
+public:
+    /** Takes a pair.
+    @param left Grey levels, CV_16UC1, see greyLevels().
+    @param right Of the same size and type.
+    @param numDisparities The number of candidates a pixel may be asked for.
+    @param blockSize Side of the window: 3, 5 or 7.
+    @param tolerance A pixel is clearly darker by more than this, 0..mostTolerance, in the images' units. */
+    void prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize, int tolerance = 0);
+
+    void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const CV_OVERRIDE;
+
+    /** Costs of scaledLanes candidates of each pixel in 8 bits; those past the last candidate mean nothing.
+    @param pixels As of evaluate().
+    @param count Their number.
+    @param first The first of the candidates.
+    @param scale What the costs are multiplied by, up to 10: the largest one is 24 bits.
+    @param cost Receives that of pixels[i] and candidate first + k at [i * scaledLanes + k]. */
+    void evaluateScaled(const int* pixels, int count, int first, int scale, uchar* cost) const;
+
+    //! The cost of one candidate of each pixel, CV_8UC1. disparity: CV_16UC1, a disparity map.
+    void ofDisparities(const Mat& disparity, Mat& costs) const;
+
+    //! The number of planes of 8 bits that hold the census of a pixel
+    int planes() const { return planes_.count; }
+    //! The number of comparisons in the census of a pixel
+    int comparisons() const { return planes() == 3 ? 24 : planes() == 2 ? 12 : 4; } // windows of 7, 5 and 3
+    //! The census of a row of the left image and its grey levels in 8 bits: 4 bytes per pixel, the planes and greyByte.
+    //! There are 16 more pixels to read before and behind the row.
+    const uchar* leftPixels(int y) const { return planes_.left + y * planes_.leftStep; }
+    //! A row of the right image's census, or of its grey levels for plane = planes(): candidate d of pixel x is at
+    //! [width - 1 - x + d]. There are 16 more bytes to read before the row, of the last column, and 48
+    //! behind the last candidate.
+    const uchar* rightPlane(int plane, int y) const
+    {
+        return planes_.right + plane * planes_.rightPlane + y * planes_.rightStep;
+    }
+    //! From a plane of the right image to the next
+    size_t planeStride() const { return planes_.rightPlane; }
+    enum
+    {
+        greyByte = 3,
+        scaledLanes = 16,
+        mostTolerance = 1023
+    };
+
+private:
+    void prepareImage(const Mat& image, int radius, int tolerance, bool isRight, int after);
+
+    CensusPlanes planes_;
+    Mat left_;  // CV_8UC4, see leftPixels()
+    Mat right_; // CV_8UC1, the planes of the census and the grey levels below one another, see rightPlane()
+};
+
+}}} // namespace cv::stereo::hdp
+
+#endif

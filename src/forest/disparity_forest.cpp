@@ -1,0 +1,39 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "disparity_forest.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link,
+                 ForestBuffers& buffers, DisparityForest& forest)
+{
+    forest.trees.clear(); // those of other links must not be walked if the strategy throws
+    weighEdges(image, forest.weights);
+    forest.links.create(image.size(), CV_8U);
+    forest.links.setTo(Scalar::all(0));
+    buffers.trees.nodes.resize(image.total());
+    const bool links = link && strategy.linksTrees();
+    if (strategy.ordersByWeight())
+        joinByWeight(strategy, forest.weights, pixelIntv, beta, links, buffers.trees, buffers.stripes, forest.links);
+    else
+        joinInOrder(strategy, forest.weights, pixelIntv, beta, links, buffers.trees, buffers.edges, forest.links);
+    const std::vector<GrowingTrees::Node>& nodes = buffers.trees.nodes;
+    for (size_t i = 0; i < nodes.size(); ++i)
+        if (nodes[i].parent < 0)
+        {
+            const DisparityTree tree = { (int)i, -nodes[i].parent, nodes[i].interval };
+            forest.trees.push_back(tree);
+        }
+}
+
+double searchRatio(const DisparityForest& forest, int numDisparities)
+{
+    double searched = 0;
+    for (size_t t = 0; t < forest.trees.size(); ++t)
+        searched += (double)forest.trees[t].size * forest.trees[t].interval.size();
+    return searched / ((double)forest.links.total() * numDisparities);
+}
+
+}}} // namespace cv::stereo::hdp

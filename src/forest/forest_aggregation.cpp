@@ -1,0 +1,355 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "forest_aggregation.hpp"
+#include "forest_aggregation.simd.hpp"
+#include "forest/forest_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+
+#include <cmath>
+#include <mutex>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+// Costs of a tree that are in memory at once: a tree with more candidates is aggregated in runs of some, so that memory
+// stays O(pixels) and in the caches.
+const int64 costsAtOnce = 1 << 22;
+
+// Smaller trees are aggregated by one thread each.
+const int largeTree = 1 << 15;
+
+// Groups of candidates that a large tree's are divided into
+const int maxGroups = 4;
+
+// Work, in aggregated costs, of a task of small trees
+const int64 taskWork = 1 << 16;
+
+//! The parabola through the costs of three neighbouring candidates has its minimum this far from the middle one, in
+//! 1 / subpixelScale pixels.
+int parabolaOffset(float before, float middle, float after)
+{
+    const float curvature = (before - middle) + (after - middle);
+    return curvature > 0 ? cvRound((before - after) / curvature * (subpixelScale / 2)) : 0;
+}
+
+//! The lanes for a run of candidates: few more than there are, and not too many for the memory
+int countLanes(int candidates, int treeSize)
+{
+    int lanes = 4;
+    while (lanes < candidates && lanes < 32 && (lanes < 8 || 2 * lanes * (int64)treeSize <= costsAtOnce))
+        lanes *= 2;
+    return lanes;
+}
+
+//! Calls take(run, lanes) for runs of candidates that are in memory at once.
+template <typename Take> void forEachRun(const Range& candidates, int treeSize, const Take& take)
+{
+    for (int first = candidates.start; first < candidates.end;)
+    {
+        const int lanes = countLanes(candidates.end - first, treeSize);
+        const Range run(first, std::min(first + lanes, candidates.end));
+        take(run, lanes);
+        first = run.end;
+    }
+}
+
+//! Memory for the costs of a run
+float* provideCosts(int size, int lanes, std::vector<float>& costs)
+{
+    if (costs.size() < (size_t)size * lanes)
+        costs.resize((size_t)size * lanes);
+    return costs.data();
+}
+
+//! Evaluates and aggregates the costs of a run of candidates; see aggregateRun().
+void takeRun(const TreeWalk& walk, int size, const AggregationProblem& problem, const EdgeSimilarity& similarity,
+             const Range& run, int lanes, bool joins, std::vector<float>& memory, RunWinner* winners)
+{
+    float* const costs = provideCosts(size, lanes, memory);
+    problem.evaluate(walk.pixels.data(), size, run.start, lanes, costs);
+    CV_CPU_DISPATCH(aggregateRun, (walk, size, similarity.table, run, lanes, joins, costs, winners),
+                    CV_CPU_DISPATCH_MODES_ALL);
+}
+
+//! Winner-takes-all over the matching cost
+class Matching CV_FINAL : public AggregationProblem
+{
+public:
+    Matching(const MatchingCost& cost, bool subpixel) : cost_(cost), subpixel_(subpixel) {}
+
+    Range candidates(const TreeWalk&, const DisparityTree& tree) const CV_OVERRIDE
+    {
+        return tree.interval.empty() ? Range() : Range(tree.interval.first, tree.interval.last + 1);
+    }
+
+    void evaluate(const int* pixels, int count, int first, int lanes, float* costs) const CV_OVERRIDE
+    {
+        cost_.evaluate(pixels, count, first, lanes, costs);
+    }
+
+    void setDisparities(const int* pixels, const RunWinner* winners, int count, ushort* disparity) const CV_OVERRIDE
+    {
+        for (int i = 0; i < count; ++i)
+            disparity[pixels[i]] = (ushort)(winners[i].disparity * subpixelScale + offset(winners[i]));
+    }
+
+private:
+    int offset(const RunWinner& winner) const
+    {
+        const bool hasParabola = winner.before >= 0 && winner.after >= 0;
+        return subpixel_ && hasParabola ? parabolaOffset(winner.before, winner.lowest, winner.after) : 0;
+    }
+
+    const MatchingCost& cost_;
+    const bool subpixel_;
+};
+
+struct Aggregation
+{
+    const DisparityForest& forest;
+    const AggregationProblem& problem;
+    const EdgeSimilarity similarity;
+    ushort* disparity;
+
+    //! The winners of some candidates, run by run
+    void takeWinners(const TreeWalk& walk, int size, const Range& candidates, std::vector<float>& costs,
+                     std::vector<RunWinner>& winners) const
+    {
+        if (winners.size() < (size_t)size)
+            winners.resize(size);
+        forEachRun(candidates, size, [&](const Range& run, int lanes) {
+            takeRun(walk, size, problem, similarity, run, lanes, run.start > candidates.start, costs, winners.data());
+        });
+    }
+
+    void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
+    {
+        walkTree(forest, tree, scratch.walk);
+        const Range candidates = problem.candidates(scratch.walk, tree);
+        if (candidates.empty())
+            return;
+        takeWinners(scratch.walk, tree.size, candidates, scratch.costs, scratch.winners);
+        problem.setDisparities(scratch.walk.pixels.data(), scratch.winners.data(), tree.size, disparity);
+    }
+};
+
+//! Lends each thread its scratch memory.
+class ScratchLoan
+{
+public:
+    ScratchLoan(AggregationBuffers& buffers, std::mutex& mutex) : buffers_(buffers), mutex_(mutex)
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        if (buffers_.idle.empty())
+            scratch_.reset(new AggregationScratch);
+        else
+        {
+            scratch_ = std::move(buffers_.idle.back());
+            buffers_.idle.pop_back();
+        }
+    }
+    ~ScratchLoan()
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        buffers_.idle.push_back(std::move(scratch_));
+    }
+    AggregationScratch& operator*() const { return *scratch_; }
+
+private:
+    AggregationBuffers& buffers_;
+    std::mutex& mutex_;
+    std::unique_ptr<AggregationScratch> scratch_;
+};
+
+//! A large tree with many candidates: groups of them side by side
+void processLarge(const Aggregation& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
+{
+    std::mutex mutex;
+    ScratchLoan result(buffers, mutex);
+    TreeWalk& walk = (*result).walk;
+    walkTree(aggregation.forest, tree, walk);
+    const Range candidates = aggregation.problem.candidates(walk, tree);
+    if (candidates.empty())
+        return;
+
+    // Whole runs for each group
+    const int lanes = countLanes(candidates.size(), tree.size);
+    const int runs = (candidates.size() + lanes - 1) / lanes, count = std::min(runs, maxGroups);
+    const auto firstOf = [&](int group) {
+        return std::min(candidates.start + group * runs / count * lanes, candidates.end);
+    };
+    std::vector<std::vector<RunWinner>>& groups = buffers.groups;
+    groups.resize(maxGroups);
+    const auto takeGroups = [&](const Range& range) {
+        ScratchLoan scratch(buffers, mutex);
+        for (int g = range.start; g < range.end; ++g)
+            aggregation.takeWinners(walk, tree.size, Range(firstOf(g), firstOf(g + 1)), (*scratch).costs, groups[g]);
+    };
+    parallel_for_(Range(0, count), takeGroups, count);
+
+    parallel_for_(Range(0, tree.size), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+            for (int g = 1; g < count; ++g)
+                cpu_baseline::joinWinner(groups[0][i], groups[g][i], firstOf(g));
+        aggregation.problem.setDisparities(&walk.pixels[range.start], &groups[0][range.start], range.size(),
+                                           aggregation.disparity);
+    });
+}
+
+//! Calls processLarge(tree) for each large tree with many candidates, one by one, and processSmall(tree, scratch) for
+//! the others, in parallel.
+template <typename Large, typename Small>
+void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, const Large& processLarge,
+                 const Small& processSmall)
+{
+    // Tasks of about the same work, in the order of the trees
+    std::vector<Range> tasks;
+    int64 work = taskWork;
+    for (int t = 0; t < (int)forest.trees.size(); ++t)
+    {
+        const DisparityTree& tree = forest.trees[t];
+        const int candidates = tree.interval.size();
+        if (tree.size >= largeTree && candidates > countLanes(candidates, tree.size)) // several runs, side by side
+        {
+            processLarge(tree);
+            work = taskWork;
+            continue;
+        }
+        if (work >= taskWork)
+        {
+            tasks.push_back(Range(t, t));
+            work = 0;
+        }
+        tasks.back().end = t + 1;
+        work += (int64)tree.size * tree.interval.size();
+    }
+
+    std::mutex mutex;
+    parallel_for_(Range(0, (int)tasks.size()), [&](const Range& range) {
+        ScratchLoan scratch(buffers, mutex);
+        for (int i = range.start; i < range.end; ++i)
+            for (int t = tasks[i].start; t < tasks[i].end; ++t)
+                processSmall(forest.trees[t], *scratch);
+    });
+}
+
+//! Means over the trees, to a volume
+struct MeanAggregation
+{
+    const DisparityForest& forest;
+    const MatchingCost& cost;
+    const EdgeSimilarity similarity;
+    CostVolume& volume;
+
+    size_t numberOf(const DisparityTree& tree) const { return &tree - forest.trees.data(); }
+
+    //! CostVolume::scale / sum of S(p, q) over the tree, by the same two passes as C
+    void findFactors(const TreeWalk& walk, int size, std::vector<float>& memory) const
+    {
+        memory.assign(size, 1.f);
+        float* const sums = memory.data();
+        const int* const parents = walk.parents.data();
+        const uchar* const weights = walk.weights.data();
+        for (int i = size - 1; i > 0; --i)
+            sums[parents[i]] += similarity.table[weights[i]] * sums[i];
+        for (int i = 1; i < size; ++i)
+        {
+            const float s = similarity.table[weights[i]];
+            sums[i] = s * sums[parents[i]] + (1 - s * s) * sums[i];
+        }
+        for (int i = 0; i < size; ++i)
+            sums[i] = CostVolume::scale / sums[i];
+    }
+
+    void takeMeans(const TreeWalk& walk, int size, const std::vector<float>& factors, const Range& run, int lanes,
+                   std::vector<float>& memory) const
+    {
+        float* const costs = provideCosts(size, lanes, memory);
+        cost.evaluate(walk.pixels.data(), size, run.start, lanes, costs);
+        CV_CPU_DISPATCH(averageRun, (walk, size, similarity.table, run, lanes, factors.data(), costs, volume),
+                        CV_CPU_DISPATCH_MODES_ALL);
+    }
+
+    void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
+    {
+        walkTree(forest, tree, scratch.walk);
+        volume.place(forest, numberOf(tree), scratch.walk.pixels.data());
+        if (tree.interval.empty())
+            return;
+        findFactors(scratch.walk, tree.size, scratch.factors);
+        forEachRun(Range(tree.interval.first, tree.interval.last + 1), tree.size, [&](const Range& run, int lanes) {
+            takeMeans(scratch.walk, tree.size, scratch.factors, run, lanes, scratch.costs);
+        });
+    }
+
+    void processLarge(const DisparityTree& tree, AggregationBuffers& buffers) const
+    {
+        std::mutex mutex;
+        ScratchLoan whole(buffers, mutex);
+        const TreeWalk& walk = (*whole).walk;
+        walkTree(forest, tree, (*whole).walk);
+        volume.place(forest, numberOf(tree), walk.pixels.data());
+        findFactors(walk, tree.size, (*whole).factors);
+        const int first = tree.interval.first, end = tree.interval.last + 1;
+        const int lanes = countLanes(end - first, tree.size);
+        const int runs = (end - first + lanes - 1) / lanes, groups = std::min(runs, maxGroups);
+        const auto takeGroups = [&](const Range& range) {
+            ScratchLoan scratch(buffers, mutex);
+            for (int i = runs * range.start / groups; i < runs * range.end / groups; ++i)
+            {
+                const Range run(first + i * lanes, std::min(first + (i + 1) * lanes, end));
+                takeMeans(walk, tree.size, (*whole).factors, run, lanes, (*scratch).costs);
+            }
+        };
+        parallel_for_(Range(0, groups), takeGroups, groups);
+    }
+};
+
+} // namespace
+
+EdgeSimilarity::EdgeSimilarity(double gamma)
+{
+    for (int w = 0; w < 256; ++w)
+        table[w] = w > 0 ? (float)std::exp(-w / gamma) : 1.f; // 0 / gamma is none if it is too small for a number
+}
+
+int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity, int first,
+                  int count, std::vector<float>& aggregated)
+{
+    const int lanes = countLanes(count, 1);
+    takeRun(walk, size, Matching(cost, false), similarity, Range(first, first + count), lanes, false, aggregated,
+            nullptr);
+    return lanes;
+}
+
+void takeWinners(const DisparityForest& forest, const AggregationProblem& problem, double gamma,
+                 AggregationBuffers& buffers, Mat& disparity)
+{
+    const Aggregation aggregation = { forest, problem, EdgeSimilarity(gamma), disparity.ptr<ushort>() };
+
+    forEachTree(
+        forest, buffers, [&](const DisparityTree& tree) { processLarge(aggregation, tree, buffers); },
+        [&](const DisparityTree& tree, AggregationScratch& scratch) { aggregation.processSmall(tree, scratch); });
+}
+
+void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
+                     AggregationBuffers& buffers, Mat& disparity)
+{
+    disparity.create(forest.links.size(), CV_16U);
+    disparity.setTo(Scalar::all(0)); // where there is no candidate
+    takeWinners(forest, Matching(cost, subpixel), gamma, buffers, disparity);
+}
+
+void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, double gamma, AggregationBuffers& buffers,
+                    CostVolume& volume)
+{
+    volume.create(forest);
+    const MeanAggregation aggregation = { forest, cost, EdgeSimilarity(gamma), volume };
+    forEachTree(
+        forest, buffers, [&](const DisparityTree& tree) { aggregation.processLarge(tree, buffers); },
+        [&](const DisparityTree& tree, AggregationScratch& scratch) { aggregation.processSmall(tree, scratch); });
+}
+
+}}} // namespace cv::stereo::hdp

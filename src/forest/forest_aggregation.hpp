@@ -1,0 +1,105 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
+#define OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
+
+#include <memory>
+#include "cost_volume.hpp"
+#include "../cost/matching_cost.hpp"
+#include "tree_walk.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! S(p, q) of neighbours: exp(-w / gamma) for each weight w.
+struct CV_EXPORTS EdgeSimilarity
+{
+    explicit EdgeSimilarity(double gamma);
+    float table[256];
+};
+
+/** The aggregated cost C(p, x) = sum over q in the tree of S(p, q) M(q, x) (section 3.3), in two passes.
+@param walk The tree's walk.
+@param size Number of pixels of the tree.
+@param cost The layer's matching cost.
+@param similarity S of neighbours.
+@param first The first of up to 32 candidates x.
+@param count Their number.
+@param aggregated Receives C(walk.pixels[i], first + k) at [i * lanes + k], k < count.
+@return lanes: the first of 4, 8, 16 and 32 that is not less than count. */
+CV_EXPORTS int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity,
+                             int first, int count, std::vector<float>& aggregated);
+
+//! The winner of some successive candidates, and the costs that its fraction needs, or may need when it is compared
+//! with that of the candidates after
+struct RunWinner
+{
+    float lowest;        // its cost
+    float before, after; // costs of the candidates beside it, negative where there are none
+    float first, last;   // costs of the first and the last candidate
+    int disparity;
+};
+
+//! Memory of one thread for the trees it works on
+struct AggregationScratch
+{
+    TreeWalk walk;
+    std::vector<float> costs;
+    std::vector<RunWinner> winners; // by position in the walk
+    std::vector<float> factors;     // from sums to means, as well
+};
+
+struct AggregationBuffers
+{
+    std::vector<std::unique_ptr<AggregationScratch>> idle;
+    std::vector<std::vector<RunWinner>> groups; // of a large tree's candidates
+};
+
+//! What winners are taken of: the candidates of each tree, their costs, and the disparity that a winner stands for
+class AggregationProblem
+{
+public:
+    virtual ~AggregationProblem() {}
+
+    virtual Range candidates(const TreeWalk& walk, const DisparityTree& tree) const = 0;
+
+    //! The cost of pixel i and candidate first + k at [i * lanes + k], k < lanes; pixels: y * width + x each.
+    virtual void evaluate(const int* pixels, int count, int first, int lanes, float* costs) const = 0;
+
+    //! From the winners of some pixels to disparity[pixels[i]]
+    virtual void setDisparities(const int* pixels, const RunWinner* winners, int count, ushort* disparity) const = 0;
+};
+
+/** Winner-takes-all over an aggregated cost; the lowest candidate wins a tie.
+@param forest The forest.
+@param problem Candidates, cost and disparities.
+@param gamma Of the similarity.
+@param buffers Memory to work in.
+@param disparity CV_16UC1 of the layer's size; pixels of trees without candidates keep what they have. */
+void takeWinners(const DisparityForest& forest, const AggregationProblem& problem, double gamma,
+                 AggregationBuffers& buffers, Mat& disparity);
+
+/** Winner-takes-all over C(p, x), x in TreeIntv of the pixel's tree; the lowest disparity wins a tie.
+@param forest The forest.
+@param cost The layer's matching cost.
+@param gamma Of the similarity.
+@param subpixel Whether to add the minimum of the parabola through the winner's cost and its neighbours' in TreeIntv;
+otherwise all disparities are whole.
+@param buffers Memory to work in.
+@param disparity Receives CV_16UC1 of the layer's size, a disparity map; 0 where TreeIntv is empty. */
+CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
+                                AggregationBuffers& buffers, Mat& disparity);
+
+/** The weighted means of M over each tree, C(p, x) / sum over q in the tree of S(p, q). Unlike C they can be compared
+between pixels, of other trees as well.
+@param forest The forest.
+@param cost The layer's matching cost.
+@param gamma Of the similarity.
+@param buffers Memory to work in.
+@param volume Receives the means, times CostVolume::scale, rounded and at most 255. */
+CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, double gamma,
+                               AggregationBuffers& buffers, CostVolume& volume);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,24 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_TREE_PLANES_HPP
+#define OPENCV_HDPSTEREO_TREE_PLANES_HPP
+
+#include "cost_volume.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** Bare surfaces. A tree of pixels of similar colour is often one surface, and nearly a plane. Where the costs of a
+pixel tell little, those of its whole tree do. Of the planes through three disparities of a tree, its plane is the one
+that raises the costs least above those of the disparities, and is not tilted without need, fitted to those near it.
+If it raises them by little, and many disparities lie on it, others get higher costs, except in pixels whose costs
+contradict the plane.
+@param forest The forest that the volume belongs to.
+@param disparity CV_16UC1, the winners of the volume.
+@param volume The costs, to which those are added.
+@return Number of trees that have a plane. */
+CV_EXPORTS int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVolume& volume);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,68 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "tree_walk.hpp"
+
+#include "forest_edges.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk& walk)
+{
+    if (walk.weights.size() < (size_t)tree.size) // the last to grow: if there was no memory, the others may be larger
+    {
+        walk.pixels.resize(tree.size);
+        walk.parents.resize(tree.size);
+        walk.weights.resize(tree.size);
+    }
+    if (walk.pending.empty())
+        walk.pending.resize(64);
+    const int width = forest.links.cols;
+    const uchar* links = forest.links.ptr();
+    const uchar* weights = forest.weights.ptr();
+    // By the side on which the parent of pixel p is: the number of the edge to it, less 2 * p
+    const int edgeOffsets[] = { 0, 0, 1, 0, -2, 0, 0, 0, 1 - 2 * width };
+
+    int* pixels = walk.pixels.data();
+    int* parents = walk.parents.data();
+    uchar* edges = walk.weights.data();
+    TreeWalk::Step* pending = walk.pending.data();
+    size_t capacity = walk.pending.size();
+    const TreeWalk::Step root = { tree.root, 0, 0 };
+    pending[0] = root;
+    size_t count = 1;
+    for (int i = 0; count > 0; ++i)
+    {
+        // One by one: what was written in parts a moment ago is slow to read at once.
+        const TreeWalk::Step& step = pending[--count];
+        const int p = step.pixel, parent = step.parent, parentLink = step.parentLink;
+        pixels[i] = p;
+        parents[i] = parent;
+        edges[i] = weights[2 * p + edgeOffsets[parentLink]];
+
+        // All four neighbours are written and only children are counted: branches would often be mispredicted.
+        if (count + 4 > capacity)
+        {
+            capacity *= 2;
+            walk.pending.resize(capacity);
+            pending = walk.pending.data();
+        }
+        const int children = links[p] & ~parentLink;
+        const TreeWalk::Step above = { p - width, i, TreeLink::BELOW };
+        const TreeWalk::Step left = { p - 1, i, TreeLink::RIGHT };
+        const TreeWalk::Step below = { p + width, i, TreeLink::ABOVE };
+        const TreeWalk::Step right = { p + 1, i, TreeLink::LEFT };
+        pending[count] = above;
+        count += (children / TreeLink::ABOVE) & 1;
+        pending[count] = left;
+        count += (children / TreeLink::LEFT) & 1;
+        pending[count] = below;
+        count += (children / TreeLink::BELOW) & 1;
+        pending[count] = right;
+        count += (children / TreeLink::RIGHT) & 1;
+    }
+    walk.weights[0] = 0;
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,35 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_DISPARITY_OUTPUT_HPP
+#define OPENCV_HDPSTEREO_DISPARITY_OUTPUT_HPP
+
+#include "../plan/matcher_parameters.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! Bytes per pixel of the memory of cv::filterSpeckles, which counts them by int
+const int speckleBytes = 9;
+
+//! Memory that is kept from pair to pair
+struct OutputBuffers
+{
+    Mat rejected; // CV_8UC1, 255 where a filter rejected the pixel
+    std::vector<Mat> enlarged;
+    Mat whole, fixedPoint, speckles;
+};
+
+/** From the disparities of the finest layer to what cv::StereoMatcher promises: those of every pixel of the image, from
+minDisparity on, less what the left-right check and the speckle filter reject.
+@param finest CV_16UC1 of the finest layer's size, a disparity map.
+@param parameters The parameters.
+@param settings What they amount to for the pair.
+@param buffers Memory to work in.
+@param disparity CV_16SC1 or CV_32FC1 of the image's size; receives the result.
+@return Whether anything may have been rejected: only then OutputBuffers::rejected has a meaning. */
+bool outputDisparity(const Mat& finest, const MatcherParameters& parameters, const PairSettings& settings,
+                     OutputBuffers& buffers, Mat& disparity);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

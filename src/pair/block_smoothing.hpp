@@ -1,0 +1,40 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_BLOCK_SMOOTHING_HPP
+#define OPENCV_HDPSTEREO_BLOCK_SMOOTHING_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! The blocks of 8 columns that JPEG compression leaves in an image
+struct BlockGrid
+{
+    enum
+    {
+        side = 8
+    };
+    int begin = 0;   // the first column that begins a block, less than side
+    double step = 0; // mean step from block to block where both are flat, in the units of the levels; 0: none are found
+};
+
+/** Finds the blocks that strong compression makes visible. Where what remains of a block is flat, levels change between
+blocks alone: the mean of small steps between flat pixels is several times as large at one column in eight as at the
+others. Some rows tell.
+@param grey See greyLevels().
+@return The grid. */
+CV_EXPORTS BlockGrid findBlocks(const Mat& grey);
+
+/** Makes ramps of the steps between blocks, if both images have some: as they are at the same columns of both, they match
+at disparities that are multiples of 8, whatever the scene is. A step is what levels change by between two columns, less
+the mean change beside them; if it is less than 4 times the mean, the four pixels on each side take 7/16, 5/16, 3/16 and
+1/16 of it, so that the slope becomes even. Larger steps are edges of the scene.
+@param left See greyLevels().
+@param right The same.
+@return Whether there were blocks. */
+CV_EXPORTS bool smoothBlocks(Mat& left, Mat& right);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

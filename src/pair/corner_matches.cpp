@@ -1,0 +1,259 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "corner_matches.hpp"
+#include "corner_matches.simd.hpp"
+#include "pair/corner_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
+#include "image_pyramid.hpp"
+
+#include <cmath>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+const double leastCorrelation = 0.8;  // of a match on the coarse layer
+const double rivalCorrelation = 0.1;  // a rival is at least so much farther from a correlation of 1, and
+const double rivalDistance = 0.01;    // this
+const double leastContrast = 6;       // standard deviation of a left window, in its values
+const double largestMove = 2;         // of a match that is tracked on a layer, in pixels
+const double largestResidual = 0.5;   // mean square difference of a tracked match, as a share of the left variance
+const double leastDeterminant = 1e-3; // of a structure tensor, as a share of the product of its diagonal
+const double wholeVariance = 0.1;     // of a match to whole pixels
+const int fractions = 32;             // of a pixel
+
+HDP_DISPATCH(structureTensors)
+HDP_DISPATCH(windowSums)
+HDP_DISPATCH(correlate)
+HDP_DISPATCH(cutWindow)
+HDP_DISPATCH(trackingSums)
+
+//! The smaller eigenvalue of a structure tensor
+double cornerness(int xx, int xy, int yy)
+{
+    const double mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy);
+    return mean - std::sqrt(half * half + (double)xy * xy);
+}
+
+//! The best corner of every cell
+void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matches)
+{
+    const int margin = CornerMatching::searchSide / 2 + CornerMatching::searchRadius;
+    const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
+    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / CornerMatching::points)), spacing);
+    const Size grid(inside.width / cell, inside.height / cell);
+    const int count = grid.width * cell, radius = CornerMatching::tensorSide / 2;
+    matches.assign(grid.area(), CornerMatch());
+    parallel_for_(Range(0, grid.height), [&](const Range& range) {
+        std::vector<int> columns(3 * (count + 2 * radius)), tensors(3 * count);
+        int *const xx = tensors.data(), *const xy = xx + count, *const yy = xy + count;
+        std::vector<double> best(grid.width);
+        for (int i = range.start; i < range.end; ++i)
+        {
+            std::fill(best.begin(), best.end(), -1);
+            for (int y = inside.y + i * cell; y < inside.y + (i + 1) * cell; y += 2)
+            {
+                dispatched::structureTensors(image.ptr<ushort>(y - radius) + inside.x - radius, image.step1(), count,
+                                             columns.data(), xx, xy, yy);
+                for (int j = 0; j < grid.width; ++j)
+                    for (int x = j * cell; x < (j + 1) * cell; x += 2)
+                    {
+                        const double value = cornerness(xx[x], xy[x], yy[x]);
+                        if (value > best[j])
+                        {
+                            best[j] = value;
+                            matches[i * grid.width + j].left = Point(inside.x + x, y);
+                        }
+                    }
+            }
+        }
+    });
+}
+
+void measureWindows(const Mat& image, SearchWindows& windows)
+{
+    const int reach = CornerMatching::searchSide - 1, width = image.cols - reach, height = image.rows - reach;
+    windows.sums.create(height, width, CV_32S);
+    windows.scales.create(height, width, CV_32F);
+    parallel_for_(Range(0, height), [&](const Range& rows) {
+        std::vector<int> columns(2 * image.cols);
+        for (int y = rows.start; y < rows.end; ++y)
+            dispatched::windowSums(image.ptr<ushort>(y), image.step1(), width, columns.data(), windows.sums.ptr<int>(y),
+                                   windows.scales.ptr<float>(y));
+    });
+}
+
+//! Whether no candidate that is not beside the best one is nearly as good
+bool isUnique(const std::vector<float>& values, int columns, int best)
+{
+    const double rival = 1 - (1 - values[best]) * (1 + rivalCorrelation) - rivalDistance;
+    const int beside = 2, rows = (int)values.size() / columns, x = best % columns, y = best / columns;
+    int rivals = 0;
+    for (const float value : values)
+        rivals += value > rival;
+    for (int i = std::max(y - beside, 0); i <= std::min(y + beside, rows - 1); ++i)
+        for (int j = std::max(x - beside, 0); j <= std::min(x + beside, columns - 1); ++j)
+            rivals -= values[i * columns + j] > rival;
+    return rivals == 0;
+}
+
+void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, int numDisparities,
+               std::vector<float>& correlations, CornerMatch& match)
+{
+    match.isValid = false;
+    const int side = CornerMatching::searchSide, pixels = side * side, rows = 2 * CornerMatching::searchRadius + 1;
+    const Point first = match.left - Point(side / 2, side / 2);
+    const int least = SearchArea::leastColumns;
+    const int x0 = std::max(first.x + 1 - std::max(numDisparities, least), 0), count = first.x + 1 - x0;
+    const int y0 = first.y - CornerMatching::searchRadius, columns = std::max(count, least);
+    const ushort* const window = left.ptr<ushort>(first.y) + first.x;
+    int memory[2 * CornerMatching::searchSide], sum;
+    float scale;
+    dispatched::windowSums(window, left.step1(), 1, memory, &sum, &scale);
+    if (scale == 0 || scale * leastContrast * pixels > 1)
+        return;
+    const SearchArea area = { right.ptr<ushort>(y0) + x0,
+                              windows.sums.ptr<int>(y0) + x0,
+                              windows.scales.ptr<float>(y0) + x0,
+                              right.step1(),
+                              windows.sums.step1(),
+                              rows,
+                              columns };
+    correlations.resize(rows * columns);
+    dispatched::correlate(window, sum, scale, area, correlations.data());
+    for (int end = columns; end <= rows * columns; end += columns) // negative disparities
+        std::fill(correlations.begin() + end - (columns - count), correlations.begin() + end, -1.f);
+    const int best = (int)(std::max_element(correlations.begin(), correlations.end()) - correlations.begin());
+    if (correlations[best] < leastCorrelation || !isUnique(correlations, columns, best))
+        return;
+    match.x = x0 + best % columns + side / 2;
+    match.y = y0 + best / columns + side / 2;
+    match.variance = wholeVariance;
+    match.isValid = true;
+}
+
+//! A window of the left image
+struct TrackedWindow
+{
+    short values[CornerMatching::trackWidth * CornerMatching::trackHeight];
+    short gradientX[CornerMatching::trackWidth * CornerMatching::trackHeight];
+    short gradientY[CornerMatching::trackWidth * CornerMatching::trackHeight];
+    int sums[9]; // of L, L * L, X, Y, X * X, X * Y, Y * Y, L * X and L * Y
+};
+
+void track(const Mat& left, const Mat& right, CornerMatch& match)
+{
+    match.isValid = false;
+    const int width = CornerMatching::trackWidth, height = CornerMatching::trackHeight, n = width * height;
+    const Point first = match.left - Point(width / 2, height / 2);
+    const Rect inside(1, 1, left.cols - 2, left.rows - 2); // has gradients
+    if (!inside.contains(first) || !inside.contains(first + Point(width - 1, height - 1)))
+        return;
+    TrackedWindow w;
+    dispatched::cutWindow(left.ptr<ushort>(first.y) + first.x, left.step1(), w.values, w.gradientX, w.gradientY,
+                          w.sums);
+    const double sum = w.sums[0], sumX = w.sums[2], sumY = w.sums[3];
+    const double productX = w.sums[7] - sumX * sum / n, productY = w.sums[8] - sumY * sum / n;
+    const double variance = (double)w.sums[1] * n - sum * sum; // times n * n
+    if (variance < leastContrast * leastContrast * n * n)
+        return;
+    // Gradients are over two pixels.
+    const double xx = 0.25 * w.sums[4], xy = 0.25 * w.sums[5], yy = 0.25 * w.sums[6];
+    const double determinant = xx * yy - xy * xy;
+    if (determinant <= leastDeterminant * xx * yy)
+        return;
+
+    Point2d place(first.x + match.x - match.left.x, first.y + match.y - match.left.y);
+    const Point2d start = place;
+    double residual = 0;
+    for (int iteration = 0;; ++iteration)
+    {
+        const int x = cvRound(place.x * fractions), y = cvRound(place.y * fractions);
+        const Point whole(x >> 5, y >> 5);
+        if (whole.x < 0 || whole.y < 0 || whole.x + width >= right.cols || whole.y + height >= right.rows)
+            return;
+        int sums[5];
+        dispatched::trackingSums(right.ptr<ushort>(whole.y) + whole.x, right.step1(), x & (fractions - 1),
+                                 y & (fractions - 1), w.values, w.gradientX, w.gradientY, sums);
+        const double rightVariance = (double)sums[1] * n - (double)sums[0] * sums[0];
+        if (rightVariance <= 0)
+            return;
+        const double gain = std::sqrt(variance / rightVariance);
+        residual = 2 * (variance - gain * ((double)sums[2] * n - sum * sums[0])) / ((double)n * n);
+        if (iteration == CornerMatching::iterations)
+            break;
+        // Sums of the gradient times (gain * R - L), both without their means
+        const double ex = 0.5 * (gain * (sums[3] - sumX * sums[0] / n) - productX);
+        const double ey = 0.5 * (gain * (sums[4] - sumY * sums[0] / n) - productY);
+        place.x = (double)x / fractions - (yy * ex - xy * ey) / determinant;
+        place.y = (double)y / fractions - (xx * ey - xy * ex) / determinant;
+        if (std::max(std::abs(place.x - start.x), std::abs(place.y - start.y)) > largestMove)
+            return;
+    }
+    if (residual * n * n > largestResidual * variance)
+        return;
+    match.x = match.left.x + place.x - first.x;
+    match.y = match.left.y + place.y - first.y;
+    match.variance = residual * xx / determinant;
+    match.residual = residual;
+    match.isValid = true;
+}
+
+//! The pyramid down to CornerMatching::coarseArea; returns its last layer.
+int buildCoarse(const std::vector<Mat>& layers, std::vector<Mat>& pyramid)
+{
+    if (pyramid.size() < layers.size())
+        pyramid.resize(layers.size());
+    std::copy(layers.begin(), layers.end(), pyramid.begin());
+    int layer = 0;
+    for (; pyramid[layer].total() > (size_t)CornerMatching::coarseArea; ++layer)
+        if (layer + 1 >= (int)layers.size())
+        {
+            if (layer + 1 == (int)pyramid.size())
+                pyramid.push_back(Mat());
+            halveImage(pyramid[layer], pyramid[layer + 1]);
+        }
+    return layer;
+}
+
+} // namespace
+
+void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, int spacing, SearchWindows& windows,
+                       std::vector<CornerMatch>& matches)
+{
+    findCorners(left, spacing, matches);
+    measureWindows(right, windows);
+    parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
+        std::vector<float> correlations; // of a corner, by rows, then by columns
+        for (int i = range.start; i < range.end; ++i)
+            findMatch(left, right, windows, numDisparities, correlations, matches[i]);
+    });
+}
+
+void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMatch>& matches)
+{
+    parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+            if (matches[i].isValid)
+                track(left, right, matches[i]);
+    });
+}
+
+void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, int numDisparities,
+                   CoarseMatches& coarse)
+{
+    coarse.matches.clear();
+    coarse.layer = buildCoarse(left, coarse.left);
+    buildCoarse(right, coarse.right);
+    const Mat &coarseLeft = coarse.left[coarse.layer], &coarseRight = coarse.right[coarse.layer];
+    if (std::min(coarseLeft.rows, coarseLeft.cols) < CornerMatching::leastSide)
+        return;
+    const int spacing = std::max(CornerMatching::spacing >> coarse.layer, (int)CornerMatching::leastSpacing);
+    findCornerMatches(coarseLeft, coarseRight, layerDisparities(numDisparities, coarse.layer, true), spacing,
+                      coarse.windows, coarse.matches);
+    trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,95 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_CORNER_MATCHES_HPP
+#define OPENCV_HDPSTEREO_CORNER_MATCHES_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! The constants of findCornerMatches() and trackCornerMatches()
+struct CornerMatching
+{
+    enum
+    {
+        points = 500,     // at most so many, one per cell of a grid
+        spacing = 10,     // side of a cell, in pixels of the image, at least: windows of nearer corners see the same
+        leastSpacing = 4, // the same in pixels of the coarse layer
+        tensorSide = 7,   // of the window that tells how much of a corner a pixel is
+        searchRadius = 2, // rows above and below that are searched on the coarse layer
+        searchSide = 9,   // of the window there
+        trackWidth = 16,  // of the window on the finer layers
+        trackHeight = 13,
+        iterations = 3,
+        leastSide = 2 * (searchSide + searchRadius), // of the coarse layer
+        coarseArea = 45000                           // of that layer, at most, in pixels
+    };
+};
+
+//! A point of the left image and what it matches in the right one, in pixels of a layer
+struct CornerMatch
+{
+    Point left;
+    double x, y;     // in the right image
+    double variance; // of y
+    double residual; // mean square difference of the tracked windows
+    bool isValid;
+};
+
+//! What is known of all windows of the search in an image, by their first pixels
+struct SearchWindows
+{
+    Mat sums, scales; // 1 / sqrt(variance times the square of the pixels), 0 without texture; both of levels less 512
+};
+
+//! Some of them
+struct SearchArea
+{
+    const ushort* pixels;
+    const int* sums;
+    const float* scales;
+    size_t step, sumStep; // from a row to the next
+    int rows, columns;    // at least leastColumns
+    enum
+    {
+        leastColumns = 8
+    };
+};
+
+/** Matches the corners of a coarse layer over all disparities and some rows by normalised cross-correlation.
+@param left CV_16UC1, values up to 1023.
+@param right Of the same size and type.
+@param numDisparities Of the layer.
+@param spacing Side of a cell of the grid, at least.
+@param windows Memory to work in.
+@param matches Receives one match per corner, to whole pixels. */
+CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, int spacing,
+                                  SearchWindows& windows, std::vector<CornerMatch>& matches);
+
+/** Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.
+@param left CV_16UC1, values up to 1023.
+@param right Of the same size and type.
+@param matches Where the points are by what is known so far. What is lost becomes invalid. */
+CV_EXPORTS void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMatch>& matches);
+
+//! Matches of a pair's corners on a coarse layer, and its pyramids down to it
+struct CoarseMatches
+{
+    std::vector<Mat> left, right; // grey, layer by layer; memory that is kept from pair to pair
+    SearchWindows windows;        // the same
+    int layer = 0;
+    std::vector<CornerMatch> matches; // tracked on this layer; empty if it is too small
+};
+
+/** The matches that row and light alignment have in common.
+@param left The left pyramid, CV_16UC1, values up to 1023; its layers may end anywhere.
+@param right The right one.
+@param numDisparities Of the images.
+@param coarse Receives the result. */
+CV_EXPORTS void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, int numDisparities,
+                              CoarseMatches& coarse);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

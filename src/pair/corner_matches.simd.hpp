@@ -1,0 +1,243 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "corner_matches.hpp"
+#include "../base/vectorized.hpp"
+
+#include <cmath>
+
+namespace cv { namespace stereo { namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+/** The structure tensors of the pixels of a row: sums over their windows of tensorSide x tensorSide pixels.
+@param first First pixel of the first window.
+@param step From a row to the next, in pixels.
+@param count Number of pixels.
+@param columns Memory for 3 * (count + tensorSide - 1) numbers.
+@param xx Receives the sums of X * X, where X and Y are the gradients over two pixels.
+@param xy
+@param yy */
+void structureTensors(const ushort* first, size_t step, int count, int* columns, int* xx, int* xy, int* yy);
+
+/** What the correlations of the windows that begin in a row have in common.
+@param first First pixel of the first window.
+@param step From a row to the next, in pixels.
+@param count Number of windows.
+@param columns Memory for 2 * (count + searchSide - 1) numbers.
+@param sums Receives theirs, see SearchWindows.
+@param scales The same. */
+void windowSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales);
+
+/** The normalised cross-correlation of a window with those of an area.
+@param left First pixel of the window, in an image with the area's step.
+@param sum Of the window, see windowSums().
+@param scale The same.
+@param area The area.
+@param correlations Receives -1 to 1, row by row; 0 without texture. */
+void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations);
+
+/** The left window of trackCornerMatches(), its gradients over two pixels, and its sums.
+@param left First pixel of the window.
+@param step From a row to the next, in pixels.
+@param values Receives the window without gaps.
+@param gradientX Receives its gradients.
+@param gradientY
+@param sums Receives the sums of L, L * L, X, Y, X * X, X * Y, Y * Y, L * X and L * Y. */
+void cutWindow(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9]);
+
+/** One window of the right image for trackCornerMatches(): its sums with the left one.
+@param right The pixel above and left of the first one's place.
+@param step From a row to the next, in pixels.
+@param fx Fraction of the place in 1/32 of a pixel.
+@param fy
+@param left The left window, without gaps.
+@param gradientX Of the left window.
+@param gradientY
+@param sums Receives the sums of R, R * R, L * R, gradientX * R and gradientY * R. */
+void trackingSums(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
+                  const short* gradientY, int sums[5]);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+const int windowPixels = CornerMatching::trackWidth * CornerMatching::trackHeight;
+const short middle = 512; // of levels up to 1023
+
+} // namespace
+
+void structureTensors(const ushort* first, size_t step, int count, int* columns, int* xx, int* xy, int* yy)
+{
+    const int side = CornerMatching::tensorSide, width = count + side - 1;
+    int *const columnXX = columns, *const columnXY = columnXX + width, *const columnYY = columnXY + width;
+    HDP_VECTORIZED for (int i = 0; i < width; ++i)
+    {
+        int sumXX = 0, sumXY = 0, sumYY = 0;
+        for (int y = 0; y < CornerMatching::tensorSide; ++y)
+        {
+            const ushort *const row = first + y * step, *const above = row - step, *const below = row + step;
+            const short dx = (short)(row[i + 1] - row[i - 1]), dy = (short)(below[i] - above[i]);
+            sumXX += dx * dx;
+            sumXY += dx * dy;
+            sumYY += dy * dy;
+        }
+        columnXX[i] = sumXX;
+        columnXY[i] = sumXY;
+        columnYY[i] = sumYY;
+    }
+    HDP_VECTORIZED for (int i = 0; i < count; ++i)
+    {
+        int sumXX = 0, sumXY = 0, sumYY = 0;
+        for (int x = 0; x < CornerMatching::tensorSide; ++x)
+        {
+            sumXX += columnXX[i + x];
+            sumXY += columnXY[i + x];
+            sumYY += columnYY[i + x];
+        }
+        xx[i] = sumXX;
+        xy[i] = sumXY;
+        yy[i] = sumYY;
+    }
+}
+
+// Levels count from here, so that all numbers below have 32 bits: |level| <= 512, and n^2 512^2 < 2^31 for n pixels.
+void windowSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales)
+{
+    const int side = CornerMatching::searchSide, pixels = side * side, width = count + side - 1;
+    int *const columnSums = columns, *const columnSquares = columns + width;
+    HDP_VECTORIZED for (int i = 0; i < width; ++i)
+    {
+        int sum = 0, square = 0;
+        for (int y = 0; y < CornerMatching::searchSide; ++y)
+        {
+            const short value = (short)(first[y * step + i] - middle);
+            sum += value;
+            square += value * value;
+        }
+        columnSums[i] = sum;
+        columnSquares[i] = square;
+    }
+    HDP_VECTORIZED for (int i = 0; i < count; ++i)
+    {
+        int sum = 0, square = 0;
+        for (int x = 0; x < CornerMatching::searchSide; ++x)
+        {
+            sum += columnSums[i + x];
+            square += columnSquares[i + x];
+        }
+        sums[i] = sum;
+        const int variance = square * pixels - sum * sum;
+        scales[i] = variance > 0 ? 1 / std::sqrt((float)variance) : 0.f;
+    }
+}
+
+void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations)
+{
+    const int side = CornerMatching::searchSide, pixels = side * side, lanes = SearchArea::leastColumns;
+    short window[CornerMatching::searchSide * CornerMatching::searchSide];
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            window[y * side + x] = (short)(left[y * area.step + x] - middle);
+    for (int row = 0; row < area.rows; ++row, correlations += area.columns)
+    {
+        const int* const sums = area.sums + row * area.sumStep;
+        const float* const scales = area.scales + row * area.sumStep;
+        for (int end = lanes;; end = std::min(end + lanes, area.columns)) // the last ones perhaps twice
+        {
+            const int first = end - lanes;
+            int products[lanes] = {};
+            for (int y = 0; y < side; ++y)
+            {
+                const short* const l = window + y * side;
+                const ushort* const r = area.pixels + (row + y) * area.step + first;
+                HDP_FOR_LANES(k, lanes)
+                {
+                    int product = 0;
+                    for (int x = 0; x < CornerMatching::searchSide; ++x)
+                        product += l[x] * (short)r[k + x];
+                    products[k] += product;
+                }
+            }
+            HDP_FOR_LANES(k, lanes)
+            {
+                const int product = products[k] - sum * middle;
+                // The difference has 32 bits, what it is of has not.
+                const int covariance = (int)((unsigned)product * pixels - (unsigned)sum * (unsigned)sums[first + k]);
+                correlations[first + k] = (float)covariance * scale * scales[first + k];
+            }
+            if (end == area.columns)
+                break;
+        }
+    }
+}
+
+void cutWindow(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9])
+{
+    for (int y = 0; y < CornerMatching::trackHeight; ++y)
+    {
+        const ushort* const row = left + y * step;
+        const ushort *const above = row - step, *const below = row + step;
+        short* const l = values + y * CornerMatching::trackWidth;
+        short* const gx = gradientX + y * CornerMatching::trackWidth;
+        short* const gy = gradientY + y * CornerMatching::trackWidth;
+        HDP_VECTORIZED for (int x = 0; x < CornerMatching::trackWidth; ++x)
+        {
+            l[x] = (short)row[x];
+            gx[x] = (short)(row[x + 1] - row[x - 1]);
+            gy[x] = (short)(below[x] - above[x]);
+        }
+    }
+    int sum = 0, square = 0, sumX = 0, sumY = 0, xx = 0, xy = 0, yy = 0, productX = 0, productY = 0;
+    HDP_VECTORIZED for (int i = 0; i < windowPixels; ++i)
+    {
+        sum += values[i];
+        square += values[i] * values[i];
+        sumX += gradientX[i];
+        sumY += gradientY[i];
+        xx += gradientX[i] * gradientX[i];
+        xy += gradientX[i] * gradientY[i];
+        yy += gradientY[i] * gradientY[i];
+        productX += values[i] * gradientX[i];
+        productY += values[i] * gradientY[i];
+    }
+    const int all[9] = { sum, square, sumX, sumY, xx, xy, yy, productX, productY };
+    for (int i = 0; i < 9; ++i)
+        sums[i] = all[i];
+}
+
+void trackingSums(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
+                  const short* gradientY, int sums[5])
+{
+    const short w11 = (short)(fx * fy), w10 = (short)(fy * 32 - w11), w01 = (short)(fx * 32 - w11),
+                w00 = (short)(1024 - w11 - w10 - w01);
+    short values[windowPixels];
+    for (int y = 0; y < CornerMatching::trackHeight; ++y)
+    {
+        const ushort *const a = right + y * step, *const b = a + step;
+        short* const row = values + y * CornerMatching::trackWidth;
+        HDP_VECTORIZED for (int x = 0; x < CornerMatching::trackWidth; ++x) row[x] =
+            (short)((w00 * (short)a[x] + w01 * (short)a[x + 1] + w10 * (short)b[x] + w11 * (short)b[x + 1] + 512) >>
+                    10);
+    }
+    int sum = 0, square = 0, product = 0, productX = 0, productY = 0;
+    HDP_VECTORIZED for (int i = 0; i < windowPixels; ++i)
+    {
+        sum += values[i];
+        square += values[i] * values[i];
+        product += values[i] * left[i];
+        productX += values[i] * gradientX[i];
+        productY += values[i] * gradientY[i];
+    }
+    sums[0] = sum;
+    sums[1] = square;
+    sums[2] = product;
+    sums[3] = productX;
+    sums[4] = productY;
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,43 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "image_levels.hpp"
+#include "../base/vectorized.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+//! Grey levels of BGR pixels, doubled some times, see greyLevels(). channels: 3, or 4 with alpha.
+void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+template <int channels> void greyRow(const uchar* pixels, int width, int times, ushort* levels)
+{
+    const unsigned shift = 14 - times, half = 1u << (shift - 1), white = whiteLevel;
+    static_assert(65536 / greyScale == 1 << 14, "The weights are in 1 / 65536.");
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        const uchar* bgr = pixels + channels * x;
+        levels[x] = (ushort)std::min((7471u * bgr[0] + 38470u * bgr[1] + 19595u * bgr[2] + half) >> shift, white);
+    }
+}
+
+} // namespace
+
+void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels)
+{
+    if (channels == 3)
+        greyRow<3>(pixels, width, times, levels);
+    else
+        greyRow<4>(pixels, width, times, levels);
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}}} // namespace cv::stereo::hdp

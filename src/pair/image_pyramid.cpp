@@ -1,0 +1,54 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "image_pyramid.hpp"
+#include "image_pyramid.simd.hpp"
+#include "pair/image_pyramid.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+HDP_DISPATCH(halveRow)
+HDP_DISPATCH(halveGreyRow)
+
+void halveRows(const uchar* upper, const uchar* lower, const Mat& half, uchar* means)
+{
+    dispatched::halveRow(upper, lower, half.cols, half.channels(), means);
+}
+
+void halveRows(const ushort* upper, const ushort* lower, const Mat& half, ushort* means)
+{
+    dispatched::halveGreyRow(upper, lower, half.cols, means);
+}
+
+template <typename T> void halve(const Mat& image, Mat& half)
+{
+    parallel_for_(Range(0, half.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            halveRows(image.ptr<T>(2 * y), image.ptr<T>(2 * y + 1), half, half.ptr<T>(y));
+    });
+}
+
+} // namespace
+
+int countLayers(Size size, int numLayers)
+{
+    int layers = 1;
+    while (layers < numLayers && std::min(size.width, size.height) >> layers > 0)
+        ++layers;
+    return layers;
+}
+
+void halveImage(const Mat& image, Mat& half)
+{
+    half.create(image.rows / 2, image.cols / 2, image.type());
+    if (image.depth() == CV_16U)
+        halve<ushort>(image, half);
+    else
+        halve<uchar>(image, half);
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,56 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_LIGHT_ALIGNMENT_HPP
+#define OPENCV_HDPSTEREO_LIGHT_ALIGNMENT_HPP
+
+#include "corner_matches.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** What the left camera sees of a level r of the right one at a place (x, y), from the centre in units of the width and
+the height: gain, vignetting, offset, and the curve of the levels. Levels are 0 to 1. */
+struct LightModel
+{
+    enum
+    {
+        terms = 10
+    };
+    typedef Vec<double, terms> Coefficients;
+
+    Coefficients coefficients = identity();
+
+    static Coefficients identity() { return Coefficients(1, 0, 0, 0, 0, 0, 0, 0, 0, 0); }
+    //! r times 1, x, y, x^2, x y, y^2 and (x^2 + y^2)^2; 1, r^2, r^3
+    static Coefficients basis(double r, double x, double y)
+    {
+        const double square = x * x + y * y;
+        return Coefficients(r, r * x, r * y, r * x * x, r * x * y, r * y * y, r * square * square, 1, r * r, r * r * r);
+    }
+    double at(double r, double x, double y) const { return coefficients.dot(basis(r, x, y)); }
+    //! The same for levels that are factor times as large
+    LightModel scaled(double factor) const
+    {
+        LightModel model = *this;
+        model.coefficients[7] *= factor;
+        model.coefficients[8] /= factor;
+        model.coefficients[9] /= factor * factor;
+        return model;
+    }
+};
+
+/** Finds how the light of the right image differs from that of the left one, from the mean levels around matched
+corners.
+@param coarse What matchCoarsely() found.
+@param model Receives the model, the identity if the matches do not tell.
+@return Whether the model explains what differs, and this is enough to be applied. */
+CV_EXPORTS bool estimateLight(const CoarseMatches& coarse, LightModel& model);
+
+/** Gives the right image the light of the left one.
+@param levels CV_16UC1 of values up to 1020, changed in place.
+@param model */
+CV_EXPORTS void alignLight(Mat& levels, const LightModel& model);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

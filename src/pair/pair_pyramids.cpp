@@ -1,0 +1,110 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "pair_pyramids.hpp"
+
+#include "block_smoothing.hpp"
+#include "image_levels.hpp"
+#include "image_pyramid.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+//! The layers above the image are kept in a buffer; the image itself belongs to the caller.
+void buildPyramid(const Mat& image, int layers, std::vector<Mat>& pyramid)
+{
+    pyramid.resize(layers);
+    pyramid[0] = image;
+    for (int layer = 1; layer < layers; ++layer)
+        halveImage(pyramid[layer - 1], pyramid[layer]);
+}
+
+} // namespace
+
+void checkPair(const Mat& left, const Mat& right)
+{
+    if (left.empty())
+        CV_Error(Error::StsBadArg, "left must not be empty");
+    const int type = left.type();
+    if (left.dims != 2 || (type != CV_8UC1 && type != CV_8UC3 && type != CV_8UC4 && type != CV_16UC1))
+        CV_Error(Error::StsUnsupportedFormat, "left must be CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1");
+    if (right.dims != 2 || right.size() != left.size())
+        CV_Error(Error::StsUnmatchedSizes, "right must have the size of left");
+    if (right.type() != left.type())
+        CV_Error(Error::StsUnmatchedFormats, "right must have the type of left");
+    if (std::max(left.cols, left.rows) > maxSide)
+        CV_Error(Error::StsOutOfRange,
+                 format("left must be at most %d pixels wide and high, not %d x %d", maxSide, left.cols, left.rows));
+    if (left.total() * left.elemSize() > (size_t)INT_MAX)
+        CV_Error(Error::StsOutOfRange, "left must have less than 2^31 bytes");
+}
+
+void buildPairPyramids(const Mat& left, const Mat& right, const PyramidSettings& settings, PairPyramids& pyramids,
+                       std::vector<LayerImages>& images)
+{
+    const int minDisparity = settings.minDisparity, extension = settings.extension, layers = settings.layers;
+    Mat extended = left, shifted = right;
+    if (minDisparity != 0)
+    {
+        shiftColumns(right, minDisparity, extension, pyramids.shiftedRight);
+        shifted = pyramids.shiftedRight;
+    }
+    if (extension > 0)
+    {
+        copyMakeBorder(left, pyramids.extendedLeft, 0, 0, extension, 0, BORDER_REPLICATE);
+        extended = pyramids.extendedLeft;
+    }
+    int bits = countBits(left, right);
+    pyramids.brightening = 0;
+    pyramids.isDimmed = false;
+    if (settings.isCensus)
+    {
+        greyLevels(extended, bits, pyramids.leftLevels);
+        greyLevels(shifted, bits, pyramids.rightLevels);
+        const int unused = countUnusedBits(pyramids.leftLevels, pyramids.rightLevels);
+        pyramids.isDimmed = unused == settings.lastBrightening + 1;
+        pyramids.brightening = unused - pyramids.isDimmed;
+        if (pyramids.brightening > 0)
+        {
+            bits -= pyramids.brightening;
+            greyLevels(extended, bits, pyramids.leftLevels);
+            greyLevels(shifted, bits, pyramids.rightLevels);
+        }
+        if (settings.smoothsBlocks)
+            smoothBlocks(pyramids.leftLevels, pyramids.rightLevels);
+        buildPyramid(pyramids.leftLevels, layers, pyramids.leftGrey);
+        buildPyramid(pyramids.rightLevels, layers, pyramids.right);
+    }
+    else
+        buildPyramid(byteLevels(shifted, bits, pyramids.rightBytes), layers, pyramids.right);
+    buildPyramid(byteLevels(extended, bits, pyramids.leftBytes), layers, pyramids.left);
+    images.resize(layers);
+    for (int layer = 0; layer < layers; ++layer)
+    {
+        images[layer].guide = pyramids.left[layer];
+        images[layer].left = settings.isCensus ? pyramids.leftGrey[layer] : pyramids.left[layer];
+        images[layer].right = pyramids.right[layer];
+    }
+    pyramids.left[0].release(); // may be the caller's
+    pyramids.right[0].release();
+}
+
+void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted)
+{
+    const int width = right.cols + extension;
+    const int64 shift = (int64)minDisparity + extension; // minDisparity is any int
+    // Of the columns of the result, [begin, end) come from inside the image.
+    const int begin = (int)std::min<int64>(std::max<int64>(shift, 0), width);
+    const int end = (int)std::max<int64>(std::min<int64>(right.cols + shift, width), 0);
+    shifted.create(right.rows, width, right.type());
+    if (begin < end)
+        right.colRange((int)(begin - shift), (int)(end - shift)).copyTo(shifted.colRange(begin, end));
+    for (int x = 0; x < begin; ++x)
+        right.col(0).copyTo(shifted.col(x));
+    for (int x = end; x < width; ++x)
+        right.col(right.cols - 1).copyTo(shifted.col(x));
+}
+
+}}} // namespace cv::stereo::hdp

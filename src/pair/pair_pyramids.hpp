@@ -1,0 +1,66 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
+#define OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! Largest width and height of an image. Two edges per pixel are numbered by int, and what is counted by pixels of a
+//! side or by bytes of the image fits into one, too, in OpenCV's filters as well. cv::filterSpeckles has 16-bit
+//! coordinates.
+const int maxSide = SHRT_MAX;
+
+//! Throws cv::Exception if the images are no pair that can be matched.
+void checkPair(const Mat& left, const Mat& right);
+
+//! What the stages see of a layer
+struct LayerImages
+{
+    Mat guide;       // gives the edge weights
+    Mat left, right; // give the matching cost; a candidate counts from minDisparity
+};
+
+//! Memory of the pyramids, kept from pair to pair
+struct PairPyramids
+{
+    std::vector<Mat> left, leftGrey, right;
+    Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels;
+    int brightening = 0;   // how often the levels of the pair are doubled
+    bool isDimmed = false; // once less than without a frame before
+};
+
+//! What buildPairPyramids() builds
+struct PyramidSettings
+{
+    int minDisparity;    // what candidate 0 stands for
+    int extension;       // columns added on the left of both images, so that the first ones have their matches if
+                         // disparities are negative; a multiple of 2^(layers - 1)
+    int layers;          // their number
+    bool isCensus;       // whether the matching cost gets grey levels, see greyLevels(), instead of byteLevels()
+    bool smoothsBlocks;  // of grey levels, see smoothBlocks()
+    int lastBrightening; // that of the frame before: kept if one more is possible, so that a video seldom changes it
+};
+
+//! In place of lastBrightening: no pair was before.
+const int noBrightening = -2;
+
+/** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,
+see countUnusedBits(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well exposed.
+@param left CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
+@param right Of the same size and type.
+@param settings The settings.
+@param pyramids Memory to work in.
+@param images Receives the images of each layer. */
+void buildPairPyramids(const Mat& left, const Mat& right, const PyramidSettings& settings, PairPyramids& pyramids,
+                       std::vector<LayerImages>& images);
+
+//! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:
+//! shifted(x + extension) = right(x - minDisparity), the nearest column where there is none.
+CV_EXPORTS void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,225 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "row_alignment.hpp"
+#include "row_alignment.simd.hpp"
+#include "pair/row_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
+
+#include "corner_matches.hpp"
+#include "image_levels.hpp"
+#include "../base/robust_fit.hpp"
+
+#include <cfloat>
+#include <cmath>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+const int leastMatches = 24;
+const int trackedArea = 600000;         // of the finest layer that tells enough, in pixels
+const double ownVariance = 0.02 * 0.02; // of a match's row, beside what its window says, in pixels of its layer
+
+// What is expected of a model: standard deviations of a slope, and of its change over the width of the image
+const double slopeDeviation = 2e-3, slopeChange = 1e-3;
+
+// A model is applied if it moves rows by more than this root of the mean square, in pixels, when its deviation is taken
+// from it so many times. What is below costs more by interpolation than it gains.
+const double leastMove = 0.12, certainty = 2;
+
+typedef RowModel::Coefficients Coefficients;
+
+HDP_DISPATCH(mixRows)
+
+typedef FitSample<RowModel::terms> RowMove; // of a match, in pixels of the image
+typedef RobustFit<RowModel::terms> RowFit;
+
+//! Places are in pixels of a layer.
+Point2d fromCentre(double x, double y, int layer, Size size)
+{
+    const double scale = 1 << layer;
+    return Point2d((x + 0.5) * scale - 0.5 * size.width, (y + 0.5) * scale - 0.5 * size.height);
+}
+
+std::vector<RowMove> toMoves(const std::vector<CornerMatch>& matches, int layer, Size size)
+{
+    const double scale = 1 << layer;
+    std::vector<RowMove> moves;
+    for (const CornerMatch& match : matches)
+        if (match.isValid)
+        {
+            const Point2d place = fromCentre(match.x, match.left.y, layer, size);
+            const RowMove move = { RowModel::basis(place), (match.y - match.left.y) * scale,
+                                   std::sqrt(match.variance + ownVariance) * scale };
+            moves.push_back(move);
+        }
+    return moves;
+}
+
+RowFit fitRows(const std::vector<RowMove>& moves, Size size)
+{
+    const double curve = slopeChange / size.width;
+    FitPrior<RowModel::terms> prior;
+    prior.deviations = Coefficients(size.height, slopeDeviation, slopeDeviation, curve, curve);
+    std::vector<double> values;
+    for (const RowMove& move : moves)
+        values.push_back(move.value);
+    return fitRobustly(moves, prior, Coefficients(medianOf(values)));
+}
+
+//! Standard deviation of the noise of a layer. White noise is assumed; half of it is left between pixels of the right
+//! window, where interpolation averages it.
+double noiseOf(const std::vector<CornerMatch>& matches)
+{
+    std::vector<double> residuals;
+    for (const CornerMatch& match : matches)
+        if (match.isValid)
+            residuals.push_back(match.residual);
+    const size_t tenth = residuals.size() / 10;
+    std::nth_element(residuals.begin(), residuals.begin() + tenth, residuals.end());
+    return std::sqrt(residuals[tenth] / 1.5);
+}
+
+//! Means over the image
+struct MeanSquares
+{
+    double move, deviation; // of the model
+};
+
+MeanSquares meanSquares(const RowFit& fit, Size size)
+{
+    const int side = 8;
+    MeanSquares means = { 0, 0 };
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j)
+        {
+            const Point2d place(((j + 0.5) / side - 0.5) * size.width, ((i + 0.5) / side - 0.5) * size.height);
+            const Coefficients basis = RowModel::basis(place);
+            const double value = fit.coefficients.dot(basis);
+            means.move += value * value / (side * side);
+            means.deviation += basis.dot(fit.covariance * basis) / (side * side);
+        }
+    return means;
+}
+
+//! The largest move at a corner of the image
+double largestMove(const RowModel& model, Size size)
+{
+    double largest = 0;
+    for (int i = 0; i < 4; ++i)
+        largest =
+            std::max(largest, std::abs(model.at(Point2d((i % 2 - 0.5) * size.width, (i / 2 - 0.5) * size.height))));
+    return largest;
+}
+
+//! The matches of a layer where they are to be tracked in the next finer one: rows are those of the model.
+void enterFinerLayer(const RowModel& model, int layer, Size size, std::vector<CornerMatch>& matches)
+{
+    for (CornerMatch& match : matches)
+    {
+        const double move = model.at(fromCentre(match.x, match.left.y, layer, size)) / (1 << (layer - 1));
+        match.left *= 2;
+        match.x *= 2;
+        match.y = match.left.y + move;
+    }
+}
+
+const int fractions = 64; // of a row
+
+int64 wholeOf(double value) { return (int64)std::floor(value + 0.5); }
+
+//! Of four rows in 1/1024, for the place between the second and the third (Catmull and Rom)
+void cubicWeights(double t, int weights[4])
+{
+    weights[0] = cvRound(512 * (-t + 2 * t * t - t * t * t));
+    weights[2] = cvRound(512 * (t + 4 * t * t - 3 * t * t * t));
+    weights[3] = cvRound(512 * (t * t * t - t * t));
+    weights[1] = 1024 - weights[0] - weights[2] - weights[3];
+}
+
+//! The columns of a row that come from the same place between the rows of the other image
+template <typename T> void mixColumns(const Mat& right, int row, const int weights[4], Range columns, T* aligned)
+{
+    const T* rows[4];
+    for (int i = 0; i < 4; ++i)
+        rows[i] = right.ptr<T>(std::min(std::max(row - 1 + i, 0), right.rows - 1));
+    dispatched::mixRows(rows, weights, columns.start * right.channels(), columns.end * right.channels(), aligned);
+}
+
+//! aligned(x, y) for all x. A row of the model is a straight line: its columns come in runs from the same place.
+template <typename T> void alignRow(const Mat& right, const RowModel& model, int y, const int weights[][4], T* aligned)
+{
+    const int64 one = (int64)1 << 24; // a place
+    const double first = y + model.at(fromCentre(0, y, 0, right.size()));
+    const double last = y + model.at(fromCentre(right.cols, y, 0, right.size()));
+    const int64 start = wholeOf(first * fractions * one) + one / 2;
+    const int64 step = wholeOf((last - first) / right.cols * fractions * one);
+    for (int begin = 0, end; begin < right.cols; begin = end)
+    {
+        const int64 position = start + begin * step, within = position & (one - 1);
+        const int64 run = step > 0 ? (one - within + step - 1) / step : step < 0 ? within / -step + 1 : right.cols;
+        end = (int)std::min<int64>(begin + run, right.cols);
+        const int place = (int)(position >> 24);
+        mixColumns(right, place >> 6, weights[place & (fractions - 1)], Range(begin, end), aligned);
+    }
+}
+
+} // namespace
+
+bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model, LayerNoise& noise)
+{
+    model = RowModel();
+    noise = LayerNoise();
+    const Size size = coarse.left[0].size();
+    while (finestLayer < coarse.layer && coarse.left[finestLayer].total() > (size_t)trackedArea)
+        ++finestLayer;
+
+    // Noise and other light may leave more to be seen on a coarse layer than on the image: the most certain fit counts.
+    std::vector<CornerMatch> matches = coarse.matches;
+    RowModel best;
+    MeanSquares ofBest = { 0, DBL_MAX };
+    for (int layer = coarse.layer;; --layer)
+    {
+        const std::vector<RowMove> moves = toMoves(matches, layer, size);
+        if ((int)moves.size() < leastMatches)
+            break;
+        const RowFit fit = fitRows(moves, size);
+        const MeanSquares ofFit = meanSquares(fit, size);
+        RowModel fitted;
+        fitted.coefficients = fit.coefficients;
+        noise.deviation = noiseOf(matches) / greyScale;
+        noise.layer = layer;
+        if (ofFit.deviation < ofBest.deviation)
+        {
+            ofBest = ofFit;
+            best = fitted;
+        }
+        if (layer <= finestLayer)
+            break;
+        enterFinerLayer(fitted, layer, size, matches);
+        trackCornerMatches(coarse.left[layer - 1], coarse.right[layer - 1], matches);
+    }
+    if (ofBest.deviation == DBL_MAX || largestMove(best, size) > maxOffset)
+        return false;
+    model = best;
+    return ofBest.move - certainty * certainty * ofBest.deviation > leastMove * leastMove;
+}
+
+void alignRows(const Mat& right, const RowModel& model, Mat& aligned)
+{
+    int weights[fractions][4];
+    for (int i = 0; i < fractions; ++i)
+        cubicWeights((double)i / fractions, weights[i]);
+    aligned.create(right.size(), right.type());
+    parallel_for_(Range(0, right.rows), [&](const Range& range) {
+        for (int y = range.start; y < range.end; ++y)
+            if (right.depth() == CV_8U)
+                alignRow(right, model, y, weights, aligned.ptr(y));
+            else
+                alignRow(right, model, y, weights, aligned.ptr<ushort>(y));
+    });
+}
+
+}}} // namespace cv::stereo::hdp

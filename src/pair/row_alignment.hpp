@@ -1,0 +1,88 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_ROW_ALIGNMENT_HPP
+#define OPENCV_HDPSTEREO_ROW_ALIGNMENT_HPP
+
+#include "corner_matches.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** How far the rows of the right image are below those of the left one, in pixels, at a place from the image's centre.
+These are the differences that small rotations of a camera and another focal length make. */
+struct RowModel
+{
+    enum
+    {
+        terms = 5
+    };
+    typedef Vec<double, terms> Coefficients;
+
+    Coefficients coefficients; // zero
+
+    //! 1, x, y, x y, y^2: of every row, a straight line
+    static Coefficients basis(Point2d p) { return Coefficients(1, p.x, p.y, p.x * p.y, p.y * p.y); }
+    double at(Point2d fromCentre) const { return coefficients.dot(basis(fromCentre)); }
+
+    //! The same about a point that is x to the right of the centre
+    RowModel about(double x) const
+    {
+        RowModel model;
+        model.coefficients = coefficients;
+        model.coefficients[0] += coefficients[1] * x;
+        model.coefficients[2] += coefficients[3] * x;
+        return model;
+    }
+
+    //! The same in the pixels of a layer
+    RowModel ofLayer(int layer) const
+    {
+        const double scale = 1 << layer;
+        RowModel model;
+        model.coefficients = Coefficients(coefficients[0] / scale, coefficients[1], coefficients[2],
+                                          coefficients[3] * scale, coefficients[4] * scale);
+        return model;
+    }
+};
+
+//! Noise of a pair
+struct LayerNoise
+{
+    double deviation = 0; // standard deviation, in levels of 255
+    int layer = 0;        // that it was measured in
+
+    //! Of another layer. White noise would halve from layer to layer; that of cameras, of neighbours alike, falls less.
+    double ofLayer(int other) const
+    {
+        const double fall = 1.7;
+        double noise = deviation;
+        for (int l = layer; l < other; ++l)
+            noise /= fall;
+        for (int l = layer; l > other; --l)
+            noise *= fall;
+        return noise;
+    }
+};
+
+/** Finds how the rows of the right image lie against those of the left one, from matches that are followed from the
+coarse layer to the finest one.
+@param coarse What matchCoarsely() found.
+@param finestLayer The last layer that matches are followed to; one of 600000 pixels is fine enough.
+@param maxOffset Largest difference of a pixel's rows that is believed, in pixels of the image.
+@param model Receives the model, zero if the matches do not tell.
+@param noise Receives the noise of the last layer that was looked at, 0 if unknown: what remains between the windows of
+matches, in the tenth of them where it is the least.
+@return Whether the model is certain, and moves rows by enough to be applied. */
+CV_EXPORTS bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model,
+                             LayerNoise& noise);
+
+/** Moves the rows of the right image to those of the left one: aligned(x, y) = right(x, y + model(x, y)), by cubic
+interpolation. Beyond the image are its first and last rows.
+@param right CV_8U or CV_16U, any number of channels.
+@param model
+@param aligned Of the same size and type. */
+CV_EXPORTS void alignRows(const Mat& right, const RowModel& model, Mat& aligned);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,99 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "color_gradient_cost.hpp"
+#include "color_gradient_cost.simd.hpp"
+#include "paper/color_gradient_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+// Units of a gradient in one intensity level a pixel: the largest, borderGain * 255, still fits into 16 bit
+const int gradientScale = 32;
+
+// How much more than inside the image the difference counts at the border, where it is one-sided. It keeps smooth
+// surfaces from matching the clamped column. The paper does not say what happens there. The authors' program does not
+// halve this difference, which would be 2; 4 fits its disparity maps better.
+const int borderGain = 4;
+
+//! Grey levels, 0.299 R + 0.587 G + 0.114 B, in 1 / 65536. Rounded to whole levels they cost accuracy: the gradients of
+//! smooth surfaces are below one level.
+void gradientLevels(const uchar* pixels, int count, int channels, int* grey)
+{
+    if (channels == 1)
+        for (int x = 0; x < count; ++x)
+            grey[x] = pixels[x] * 65536;
+    else
+        for (int x = 0; x < count; ++x, pixels += 3)
+            grey[x] = 7471 * pixels[0] + 38470 * pixels[1] + 19595 * pixels[2];
+}
+
+//! Half the central difference of the grey levels along each row, in 1 / gradientScale levels; at the ends borderGain
+//! times the one-sided difference.
+void horizontalGradient(const Mat& image, Mat& gradient)
+{
+    const int width = image.cols, last = width - 1;
+    gradient.create(image.size(), CV_16S);
+    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
+        std::vector<int> grey(width + 1);
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const int* g = grey.data();
+            short* d = gradient.ptr<short>(y);
+            gradientLevels(image.ptr(y), width, image.channels(), grey.data());
+            for (int x = 1; x < last; ++x)
+                d[x] = (short)((g[x + 1] - g[x - 1] + 2048) >> 12);
+            const int after = std::min(1, last), before = std::max(last - 1, 0); // of an only column: itself
+            d[0] = (short)(((g[after] - g[0]) * borderGain + 1024) >> 11);
+            d[last] = (short)(((g[last] - g[before]) * borderGain + 1024) >> 11);
+        }
+    });
+}
+
+} // namespace
+
+void ColorGradientCost::prepare(const Mat& left, const Mat& right, int numDisparities,
+                                const ColorGradientParams& params)
+{
+    const int channels = left.channels(), blockSize = params.blockSize;
+    planes_.width = left.cols;
+    planes_.blockSize = blockSize;
+    planes_.count = channels;
+    // The means over the channels and the window and the gradient's units are left to the weights.
+    const float area = (float)(blockSize * blockSize);
+    planes_.colorTruncation = params.colorTruncation * channels;
+    planes_.gradientTruncation = params.gradientTruncation * gradientScale;
+    planes_.colorWeight = params.colorWeight / (channels * area);
+    planes_.gradientWeight = (1 - params.colorWeight) / (gradientScale * area);
+
+    prepareImage(left, false, 0, left_, leftGradient_);
+    prepareImage(right, true, numDisparities + costPadding, right_, rightGradient_);
+    planes_.left = left_.ptr();
+    planes_.right = right_.ptr();
+    planes_.leftGradient = leftGradient_.ptr<short>();
+    planes_.rightGradient = rightGradient_.ptr<short>();
+    planes_.leftStep = left_.step;
+    planes_.rightStep = right_.step;
+    planes_.leftPlane = left_.step * leftGradient_.rows;
+    planes_.rightPlane = right_.step * rightGradient_.rows;
+}
+
+void ColorGradientCost::prepareImage(const Mat& image, bool mirrored, int after, Mat& color, Mat& gradient)
+{
+    const int radius = planes_.blockSize / 2, rows = image.rows + 2 * radius;
+    horizontalGradient(image, gradient_);
+    color.create(planes_.count * rows, image.cols + 2 * radius + after, CV_8U);
+    gradient.create(rows, color.cols, CV_16S);
+    for (int c = 0; c < planes_.count; ++c)
+        copyBordered(image, c, -radius, radius, radius + after, mirrored, color.rowRange(c * rows, (c + 1) * rows));
+    copyBordered(gradient_, 0, -radius, radius, radius + after, mirrored, gradient);
+}
+
+void ColorGradientCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
+{
+    CV_CPU_DISPATCH(evaluateColorGradientCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,66 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_SUPPORT_POINTS_HPP
+#define OPENCV_HDPSTEREO_SUPPORT_POINTS_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** Support points @cite Geiger2010ELAS: every 4th pixel in x and y, matched by descriptors of gradients.
+
+A pixel's descriptor is 16 gradients around it; the dissimilarity of two pixels is the L1 distance of the descriptors
+at (+-2, +-2) around them. A point is kept if it has texture, its best dissimilarity is below 0.95 times the second
+one, the match of its match is at most 2 pixels away, and at least 4 of the points within +-4 grid places (itself
+among them) differ from it by at most 4.
+
+The authors' program has them instead of the paper's grid of 5 x 5 pixels; it counts those of the right image, too. */
+struct SupportPointBuffers
+{
+    Mat grey[2];
+    Mat horizontal[2], vertical[2]; // gradients, of the right image mirrored
+    Mat matches;
+};
+
+//! The grid of points and how it is worked on, all in pixels but where said
+struct SupportPointGrid
+{
+    static const int spacing = 4;
+    static const int corner = 2;              // descriptors are compared at (+-corner, +-corner) of a point
+    static const int reach = 3;               // of a descriptor: 2 for its samples, 1 for their gradients
+    static const int margin = corner + reach; // of a point to the border
+    static const int neighbourhood = 4;       // of points that support one another, in grid places
+    static const int noMatch = -16;           // far from all disparities
+    static const int lanes = 64;              // candidates that a descriptor is compared with at once
+
+    //! The candidates of a descriptor with what is computed behind the last one
+    static int bufferRow(int numDisparities) { return (numDisparities + lanes - 1) / lanes * lanes; }
+    //! For two rows of corners, one more descriptor, and the sums
+    static size_t bufferSize(int columns, int numDisparities)
+    {
+        return (2 * (size_t)(columns + 1) + 1) * bufferRow(numDisparities) + lanes;
+    }
+};
+
+//! Gradients (CV_8U) of the left image and of the mirrored right one, both of that width. There are
+//! SupportPointGrid::lanes more columns, of any values, behind each row.
+struct GradientPair
+{
+    const uchar *horizontal[2], *vertical[2];
+    size_t step;
+    int width;
+};
+
+//! Finds the support points of a pair of one size, CV_8UC1 or CV_8UC3, over disparities 0 .. numDisparities - 1.
+//! points: CV_16SC1 of ceil(rows / 4) x ceil(cols / 4), the disparity at (4 y, 4 x) or -1.
+CV_EXPORTS void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, SupportPointBuffers& buffers,
+                                  Mat& points);
+
+//! P(D_l) (section 3.1) up to a factor: how many points have each disparity. Uniform if there is none.
+//! (The authors' program leaves out disparity 0, which is "unknown" there: the smallest one is then never predicted.)
+CV_EXPORTS void disparityHistogram(const Mat& points, int numDisparities, std::vector<double>& histogram);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,88 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "candidate_windows.hpp"
+#include "candidate_windows.simd.hpp"
+#include "scanlines/candidate_windows.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+// The surface beyond a discontinuity is looked for in the pixels of the upper layer up to this far away.
+const int neighborhood = 3;
+
+HDP_DISPATCH(predictRow)
+
+//! The match in the square of each pixel of a row of the layer above
+void spreadMatches(const Mat& matches, int upperRow, std::vector<ushort>& row)
+{
+    const int spacing = SparseMatches::spacing / 2;
+    const ushort* match = matches.ptr<ushort>(std::min(upperRow / spacing, matches.rows - 1));
+    for (int x = 0; x < (int)row.size(); ++x)
+        row[x] = match[std::min(x / spacing, matches.cols - 1)];
+}
+
+} // namespace
+
+void predictWindows(const WindowPrediction& prediction, int numDisparities, WindowBuffers& buffers, Mat& windows)
+{
+    const Mat maps[2] = { prediction.upper, prediction.unfiltered };
+    const Mat& upper = prediction.upper;
+    const int stripes = std::max(1, std::min(16, upper.rows / 16));
+    for (int i = 0; i < 2; ++i)
+    {
+        buffers.smallest[i].create(upper.size(), CV_16U);
+        buffers.largest[i].create(upper.size(), CV_16U);
+    }
+    windows.create(upper.size(), CV_16UC4);
+    const Mat kernel = Mat::ones(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U);
+    parallel_for_(Range(0, stripes), [&](const Range& range) {
+        std::vector<ushort> matches(upper.cols);
+        for (int i = range.start; i < range.end; ++i)
+        {
+            const Range rows(upper.rows * i / stripes, upper.rows * (i + 1) / stripes);
+            for (int map = 0; map < 2; ++map)
+            {
+                Mat minima = buffers.smallest[map].rowRange(rows), maxima = buffers.largest[map].rowRange(rows);
+                erode(maps[map].rowRange(rows), minima, kernel); // a stripe sees its neighbours' rows
+                dilate(maps[map].rowRange(rows), maxima, kernel);
+            }
+            const auto rowOf = [&](int map, int y) {
+                const DisparityRow row = { maps[map].ptr<ushort>(y), buffers.smallest[map].ptr<ushort>(y),
+                                           buffers.largest[map].ptr<ushort>(y) };
+                return row;
+            };
+            for (int y = rows.start; y < rows.end; ++y)
+            {
+                spreadMatches(prediction.matches, y, matches);
+                dispatched::predictRow(rowOf(0, y), rowOf(1, y), matches.data(), upper.cols, numDisparities,
+                                       windows.ptr<ushort>(y));
+            }
+        }
+    });
+}
+
+void halveDisparity(const Mat& disparity, Mat& upper)
+{
+    upper.create(disparity.rows / 2, disparity.cols / 2, CV_16U);
+    parallel_for_(Range(0, upper.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const ushort* above = disparity.ptr<ushort>(2 * y);
+            const ushort* below = disparity.ptr<ushort>(2 * y + 1);
+            ushort* middle = upper.ptr<ushort>(y);
+            for (int x = 0; x < upper.cols; ++x)
+            {
+                const int a = above[2 * x], b = above[2 * x + 1], c = below[2 * x], d = below[2 * x + 1];
+                const int least = std::min(std::min(a, b), std::min(c, d));
+                const int most = std::max(std::max(a, b), std::max(c, d));
+                middle[x] = (ushort)((a + b + c + d - least - most) / 4);
+            }
+        }
+    });
+}
+
+}}} // namespace cv::stereo::hdp

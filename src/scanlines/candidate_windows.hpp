@@ -1,0 +1,69 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_CANDIDATE_WINDOWS_HPP
+#define OPENCV_HDPSTEREO_CANDIDATE_WINDOWS_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** The candidates of the pixels below a pixel of the upper layer: two runs of successive disparities. The first one is
+around the pixel's own disparity. The other one is around that of another surface the pixel may belong to, or follows the
+first one if there is none. */
+struct CandidateWindow
+{
+    enum
+    {
+        runs = 2,
+        runLength = 8,
+        candidates = runs * runLength,
+        beyondRange = 1 // candidates beyond each end of the range, as neighbours of the last one for its fraction
+    };
+    short first[runs];      // the first disparity of each run
+    ushort predicted[runs]; // what the run is there for, in 1 / subpixelScale pixel of the layer
+
+    bool isContiguous() const { return first[1] == first[0] + runLength; }
+};
+
+//! What is known of a layer before it is matched
+struct WindowPrediction
+{
+    const Mat& upper;      // the disparities of the layer above, CV_16UC1, a disparity map
+    const Mat& unfiltered; // the same before the median, which removes thin structures
+    const Mat& matches;    // of the layer itself, see findSparseMatches()
+};
+
+//! Memory of predictWindows(): the smallest and the largest disparities around each pixel, filtered or not
+struct WindowBuffers
+{
+    Mat smallest[2], largest[2];
+};
+
+//! A row of disparities of the layer above, and the smallest and largest ones around each
+struct DisparityRow
+{
+    const ushort *own, *smallest, *largest;
+};
+
+/** Predicts the candidates of a layer. The other surface is, of those at least 5 pixels away from the pixel's own
+disparity, the first one there is of
+- the pixel's own disparity before the median,
+- the match in its square,
+- the farthest one of the disparities in 7 x 7 pixels,
+- the farthest one of those before the median.
+@param prediction What to predict from.
+@param numDisparities Of the layer. Candidates are in -beyondRange .. numDisparities - 1 + beyondRange; others mean
+nothing, and there are some only if this range has less than CandidateWindow::candidates.
+@param buffers Memory to work in.
+@param windows Receives a CandidateWindow per pixel of upper, CV_16UC4. */
+CV_EXPORTS void predictWindows(const WindowPrediction& prediction, int numDisparities, WindowBuffers& buffers,
+                               Mat& windows);
+
+//! Disparities of a layer as the layer above would have them: half the mean of the middle two of 2 x 2 pixels. For a
+//! second pass over a layer, around the disparities of the first. disparity and upper: CV_16UC1, disparity maps.
+CV_EXPORTS void halveDisparity(const Mat& disparity, Mat& upper);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,77 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "scanline_aggregation.hpp"
+#include "scanline_aggregation.simd.hpp"
+#include "scanlines/scanline_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+// Of a stripe, about: stripes are of even number, so that also two threads have as much to do.
+const int stripeHeight = 128;
+
+// Rows before a stripe from which on the directions from above and from below are followed
+const int warmUpRows = 16;
+
+HDP_DISPATCH(aggregateStripe)
+
+} // namespace
+
+void ScanlineScratch::prepare(int width, int numDisparities)
+{
+    const size_t pairs = ((size_t)width + 1) / 2, upperColumns = pairs + 2 * margin;
+    const size_t stepBytes = 2 * maxBlock * CandidateWindow::candidates,
+                 blockBytes = (pairs + maxBlock - 1) * stepBytes;
+    const size_t blockColumns = maxBlock * (2 * pairs + 2 * margin);
+    costs.resize(blockBytes);
+    fromRight.resize(blockBytes);
+    fromAbove.assign((2 * pairs + 2 * margin) * CandidateWindow::candidates, 0);
+    columns.assign(upperColumns, Column()); // of the margins' candidates, too, the addresses are valid
+    for (std::vector<uchar>* stored : { &priors, &intoRight, &intoLeft, &intoBelow })
+        stored->resize(upperColumns * CandidateWindow::candidates);
+    for (std::vector<short>& run : first)
+        run.resize(2 * pairs);
+    const int length = CandidateWindow::runLength, farthest = numDisparities + CandidateWindow::candidates;
+    for (int run = 0; run < CandidateWindow::runs; ++run)
+    {
+        orders[run].assign(2 * (farthest + length), 255);
+        for (int i = 0; i < length; ++i)
+            orders[run][farthest + length + i] = (uchar)(run * length + i);
+    }
+    edges.resize(2 * blockColumns + 16); // some more to read
+    winners.resize(blockColumns);
+    winnerCosts.resize(blockColumns);
+    winnerSums.resize(blockColumns);
+}
+
+void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int largest, const Mat& windows,
+                        const ScanlinePenalties& penalties, bool hasFromBelow, ScanlineBuffers& buffers, Mat& disparity,
+                        Mat& residual)
+{
+    const Size size = left.size();
+    const ScanlineProblem problem = { &cost, &left, size, numDisparities, largest, &windows, penalties, hasFromBelow };
+    const int stripes =
+        size.height < stripeHeight / 2 ? 1 : 2 * std::max(1, cvRound(size.height / (2. * stripeHeight)));
+    disparity.create(size, CV_16U);
+    residual.create(size, CV_8U);
+    buffers.stripes.resize(stripes);
+    parallel_for_(Range(0, stripes), [&](const Range& range) {
+        Mat followed; // as large as a thread needs it, not as the image would
+        for (int i = range.start; i < range.end; ++i)
+        {
+            const auto border = [&](int64 index) { return (int)(size.height * index / stripes / 2 * 2); };
+            const Range rows(border(i), i + 1 < stripes ? border(i + 1) : size.height);
+            const Range reach(std::max(rows.start - warmUpRows, 0), std::min(rows.end + warmUpRows, size.height));
+            const ScanlineStripe stripe = { rows, reach };
+            if (hasFromBelow)
+                followed.create((rows.size() + 1) / 2 * 2, (int)ScanlineScratch::followedBytes(size.width), CV_8U);
+            dispatched::aggregateStripe(problem, stripe, buffers.stripes[i], followed.data, disparity, residual);
+        }
+    });
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,131 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_SCANLINE_AGGREGATION_HPP
+#define OPENCV_HDPSTEREO_SCANLINE_AGGREGATION_HPP
+
+#include "candidate_windows.hpp"
+#include "../cost/census_cost.hpp"
+#include "../base/disparity_units.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! Penalties in units of the census cost
+struct ScanlinePenalties
+{
+    int small, large; // for a step of one disparity and for a larger one between neighbours of one grey level,
+                      // 0..largest
+    int edgeSlope;    // halves of a bit by which large falls per grey level between them, 0..largestSlope
+    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..largestPrior
+    enum
+    {
+        largest = 100,
+        largestSlope = 64, // times the largest difference of grey levels, in their units, it has 16 bits
+        largestPrior = 4
+    };
+};
+
+//! What is aggregated, see aggregateScanlines()
+struct ScanlineProblem
+{
+    const CensusCost* cost;
+    const Mat* left; // grey levels
+    Size size;
+    int numDisparities;
+    int largest; // disparity of a map
+    const Mat* windows;
+    ScanlinePenalties penalties;
+    bool hasFromBelow; // a fourth direction
+
+    //! Of a window: others are outside of the range.
+    int validCandidates() const
+    {
+        return std::min(CandidateWindow::candidates + 0, numDisparities + 2 * CandidateWindow::beyondRange);
+    }
+};
+
+//! Rows of an image that are aggregated by themselves, and those that the directions from above and from below are
+//! followed over; both from an even one on
+struct ScanlineStripe
+{
+    Range rows, reach;
+};
+
+/** Memory of a sweep over one stripe. A block is the rows that a sweep does at once, at most maxBlock. */
+struct ScanlineScratch
+{
+    enum
+    {
+        maxBlock = 2,
+        margin = 2 * maxBlock // of all that is stored by column, on both sides
+    };
+    struct Column // of the layer above
+    {
+        short first[CandidateWindow::runs];
+        bool isContiguous; // and so are those of the other rows of the block in the same step
+    };
+
+    //! What is stored of a direction, per row of a block: for the columns of all steps, and of a step more at both ends
+    static size_t followedBytes(int width)
+    {
+        return (((size_t)width + 1) / 2 + maxBlock + 1) * 2 * CandidateWindow::candidates;
+    }
+    //! Provides the memory for a layer of this width and number of disparities, and clears what a sweep starts from.
+    CV_EXPORTS void prepare(int width, int numDisparities);
+
+    std::vector<uchar> costs, fromRight, fromAbove;            // CandidateWindow::candidates per pixel of a block
+    std::vector<Column> columns;                               // of the layer above
+    std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // CandidateWindow::candidates per such column
+    std::vector<short> first[CandidateWindow::runs];           // by column
+    // Which lanes have the candidates of a run that begins i disparities after one of these, in the middle and i on: 255
+    // for those that it does not have
+    std::vector<uchar> orders[CandidateWindow::runs];
+    std::vector<uchar> edges; // large penalties of a block, two per pixel
+    // Of the winners of a block: their lanes, sums, each with those of the lanes before and behind, and costs
+    std::vector<uchar> winners, winnerCosts;
+    std::vector<unsigned> winnerSums;
+};
+
+struct ScanlineBuffers
+{
+    std::vector<ScanlineScratch> stripes;
+};
+
+/** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching with the
+three directions that one sweep over the rows can do, from the left, from the right and from above, and with that from
+below, which takes a second one. The cost of candidate d is
+
+C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 23) / 4) + floor(prior * |d - predicted| / 2),
+
+I being grey levels, here whole ones, and predicted the disparity that the candidate's run was predicted for.
+
+With L(p, d) of a direction and q the pixel before p,
+L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
+large(p, q) = max(min(small, large), large - floor(edgeSlope * |I(p) - I(q)| / 2)),
+where candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d
+in the window of p: those that p does not have are left out, and the last one of its first run and the first one of the
+second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less its own
+minimum, at most 255, the first of them if there are several; its sum and those of the candidates beside it, if p has
+disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction(): its limits are 15 and 25 times the number of
+directions.
+
+The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
+start anew some rows before each of them.
+@param cost The layer's census cost.
+@param left The layer's grey levels, see LayerImages.
+@param numDisparities Of the layer.
+@param largest The largest disparity that a map of the layer may have. The winner may be beyond the ends of the range; its
+disparity is not.
+@param windows From predictWindows().
+@param penalties The penalties.
+@param hasFromBelow Whether there is the direction from below.
+@param buffers Memory to work in.
+@param disparity Receives CV_16UC1, a disparity map.
+@param residual Receives the winners' own C(p, d), CV_8UC1. */
+CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int largest,
+                                   const Mat& windows, const ScanlinePenalties& penalties, bool hasFromBelow,
+                                   ScanlineBuffers& buffers, Mat& disparity, Mat& residual);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,67 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "volume_scanlines.hpp"
+
+#include "../forest/forest_aggregation.hpp"
+#include "volume_scanlines.simd.hpp"
+#include "scanlines/volume_scanlines.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+// Scanlines that are followed side by side. Columns are side by side in memory, too: as many of them as leave work for
+// all threads.
+const int blockRows = 8;
+
+int blockColumns(int width) { return std::min(std::max(width / 16, 16), +VolumeProblem::maxScanlines); }
+
+HDP_DISPATCH(aggregateRows)
+HDP_DISPATCH(aggregateColumns)
+
+//! Calls aggregate(scanlines, memory) for each block of scanlines.
+template <typename Aggregate>
+void runBlocks(const VolumeProblem& problem, int scanlines, int block, Mat& lines, const Aggregate& aggregate)
+{
+    const int blocks = (scanlines + block - 1) / block;
+    lines.create(blocks, problem.lineMemory(block), CV_16S);
+    parallel_for_(Range(0, blocks), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+            aggregate(Range(i * block, std::min((i + 1) * block, scanlines)), lines.ptr<short>(i));
+    });
+}
+
+} // namespace
+
+void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumePenalties& penalties,
+                     VolumeScanlineBuffers& buffers, Mat& disparity)
+{
+    CV_DbgAssert(std::max(penalties.small, penalties.large) <= VolumePenalties::largest);
+    const Size size = volume.size;
+    if (buffers.sums.size() < volume.rows * CostVolume::row)
+        buffers.sums.resize(volume.rows * CostVolume::row);
+    disparity.create(size, CV_16U);
+
+    VolumeProblem problem;
+    problem.costs = volume.costs.data();
+    problem.candidates = volume.candidates.data();
+    problem.weights = weights.ptr();
+    problem.size = size;
+    problem.numDisparities = volume.numDisparities;
+    problem.small = (short)penalties.small;
+    const EdgeSimilarity similarity(penalties.gamma);
+    for (int w = 0; w < 256; ++w)
+        problem.large[w] = (short)std::max(penalties.small, cvRound(penalties.large * similarity.table[w]));
+    problem.sums = buffers.sums.data();
+    problem.disparity = disparity.ptr<ushort>();
+
+    runBlocks(problem, size.height, blockRows, buffers.lines,
+              [&](const Range& rows, short* lines) { dispatched::aggregateRows(problem, rows, lines); });
+    runBlocks(problem, size.width, blockColumns(size.width), buffers.lines,
+              [&](const Range& columns, short* lines) { dispatched::aggregateColumns(problem, columns, lines); });
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,72 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_VOLUME_SCANLINES_HPP
+#define OPENCV_HDPSTEREO_VOLUME_SCANLINES_HPP
+
+#include "../forest/cost_volume.hpp"
+#include "../base/disparity_units.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! Penalties in units of the volume, at most largest
+struct VolumePenalties
+{
+    int small, large; // for a step of one disparity and for a larger one between neighbours of one colour
+    double gamma;     // of an edge's similarity exp(-w / gamma), which the large penalty is multiplied by
+    enum
+    {
+        largest = 100 * CostVolume::scale
+    };
+};
+
+struct VolumeScanlineBuffers
+{
+    std::vector<short> sums; // those of the directions so far, in the order of the volume; it only ever grows
+    Mat lines;               // L of the pixels before, a row per block of scanlines
+};
+
+//! What is aggregated, see aggregateVolume(), and where to
+struct VolumeProblem
+{
+    const uchar* costs;
+    const CostVolume::Candidates* candidates;
+    const uchar* weights;
+    Size size;
+    int numDisparities;
+    short small, large[256]; // penalties; large: by the edge's weight
+    short* sums;             // of the directions, in the order of the costs
+    ushort* disparity;
+
+    enum
+    {
+        maxScanlines = 32,       // that are followed side by side
+        margin = CostVolume::row // before and behind the candidates of a pixel, for the first and the last one to have
+                                 // neighbours
+    };
+    //! Memory for a pixel, by disparity: an interval may begin at the last one.
+    int lineLength() const { return margin + numDisparities + CostVolume::row + margin; }
+    //! Memory for scanlines that are followed side by side: two pixels of each, and the sums of one
+    int lineMemory(int scanlines) const { return (2 * scanlines + 1) * lineLength(); }
+};
+
+/** Semi-global matching over the candidates of each pixel, from the left, from the right, from above and from below.
+With L(p, d) of a direction and q the pixel before p,
+L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
+large(p, q) = max(small, round(large * exp(-w(p, q) / gamma))),
+where disparities that are not candidates of q are left out. L = C where there is no q, or none with candidates.
+The winner has the lowest sum of the directions, the lowest disparity if there are several; its sum and those of both
+candidates beside it give the sub-pixel part, see winnerFraction(), whose limits are costs of 8 and 14 in each direction.
+Of the first candidate and of the last one, the fraction may lie towards the others: the sum beyond it is that of the
+slope between those next to it, or that which leaves the fraction at 0. Pixels without candidates get 0.
+@param volume The costs C.
+@param weights w, CV_8UC2, see weighEdges().
+@param penalties The penalties.
+@param buffers Memory to work in.
+@param disparity Receives CV_16UC1, a disparity map. */
+CV_EXPORTS void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumePenalties& penalties,
+                                VolumeScanlineBuffers& buffers, Mat& disparity);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

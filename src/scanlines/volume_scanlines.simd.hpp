@@ -1,0 +1,316 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "volume_scanlines.hpp"
+#include "../base/vectorized.hpp"
+#include "winner_fraction.hpp"
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#include "../base/byte_lanes.simd.hpp"
+#endif
+
+namespace cv { namespace stereo { namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+/** The directions from the left and from the right, to the sums.
+@param problem The layer.
+@param rows Some rows.
+@param lines Memory to work in, see VolumeProblem::lineMemory(). */
+void aggregateRows(const VolumeProblem& problem, const Range& rows, short* lines);
+
+/** The directions from above and from below, added to the sums, and the winners.
+@param problem The layer.
+@param columns Some columns.
+@param lines Memory to work in, see VolumeProblem::lineMemory(). */
+void aggregateColumns(const VolumeProblem& problem, const Range& columns, short* lines);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+//! A vector of 16-bit numbers: universal intrinsics under names that all versions of OpenCV have in common
+struct WordLanes
+{
+#if HDP_LANES_AVX2
+    typedef v_int16x16 Vector;
+    static WordLanes repeat(int word) { return v256_setall_s16((short)word); }
+    static WordLanes load(const short* words) { return v256_load(words); }
+    static WordLanes load(const uchar* bytes) { return v_reinterpret_as_s16(v256_load_expand(bytes)); }
+#else
+    typedef v_int16x8 Vector;
+    static WordLanes repeat(int word) { return v_setall_s16((short)word); }
+    static WordLanes load(const short* words) { return v_load(words); }
+    static WordLanes load(const uchar* bytes) { return v_reinterpret_as_s16(v_load_expand(bytes)); }
+#endif
+    enum
+    {
+        count = sizeof(Vector) / sizeof(short)
+    };
+    Vector v;
+
+    WordLanes(const Vector& vector) : v(vector) {}
+    void store(short* words) const { v_store(words, v); }
+
+    WordLanes operator+(const WordLanes& b) const { return v_add_wrap(v, b.v); }
+    WordLanes operator-(const WordLanes& b) const { return v_sub_wrap(v, b.v); }
+    WordLanes min(const WordLanes& b) const { return v_min(v, b.v); }
+    WordLanes max(const WordLanes& b) const { return v_max(v, b.v); }
+    //! Of numbers that are not negative
+    int minimum() const
+    {
+#if HDP_LANES_AVX2
+        const __m128i half = _mm_min_epi16(_mm256_castsi256_si128(v.val), _mm256_extracti128_si256(v.val, 1));
+        return _mm_cvtsi128_si32(_mm_minpos_epu16(half)) & 0xffff;
+#else
+        return v_reduce_min(v);
+#endif
+    }
+    Vector equals(const WordLanes& b) const
+    {
+#if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9 // as in ByteLanes
+        return v == b.v;
+#else
+        return v_eq(v, b.v);
+#endif
+    }
+};
+
+/** Follows a block of scanlines side by side, pixel by pixel: so one does not wait for the minimum of another.
+
+A cost is at most 255, and L(p, d) - C(p, d) at most large(p, q), so L is at most 255 + VolumePenalties::largest = 1055,
+L + small at most 1855, and the sum of four directions at most 4220.
+
+Behind the last candidate, to the end of the vector, and before and behind the vectors, L is more than that. */
+class LineBlock
+{
+public:
+    //! The pixels of a direction: number i of scanline k is first + i * along + k * across. The edge to it from the
+    //! one before is number 2 * pixel + edge.
+    struct Direction
+    {
+        ptrdiff_t first, along, across, edge;
+    };
+    enum Role
+    {
+        FIRST,  // begins the sums
+        MIDDLE, // adds to them
+        LAST    // takes the winners, of scanlines that are side by side in memory
+    };
+
+    LineBlock(const VolumeProblem& problem, int scanlines, int length, short* lines)
+        : padding_(), p_(problem), scanlines_(scanlines), length_(length), lineLength_(problem.lineLength()),
+          before_(lines + margin), here_(before_ + scanlines * (ptrdiff_t)lineLength_),
+          total_(lines + 2 * scanlines * (ptrdiff_t)lineLength_)
+    {
+        std::fill(padding_ + WordLanes::count, padding_ + 2 * WordLanes::count, +none);
+    }
+
+    template <int role> void follow(const Direction& direction)
+    {
+        // Local, as stores may alias all else
+        const CostVolume::Candidates* const candidates = p_.candidates;
+        const uchar *const weights = p_.weights, *const costs = p_.costs;
+        short *const sums = p_.sums, *const total = total_;
+        ushort* const disparity = p_.disparity;
+        const ptrdiff_t lineLength = lineLength_;
+        const int scanlines = scanlines_, length = length_;
+        const WordLanes small = WordLanes::repeat(p_.small);
+        short *before = before_, *here = here_;
+        LastPixel last[VolumeProblem::maxScanlines];
+        Winners winners;
+
+        for (int i = 0; i < length; ++i)
+        {
+            const ptrdiff_t first = direction.first + i * direction.along;
+            ptrdiff_t pixel = first;
+            for (int k = 0; k < scanlines; ++k, pixel += direction.across)
+            {
+                const DisparityInterval interval = candidates[pixel].interval;
+                const int rows = candidates[pixel].rows();
+                if (rows == 0)
+                {
+                    last[k] = LastPixel();
+                    if (role == LAST)
+                        winners.setNone(k);
+                    continue;
+                }
+                const size_t start = candidates[pixel].start();
+                int large = p_.large[weights[i > 0 ? 2 * pixel + direction.edge : 0]];
+                const Pixel own = { interval.first, interval.size(), (int)alignSize(interval.size(), WordLanes::count),
+                                    costs + start,  sums + start,    role == LAST ? total : sums + start };
+                if (!last[k].reaches(own))
+                    large = enter(own, large, last[k], before + k * lineLength);
+                const int lowest =
+                    rows == 1
+                        ? step<role, true>(own, small, large, before + k * lineLength, here + k * lineLength, last[k])
+                        : step<role, false>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
+                if (role == LAST)
+                    findWinner(total, interval, lowest, k, winners);
+            }
+            if (role == LAST)
+                takeDisparities(winners, scanlines, disparity + first);
+            std::swap(before, here);
+        }
+    }
+
+private:
+    struct Pixel
+    {
+        int first, size, count; // candidates, and their number with the padding
+        const uchar* costs;
+        const short* sums;
+        short* into; // the new sums
+    };
+
+    //! The pixel before: candidates [first, end), and the minimum of L
+    struct LastPixel
+    {
+        int first = 0, end = 0, minimum = 0;
+
+        bool isNone() const { return end == 0; }
+        //! Whether its margins reach those of the next one
+        bool reaches(const Pixel& next) const
+        {
+            return (end != 0) & (next.first - 1 >= first - margin) & (next.first + next.count + 1 <= end + margin);
+        }
+    };
+
+    //! Of a disparity that is no candidate: more than any L, and four of them and a penalty are a 16-bit number.
+    static const short none = 0x1f00;
+
+    //! Lets the L of the pixel before be read at candidates of another pixel and beside them; returns the large penalty.
+    static int enter(const Pixel& own, int large, const LastPixel& last, short* before)
+    {
+        const int first = own.first - 1, end = own.first + own.count + 1;
+        if (last.isNone()) // L = C, whatever the penalties
+        {
+            std::fill(before + first, before + end, (short)0);
+            return 0;
+        }
+        const auto clear = [&](int begin, int finish) {
+            std::fill(before + begin, before + std::max(begin, finish), +none);
+        };
+        clear(first, std::min(last.first, end));
+        clear(std::max(last.end, first), end);
+        return large;
+    }
+
+    //! L of a pixel, from that of the pixel before; returns the lowest sum.
+    template <int role, bool isShort>
+    CV_ALWAYS_INLINE int step(const Pixel& own, const WordLanes& small, int large, const short* before, short* here,
+                              LastPixel& last) const
+    {
+        const WordLanes least = WordLanes::repeat(last.minimum), jump = WordLanes::repeat(last.minimum + large),
+                        noCandidate = WordLanes::repeat(none);
+        const int count = isShort ? CostVolume::row + 0 : own.count;
+        before += own.first;
+        here += own.first;
+        WordLanes minimum = noCandidate, lowestSum = WordLanes::repeat(SHRT_MAX);
+        for (int d = 0; d < count; d += WordLanes::count)
+        {
+            const WordLanes beside = WordLanes::load(before + d - 1).min(WordLanes::load(before + d + 1)) + small;
+            const WordLanes best = WordLanes::load(before + d).min(beside).min(jump);
+            WordLanes l = WordLanes::load(own.costs + d) + (best - least);
+            if (d + WordLanes::count > own.size)
+                l = l.max(WordLanes::load(padding_ + WordLanes::count - std::max(own.size - d, 0)));
+            l.store(here + d);
+            minimum = minimum.min(l);
+            const WordLanes sum = role == FIRST ? l : WordLanes::load(own.sums + d) + l;
+            sum.store(own.into + d);
+            if (role == LAST)
+                lowestSum = lowestSum.min(sum);
+        }
+        for (int d = 0; d < margin; d += WordLanes::count)
+        {
+            noCandidate.store(here - margin + d);
+            noCandidate.store(here + count + d);
+        }
+        last.first = own.first;
+        last.end = own.first + count;
+        last.minimum = minimum.minimum();
+        return role == LAST ? lowestSum.minimum() : 0;
+    }
+
+    //! Of a pixel of each scanline: the winner, and what winnerFraction() is given
+    struct Winners
+    {
+        ushort whole[VolumeProblem::maxScanlines];
+        short rise[VolumeProblem::maxScanlines], slope[VolumeProblem::maxScanlines];
+
+        void set(int k, int disparity, int sumsRise, int sumsSlope)
+        {
+            whole[k] = (ushort)disparity;
+            rise[k] = (short)sumsRise;
+            slope[k] = (short)sumsSlope;
+        }
+        void setNone(int k) { set(k, 0, 0, 1); }
+    };
+
+    //! The first candidate with the lowest sum
+    static void findWinner(const short* sums, const DisparityInterval& interval, int lowest, int scanline,
+                           Winners& winners)
+    {
+        const WordLanes searched = WordLanes::repeat(lowest);
+        int first = 0;
+        while (!v_check_any(WordLanes::load(sums + first).equals(searched)))
+            first += WordLanes::count;
+        const int k = first + v_scan_forward(WordLanes::load(sums + first).equals(searched));
+        const int last = interval.size() - 1;
+        if (last < 2)
+            return winners.set(scanline, interval.first + k, 0, 1);
+        // Beyond the first and the last candidate: the slope beside them, or that which leaves the tip at the end
+        const int before = k > 0 ? sums[k - 1] : lowest + std::max(sums[2] - sums[1], sums[1] - lowest);
+        const int after =
+            k < last ? sums[k + 1] : lowest + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - lowest);
+        winners.set(scanline, interval.first + k, before - after, std::max(std::max(before, after) - lowest, 1));
+    }
+
+    static void takeDisparities(const Winners& winners, int scanlines, ushort* disparity)
+    {
+        const float unit = 4 * CostVolume::scale, blunt = 8 * unit,
+                    sharp = 14 * unit; // of the costs of four directions
+        HDP_VECTORIZED for (int k = 0; k < scanlines; ++k)
+        {
+            const float fraction = winnerFraction((float)winners.rise[k], (float)winners.slope[k], blunt, sharp);
+            disparity[k] = (ushort)(winners.whole[k] * subpixelScale + subpixelUnits(fraction));
+        }
+    }
+
+    enum
+    {
+        margin = VolumeProblem::margin
+    };
+    short padding_[2 * WordLanes::count]; // zeros, then none
+    const VolumeProblem& p_;
+    const int scanlines_, length_, lineLength_;
+    short *const before_, *const here_; // L of a pixel of each scanline, by disparity
+    short* const total_;                // the sums of a pixel over all directions
+};
+
+} // namespace
+
+void aggregateRows(const VolumeProblem& problem, const Range& rows, short* lines)
+{
+    const int width = problem.size.width;
+    const ptrdiff_t first = rows.start * (ptrdiff_t)width;
+    const LineBlock::Direction fromLeft = { first, 1, width, -2 }, fromRight = { first + width - 1, -1, width, 0 };
+    LineBlock block(problem, rows.size(), width, lines);
+    block.follow<LineBlock::FIRST>(fromLeft);
+    block.follow<LineBlock::MIDDLE>(fromRight);
+}
+
+void aggregateColumns(const VolumeProblem& problem, const Range& columns, short* lines)
+{
+    const ptrdiff_t width = problem.size.width, height = problem.size.height, last = (height - 1) * width;
+    const LineBlock::Direction fromAbove = { columns.start, width, 1, 1 - 2 * width },
+                               fromBelow = { columns.start + last, -width, 1, 1 };
+    LineBlock block(problem, columns.size(), (int)height, lines);
+    block.follow<LineBlock::MIDDLE>(fromAbove);
+    block.follow<LineBlock::LAST>(fromBelow);
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}}} // namespace cv::stereo::hdp

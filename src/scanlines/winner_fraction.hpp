@@ -1,0 +1,41 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_WINNER_FRACTION_HPP
+#define OPENCV_HDPSTEREO_WINNER_FRACTION_HPP
+
+#include "../base/disparity_units.hpp"
+#include "opencv2/core.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** The fraction of the winner of scanlines, in pixels, from its sum and those beside it.
+
+With u = rise / slope, the tip of two lines of opposite slope through the three sums is at u / 2. That is too near to whole
+disparities where the minimum is sharp; there it is (0.65 sign(u) sqrt(|u|) + 0.35 u) / 2, which was fitted to slanted planes,
+see hdp_subpixel. Where it is blunt, the fraction is mostly noise, and the tip is better. Between both the share of the root
+is linear.
+@param rise The sum before the winner's, less the one after it; 0 for no fraction.
+@param slope The larger one of both, less the winner's, at least 1.
+@param blunt,sharp Up to which slope, and from which one on. */
+CV_ALWAYS_INLINE float winnerFraction(float rise, float slope, float blunt, float sharp)
+{
+    const float rootShare = 0.65f;
+    const float u = rise / slope;
+    const float share = rootShare * std::min(std::max((slope - blunt) / (sharp - blunt), 0.f), 1.f);
+    const float root = std::copysign(std::sqrt(std::abs(u)), u);
+    return 0.5f * (u + share * (root - u));
+}
+
+//! In units of a disparity map, rounded to the nearest as cvRound() does, but in vectors, too
+CV_ALWAYS_INLINE int subpixelUnits(float fraction)
+{
+    const float wholes = 12582912; // 1.5 * 2^23: sums with it are whole numbers
+    return (int)((subpixelScale * fraction + wholes) - wholes);
+}
+
+}}} // namespace cv::stereo::hdp
+
+#endif

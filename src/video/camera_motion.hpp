@@ -1,0 +1,136 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_CAMERA_MOTION_HPP
+#define OPENCV_HDPSTEREO_CAMERA_MOTION_HPP
+
+#include "opencv2/core.hpp"
+
+#include <vector>
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** How the cameras moved from one frame to the next, as a scene at rest shows it in the left image: a point that was at
+(x, y) with disparity d is now at (X / W, Y / W) with disparity d / W, where (X, Y, d, W) = forward * (x, y, d, 1).
+
+Every rigid motion is such a matrix, whatever focal length and baseline are: the columns of x, y and 1 are the homography
+of points at infinity, the column of d is the epipole. */
+struct CameraMotion
+{
+    Matx44d forward = Matx44d::eye();
+    bool isStill = true; // forward is the identity
+    double error = 0;    // median distance of the points from where it takes them, in pixels
+};
+
+//! A point of the scene in two frames, in pixels
+struct TrackedPoint
+{
+    Point2d before, now;
+    double disparity; // in the frame before
+};
+
+//! The constants of trackPoints() and fitMotion()
+struct MotionTracking
+{
+    enum
+    {
+        coarsestWidth = 160,  // of the level that the search begins at, at most
+        spacing = 4,          // of the points, in pixels of that level
+        side = 8,             // of the squares that are compared, in pixels of any level
+        searchRadius = 8,     // on the coarsest level, in its pixels
+        refinementRadius = 2, // on the others
+        minTexture = 3,       // levels from a pixel to the next, in both directions, on average
+        minPoints = 30,       // of a motion
+        fittingRounds = 3     // of reweighted least squares, after those with larger tolerances
+    };
+};
+
+//! Number of levels that trackPoints() needs if the finest one has this width
+CV_EXPORTS int trackingLevels(int width);
+
+/** Chooses points to be tracked: on a grid, where the image has texture in both directions.
+@param before Pyramid of the frame before, CV_8UC1, the finest level first, each of half the size of the one before.
+@param points Receives TrackedPoint::before of each, in pixels of the finest level. */
+CV_EXPORTS void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points);
+
+/** Finds points again, from the coarsest level to the finest: where the sum of absolute differences over a square is
+least, with the fraction of a parabola.
+@param before Pyramid of the frame before.
+@param now That of this frame, of the same sizes.
+@param points Receives TrackedPoint::now of each; those that leave the image stay where they were. */
+CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now,
+                            std::vector<TrackedPoint>& points);
+
+/** Finds points again near the places that a motion takes them to. See trackPoints().
+@param before Pyramid of the frame before.
+@param now That of this frame, of the same sizes.
+@param motion In pixels of the finest level, disparities as well.
+@param points Receives TrackedPoint::now of each. */
+CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, const CameraMotion& motion,
+                            std::vector<TrackedPoint>& points);
+
+/** Fits a motion to most of the points. Those that do not fit, as on things that move by themselves, lose their weight.
+@param points The points.
+@param size Of the image that their positions are in.
+@param tolerance How far from a first guess they may be, in pixels.
+@return The motion; none if most of the points are where they were. */
+CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance);
+
+//! The motion in pixels of an image that is scale times as large
+CV_EXPORTS CameraMotion scaled(const CameraMotion& motion, double scale);
+
+//! How the motion of the camera changes the disparity of what is now at (x, y):
+//! before = d / (ofX x + ofY y + ofDisparity d + constant), d = now - offset. Disparities are in pixels.
+struct DisparityChange
+{
+    float ofX, ofY, ofDisparity, constant, offset;
+    float minDisparity, largest; // of a map, which counts from minDisparity; the next two do as well
+
+    CV_ALWAYS_INLINE float ofRow(int y) const { return ofY * y + constant; }
+    //! place: ofX x + ofRow(y)
+    CV_ALWAYS_INLINE float now(float before, float place) const
+    {
+        const float old = before + minDisparity, w = 1 - ofDisparity * old;
+        const float positive = w > 0.1f ? w : 0.1f; // less is at the camera or behind it
+        const float disparity = old * place / positive + offset - minDisparity;
+        const float notNegative = disparity > 0 ? disparity : 0;
+        return notNegative < largest ? notNegative : largest;
+    }
+};
+
+/** Corrects a change by what was measured: cameras shake against each other, and the motion is an estimate. The
+disparities become factor d + offset, both fitted robustly.
+@param predicted Disparities that DisparityChange::now() gave for pixels.
+@param measured Those of the same pixels now.
+@param change The change; its offset is 0. */
+CV_EXPORTS void correctChange(const std::vector<float>& predicted, const std::vector<float>& measured,
+                              DisparityChange& change);
+
+//! From a pixel of this frame to where it was; disparities count from minDisparity, up to largest, in pixels.
+class CV_EXPORTS BackwardMotion
+{
+public:
+    BackwardMotion() {}
+    BackwardMotion(const CameraMotion& motion, double minDisparity, double largest);
+
+    //! Where a pixel was if this is its disparity now; at negative coordinates if it is behind the camera
+    CV_ALWAYS_INLINE Point2f place(int x, int y, float disparity) const
+    {
+        const float least = 0.001f, w = w_[0] * x + w_[1] * y + w_[2] * disparity + w_[3];
+        const float factor = 1 / (w > least ? w : least);
+        const float placeX = (x_[0] * x + x_[1] * y + x_[2] * disparity + x_[3]) * factor;
+        const float placeY = (y_[0] * x + y_[1] * y + y_[2] * disparity + y_[3]) * factor;
+        return Point2f(w > least ? placeX : -1, w > least ? placeY : -1);
+    }
+
+    const DisparityChange& change() const { return change_; }
+    DisparityChange& change() { return change_; }
+
+private:
+    Vec4f x_, y_, w_;
+    DisparityChange change_;
+};
+
+}}} // namespace cv::stereo::hdp
+
+#endif
