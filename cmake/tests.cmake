@@ -120,6 +120,8 @@ if(HDPSTEREO_SANITIZE)
   return() # the rest is not built with sanitizers, or would test the same
 endif()
 
+add_check(includes unit "${PROJECT_SOURCE_DIR}/scripts/check_includes.sh")
+
 # Once more with the slower instruction sets: all that has an oracle, and the reference outputs
 foreach(without AVX512-ICL "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2")
   add_unit_tests(unit_without_${without} instruction-sets opencv_test_hdpstereo

@@ -3,15 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "precomp.hpp"
 
-#include "map/disparity_confidence.hpp"
-#include "map/disparity_output.hpp"
-#include "base/disparity_units.hpp"
-#include "pair/image_pyramid.hpp"
 #include "layer_matching.hpp"
-#include "plan/matcher_parameters.hpp"
-#include "pair/pair_alignment.hpp"
-#include "pair/pair_pyramids.hpp"
-#include "base/stage_clock.hpp"
+#include "map/disparity_confidence.hpp"
 
 namespace cv { namespace stereo {
 
@@ -36,26 +29,20 @@ public:
         const Mat left = leftArray.getMat(), right = rightArray.getMat();
         checkPair(left, right);
         const int depth = outputDepth(disparityArray);
-        const PairSettings settings = resolve(p_, left);
+        const PairPlan pairPlan = plan(p_, left.size(), left.type());
         clock_.restart();
 
-        if (!matchPair(left, right, settings))
+        if (matchPair(left, right, pairPlan) == CONTRADICTED)
         {
             temporal_.clear();
-            matchPair(left, right, settings);
+            matchPair(left, right, pairPlan);
         }
 
         disparityArray.create(left.size(), depth);
         Mat disparity = disparityArray.getMat();
-        clock_.run("output", [&] {
-            const Mat& finest = layers_[settings.finestLayer].disparity;
-            result_.isFiltered = outputDisparity(finest, p_, settings, output_, disparity);
-        });
-        result_.shift = 0.5 * settings.extension + p_.minDisparity;
-        result_.brightness = 1 << pyramids_.brightening;
-        result_.size = left.size();
-        result_.settings = settings;
-        result_.numDisparities = p_.numDisparities;
+        const Mat& finest = layers_[pairPlan.finest().layer].disparity;
+        clock_.run("output", [&] { outputDisparity(finest, pairPlan.output, output_, disparity); });
+        result_.isMatched = true;
     }
 
     // cv::StereoMatcher
@@ -103,18 +90,19 @@ public:
 
     void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE
     {
-        ratios.assign(result_.settings.layers, 0);
-        for (int layer = result_.settings.finestLayer; layer < (int)ratios.size(); ++layer)
-            ratios[layer] = layers_[layer].searchRatio;
+        ratios.assign(result_.isMatched ? result_.plan.top().layer + 1 : 0, 0);
+        for (const LayerPlan& layer : result_.plan.layers)
+            if (result_.isMatched)
+                ratios[layer.layer] = layers_[layer.layer].searchRatio;
     }
 
     void getForest(OutputArray treesArray, OutputArray intervalsArray) const CV_OVERRIDE
     {
-        const DisparityForest& forest = buffers_.forest;
-        const Size size = isMatched() ? forest.links.size() : Size();
+        const DisparityForest& forest = shared_.forest;
+        const Size size = result_.isMatched ? forest.links.size() : Size();
         Mat trees(size, CV_32S), intervals(size, CV_16UC2);
         TreeWalk walk;
-        for (size_t t = 0; isMatched() && t < forest.trees.size(); ++t)
+        for (size_t t = 0; result_.isMatched && t < forest.trees.size(); ++t)
         {
             const DisparityTree& tree = forest.trees[t];
             walkTree(forest, tree, walk);
@@ -124,8 +112,8 @@ public:
                 intervals.ptr<DisparityInterval>()[walk.pixels[i]] = tree.interval;
             }
         }
-        copyLayer(trees, buffers_.forestLayer, treesArray);
-        copyLayer(intervals, buffers_.forestLayer, intervalsArray);
+        copyLayer(trees, shared_.forestLayer, treesArray);
+        copyLayer(intervals, shared_.forestLayer, intervalsArray);
     }
 
     void getLayerPrior(int layer, std::vector<double>& prior) const CV_OVERRIDE
@@ -143,53 +131,54 @@ public:
 
     void getConfidence(OutputArray confidenceArray) const CV_OVERRIDE
     {
-        if (!isMatched())
+        if (!result_.isMatched)
             return confidenceArray.release();
-        confidenceArray.create(result_.size, CV_8U);
+        const PairPlan& pairPlan = result_.plan;
+        confidenceArray.create(pairPlan.size, CV_8U);
         Mat confidence = confidenceArray.getMat();
-        const PairSettings& settings = result_.settings;
-        const MatchedLayer& finest = layers_[settings.finestLayer];
-        const bool hasUpper = hasLayer(settings.finestLayer + 1);
-        const ConfidenceMaps maps = { finest.disparity, finest.unfiltered,
-                                      hasUpper ? layers_[settings.finestLayer + 1].disparity : Mat() };
+        const LayerPlan& plan = pairPlan.finest();
+        const LayerResult& finest = layers_[plan.layer];
+        const ConfidenceMaps maps = { finest.disparity, finest.winners,
+                                      plan.isTop ? Mat() : layers_[plan.layer + 1].disparity };
         Mat ofLayer, extended;
-        const int disparities = layerDisparities(result_.numDisparities, settings.finestLayer, settings.subpixel);
-        if (finest.isCensus)
-            disparityConfidence(maps, disparities, finest.census, ofLayer);
+        if (plan.cost.isCensus)
+            disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].census, ofLayer);
         else
-            disparityConfidence(maps, disparities, finest.colorGradient, ofLayer);
-        if (settings.finestLayer > 0)
-            resize(ofLayer, extended, result_.size + Size(settings.extension, 0), 0, 0, INTER_LINEAR_EXACT);
+            disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].colorGradient, ofLayer);
+        const int extension = pairPlan.output.extension;
+        if (plan.layer > 0)
+            resize(ofLayer, extended, pairPlan.size + Size(extension, 0), 0, 0, INTER_LINEAR_EXACT);
         else
             extended = ofLayer;
-        extended.colRange(settings.extension, extended.cols).copyTo(confidence);
-        if (result_.isFiltered)
+        extended.colRange(extension, extended.cols).copyTo(confidence);
+        if (pairPlan.output.hasFilters())
             confidence.setTo(Scalar(0), output_.rejected);
     }
 
     bool getRowAlignment(std::vector<double>& model) const CV_OVERRIDE
     {
-        const RowModel rows = isMatched() ? result_.alignment.rows.about(result_.shift) : RowModel();
+        const RowModel rows = result_.isMatched ? result_.findings.rows.about(result_.plan.shift()) : RowModel();
         model.assign(rows.coefficients.val, rows.coefficients.val + RowModel::terms);
-        return isMatched() && result_.alignment.hasRows;
+        return result_.isMatched && result_.findings.hasRows;
     }
 
     bool getLightAlignment(std::vector<double>& model) const CV_OVERRIDE
     {
-        const LightModel light = isMatched() ? result_.alignment.light.scaled(1 / result_.brightness) : LightModel();
+        const LightModel light =
+            result_.isMatched ? result_.findings.light.scaled(1 / result_.brightness) : LightModel();
         model.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
-        return isMatched() && result_.alignment.hasLight;
+        return result_.isMatched && result_.findings.hasLight;
     }
 
     double getNoiseLevel() const CV_OVERRIDE
     {
-        return isMatched() ? result_.alignment.noise.deviation / result_.brightness : 0;
+        return result_.isMatched ? result_.findings.noise.deviation / result_.brightness : 0;
     }
 
     void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
     {
-        stages = isMatched() ? clock_.stages : std::vector<String>();
-        milliseconds = isMatched() ? clock_.milliseconds : std::vector<double>();
+        stages = result_.isMatched ? clock_.stages : std::vector<String>();
+        milliseconds = result_.isMatched ? clock_.milliseconds : std::vector<double>();
     }
 
     // cv::Algorithm
@@ -212,64 +201,54 @@ public:
     }
 
 private:
-    //! The last pair
+    //! What is known of the last pair
     struct Result
     {
-        Size size; // of the image; empty: no pair is matched
-        PairSettings settings;
-        int numDisparities = 0;
-        PairAlignment alignment;
-        double brightness = 1;   // of the levels that were matched, relative to those of the images
-        double shift = 0;        // of the centre of the right image
-        bool isFiltered = false; // OutputBuffers::rejected has a meaning
+        bool isMatched = false;
+        PairPlan plan;
+        PairFindings findings;
+        double brightness = 1; // of the levels that were matched, relative to those of the images
     };
-
-    bool isMatched() const { return !result_.size.empty(); }
 
     //! Whether the last compute() matched this layer
     bool hasLayer(int layer) const
     {
         if (layer < 0)
             CV_Error(Error::StsOutOfRange, format("layer must be >= 0, not %d", layer));
-        return isMatched() && layer >= result_.settings.finestLayer && layer < result_.settings.layers;
+        return result_.isMatched && layer >= result_.plan.finest().layer && layer <= result_.plan.top().layer;
     }
 
-    //! From the images to the disparities of the finest layer. Returns false if the pair was matched as the next one of a
-    //! video, but contradicts most of what the last one predicts.
-    bool matchPair(const Mat& left, const Mat& right, const PairSettings& settings)
+    //! From the images to the disparities of the finest layer. CONTRADICTED: the pair was matched as the next frame of a
+    //! video, and is none.
+    Verdict matchPair(const Mat& left, const Mat& right, const PairPlan& pairPlan)
     {
+        const int finest = pairPlan.finest().layer;
         std::vector<LayerImages> images;
-        clock_.run("image pyramid", [&] {
-            const PyramidSettings pyramid = { p_.minDisparity,       settings.extension,
-                                              settings.layers,       p_.matchingCost == COST_CENSUS,
-                                              p_.noiseThreshold > 0, lastBrightening() };
-            buildPairPyramids(left, right, pyramid, pyramids_, images);
-        });
-
-        if (p_.maxRowOffset > 0 || p_.useLightAlignment || p_.noiseThreshold > 0)
-            clock_.run("alignment", [&] {
-                const AlignmentSearch search = { p_.numDisparities, p_.maxRowOffset, p_.useLightAlignment,
-                                                 p_.noiseThreshold, settings.finestLayer };
-                alignPair(search, alignmentBuffers_, images, result_.alignment);
-            });
-
-        if (p_.useTemporalPrediction)
-            clock_.run("temporal prediction", [&] { follow(images[settings.finestLayer].left, settings.finestLayer); });
+        clock_.run("image pyramid",
+                   [&] { buildPairPyramids(left, right, pairPlan.pyramids, lastBrightening(), pyramids_, images); });
+        result_.brightness = 1 << pyramids_.brightening;
+        if (pairPlan.alignment.looksForAnything())
+            clock_.run("alignment",
+                       [&] { alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings); });
+        VideoFindings video = { FIRST, true, false };
+        if (pairPlan.followsVideo)
+            clock_.run("temporal prediction", [&] { video = follow(images[finest].left, finest); });
         else
             temporal_ = TemporalState();
-        const int age = temporal_.age;
-        if (age == 0 && pyramids_.isDimmed)
-            return false; // not the next frame after all
+        if (video.verdict == FIRST && pyramids_.isDimmed)
+            return CONTRADICTED;
 
-        layers_.resize(settings.layers);
-        for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
+        result_.plan = adapt(pairPlan, result_.findings, video);
+        layers_.resize(pairPlan.top().layer + 1);
+        scratch_.resize(layers_.size());
+        const LayerResult* upper = nullptr;
+        for (const LayerPlan& layer : result_.plan.layers)
         {
-            const MatchedLayer* const upper = layer + 1 < settings.layers ? &layers_[layer + 1] : nullptr;
-            TemporalState* const temporal = p_.useTemporalPrediction ? &temporal_ : nullptr;
-            const LayerInput input = { layer, images[layer], upper, p_, settings, result_.alignment, temporal };
-            matchLayer(input, buffers_, clock_, layers_[layer]);
+            const LayerInput input = { result_.plan, layer, images[layer.layer], upper, &temporal_ };
+            matchLayer(input, scratch_[layer.layer], shared_, clock_, layers_[layer.layer]);
+            upper = &layers_[layer.layer];
         }
-        return temporal_.age == age;
+        return video.verdict == CONTINUED && temporal_.age == 0 ? CONTRADICTED : video.verdict;
     }
 
     int lastBrightening() const
@@ -279,7 +258,7 @@ private:
     }
 
     //! What a frame has to do with the one before
-    void follow(const Mat& left, int finestLayer)
+    VideoFindings follow(const Mat& left, int finestLayer)
     {
         const int scale = 1 << finestLayer;
         const TemporalLayer layer = { scale, p_.minDisparity / (double)scale,
@@ -287,6 +266,7 @@ private:
         followVideo(left, layer, temporal_);
         if (temporal_.age > 0)
             findSources(temporal_);
+        return { temporal_.age > 0 ? CONTINUED : FIRST, temporal_.motion.isStill, temporal_.age > 1 };
     }
 
     //! Without the columns that are added to the images
@@ -296,7 +276,7 @@ private:
             return;
         if (ofLayer.empty())
             return array.release();
-        ofLayer.colRange(result_.settings.extension >> layer, ofLayer.cols).copyTo(array);
+        ofLayer.colRange(result_.plan.output.extension >> layer, ofLayer.cols).copyTo(array);
     }
 
     //! Of the disparities: what the caller's array has, if its type is fixed
@@ -312,11 +292,12 @@ private:
     Result result_;
     StageClock clock_;
 
-    // Buffers that are kept between calls
+    // Memory that is kept between calls
     PairPyramids pyramids_;
     AlignmentBuffers alignmentBuffers_;
-    std::vector<MatchedLayer> layers_;
-    LayerBuffers buffers_;
+    std::vector<LayerResult> layers_; // by layer, as are the next ones
+    std::vector<LayerScratch> scratch_;
+    SharedScratch shared_;
     OutputBuffers output_;
     TemporalState temporal_;
 };

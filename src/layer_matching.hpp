@@ -4,69 +4,65 @@
 #ifndef OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 #define OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 
-#include "scanlines/candidate_windows.hpp"
-#include "cost/census_cost.hpp"
-#include "paper/color_gradient_cost.hpp"
-#include "forest/disparity_forest.hpp"
-#include "forest/forest_aggregation.hpp"
-#include "plan/matcher_parameters.hpp"
-#include "pair/pair_alignment.hpp"
-#include "pair/pair_pyramids.hpp"
-#include "scanlines/scanline_aggregation.hpp"
 #include "base/stage_clock.hpp"
+#include "forest/forest_aggregation.hpp"
 #include "paper/support_points.hpp"
+#include "plan/pair_plan.hpp"
+#include "scanlines/candidate_windows.hpp"
 #include "video/temporal_join.hpp"
-#include "scanlines/volume_scanlines.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! A layer's result, and memory that is kept for the next pair
-struct MatchedLayer
+//! What is known of a matched layer
+struct LayerResult
 {
     Mat disparity;             // CV_16UC1, a disparity map
-    Mat unfiltered;            // the same before the median
-    double searchRatio;        // R_l of the paper's Table 1
+    Mat winners;               // the same before the median
+    double searchRatio = 0;    // R_l of the paper's Table 1
     std::vector<double> prior; // P(D_l) up to a factor; empty if the layer was not predicted from one
-
-    bool isCensus = false; // which of the two costs is prepared
-    CensusCost census;
-    ColorGradientCost colorGradient;
-    const MatchingCost& cost() const { return isCensus ? static_cast<const MatchingCost&>(census) : colorGradient; }
-
-    Mat guide, pixelIntv, weights;
-    WindowBuffers windowBuffers;
-    Mat matches, windows;
-    Mat winner, residual, filtered, lastPass, lastUnfiltered, stable;
 };
 
 //! What the disparities of a layer depend on
 struct LayerInput
 {
-    int layer;
+    const PairPlan& pair;
+    const LayerPlan& plan;
     const LayerImages& images;
-    const MatchedLayer* upper; // the layer above; none at the top layer
-    const MatcherParameters& parameters;
-    const PairSettings& settings;
-    const PairAlignment& alignment;
-    TemporalState* temporal; // what is known of the video; none if it is not used
-
-    bool isTop() const { return !upper; }
-    bool isFinest() const { return layer == settings.finestLayer; }
+    const LayerResult* upper; // the layer above; none at the top layer
+    TemporalState* video;     // what is known of the video; none if it is not used
 };
 
-//! What the layers of a pair make one after the other in the same memory
-struct LayerBuffers
+//! Memory of one layer, kept for the next pair
+struct LayerScratch
+{
+    CensusCost census;
+    ColorGradientCost colorGradient;
+    Mat guide, edgeWeights;              // of the forest, and of scanlines without a forest
+    Mat pixelIntv;                       // PixelIntv, section 3.1
+    Mat sparseMatches, windows;          // candidates of scanlines
+    WindowBuffers windowBuffers;         //
+    Mat filtered, halved, halvedWinners; // a pass of scanlines for the next one
+    Mat residual;                        // costs of the winners
+    Mat stable, refined;                 // of the non-local refinement
+    const MatchingCost& cost(const CostPlan& plan) const
+    {
+        return plan.isCensus ? static_cast<const MatchingCost&>(census) : colorGradient;
+    }
+};
+
+//! Memory that the layers of a pair use one after the other, and the forest that was built last
+struct SharedScratch
 {
     DisparityForest forest;
-    int forestLayer = -1; // the layer that the forest is of; -1: none was built
+    int forestLayer = -1; // the layer that the forest is of; -1: none was built for this pair
     void forgetForest()
     {
         forest = DisparityForest();
         forestLayer = -1;
     }
 
-    SupportPointBuffers supportPoints;
-    Mat points;
+    SupportPointBuffers supportPointBuffers;
+    Mat supportPoints;
     std::vector<DisparityInterval> intervals;
     ForestBuffers forestBuffers;
     AggregationBuffers aggregation;
@@ -76,7 +72,8 @@ struct LayerBuffers
 };
 
 //! Section 3: from the disparities of the layer above to those of this layer
-void matchLayer(const LayerInput& input, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched);
+void matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
+                LayerResult& result);
 
 }}} // namespace cv::stereo::hdp
 

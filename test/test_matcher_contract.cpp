@@ -6,7 +6,7 @@
 #include "oracles.hpp"
 #include "systems.hpp"
 #include "synthetic_pair.hpp"
-#include "../src/plan/matcher_parameters.hpp"
+#include "../src/plan/pair_plan.hpp"
 
 #include <functional>
 #include <thread>

@@ -15,11 +15,11 @@ const int unit = subpixelScale;
 static_assert(unit == (int)StereoMatcher::DISP_SCALE, "A disparity map and the result have the same units.");
 
 //! From the finest layer that was matched to layer 0 of this size
-Mat enlarge(const Mat& finest, const PairSettings& settings, Size size, std::vector<Mat>& enlarged)
+Mat enlarge(const Mat& finest, int finestLayer, Size size, std::vector<Mat>& enlarged)
 {
-    enlarged.resize(settings.finestLayer);
+    enlarged.resize(finestLayer);
     Mat upper = finest;
-    for (int layer = settings.finestLayer - 1; layer >= 0; --layer)
+    for (int layer = finestLayer - 1; layer >= 0; --layer)
     {
         const Size ofLayer(size.width >> layer, size.height >> layer);
         upsampleDisparity(upper, ofLayer, enlarged[layer]);
@@ -38,49 +38,46 @@ void convert(const Mat& map, int depth, double scale, double shift, Mat& convert
     });
 }
 
-void removeSpeckles(Mat& disparity, const MatcherParameters& p, short invalid, Mat& speckles)
+void removeSpeckles(Mat& disparity, const OutputPlan& plan, short invalid, Mat& speckles)
 {
     // One byte more than cv::filterSpeckles allocates: it writes there if no two pixels belong together.
     const int bytes = (int)disparity.total() * speckleBytes + 1;
     if (speckles.cols < bytes)
         speckles.create(1, bytes, CV_8U);
-    const int range = std::min(p.speckleRange, SHRT_MAX / unit); // cv::filterSpeckles may have it in 16 bits
-    filterSpeckles(disparity, invalid, p.speckleWindowSize, unit * range, speckles);
+    const int range = std::min(plan.speckleRange, SHRT_MAX / unit); // cv::filterSpeckles may have it in 16 bits
+    filterSpeckles(disparity, invalid, plan.speckleWindowSize, unit * range, speckles);
 }
 
 } // namespace
 
-bool outputDisparity(const Mat& finest, const MatcherParameters& p, const PairSettings& settings,
-                     OutputBuffers& buffers, Mat& disparity)
+void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity)
 {
-    const Size extendedSize = disparity.size() + Size(settings.extension, 0);
-    Mat extended = enlarge(finest, settings, extendedSize, buffers.enlarged);
-    if (!p.useSubpixel)
+    const Size extendedSize = disparity.size() + Size(plan.extension, 0);
+    Mat extended = enlarge(finest, plan.finestLayer, extendedSize, buffers.enlarged);
+    if (plan.isWhole)
     {
         convert(extended, CV_16U, 1. / unit, 0, buffers.whole);
         convert(buffers.whole, CV_16U, unit, 0, buffers.whole);
         extended = buffers.whole;
     }
-    const Mat map = extended.colRange(settings.extension, extended.cols);
+    const Mat map = extended.colRange(plan.extension, extended.cols);
     const bool isFloat = disparity.depth() == CV_32F;
-    const bool isFiltered = p.disp12MaxDiff > 0 || p.speckleWindowSize > 0;
     if (isFloat)
-        convert(map, CV_32F, 1. / unit, p.minDisparity, disparity);
+        convert(map, CV_32F, 1. / unit, plan.minDisparity, disparity);
     Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
-    if (!isFloat || isFiltered)
-        convert(map, CV_16S, 1, (double)p.minDisparity * unit, fixedPoint);
-    if (!isFiltered)
-        return false;
+    if (!isFloat || plan.hasFilters())
+        convert(map, CV_16S, 1, (double)plan.minDisparity * unit, fixedPoint);
+    if (!plan.hasFilters())
+        return;
 
-    const short invalid = (short)((p.minDisparity - 1) * unit);
-    if (p.disp12MaxDiff > 0)
-        rejectOccluded(fixedPoint, p.disp12MaxDiff, invalid);
-    if (p.speckleWindowSize > 0)
-        removeSpeckles(fixedPoint, p, invalid, buffers.speckles);
+    const short invalid = (short)((plan.minDisparity - 1) * unit);
+    if (plan.disp12MaxDiff > 0)
+        rejectOccluded(fixedPoint, plan.disp12MaxDiff, invalid);
+    if (plan.speckleWindowSize > 0)
+        removeSpeckles(fixedPoint, plan, invalid, buffers.speckles);
     compare(fixedPoint, Scalar(invalid), buffers.rejected, CMP_EQ);
     if (isFloat)
-        disparity.setTo(Scalar(p.minDisparity - 1), buffers.rejected);
-    return true;
+        disparity.setTo(Scalar(plan.minDisparity - 1), buffers.rejected);
 }
 
 }}} // namespace cv::stereo::hdp

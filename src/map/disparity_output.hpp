@@ -4,12 +4,24 @@
 #ifndef OPENCV_HDPSTEREO_DISPARITY_OUTPUT_HPP
 #define OPENCV_HDPSTEREO_DISPARITY_OUTPUT_HPP
 
-#include "../plan/matcher_parameters.hpp"
+#include "opencv2/core.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 //! Bytes per pixel of the memory of cv::filterSpeckles, which counts them by int
 const int speckleBytes = 9;
+
+//! What outputDisparity() makes of the finest layer
+struct OutputPlan
+{
+    int minDisparity;
+    int extension;   // columns of the layers that the image does not have, in pixels of the image
+    int finestLayer; // 0: the image
+    bool isWhole;    // whether disparities are rounded down to whole pixels
+    int disp12MaxDiff, speckleWindowSize, speckleRange; // as of cv::StereoMatcher; <= 0: no filter
+
+    bool hasFilters() const { return disp12MaxDiff > 0 || speckleWindowSize > 0; }
+};
 
 //! Memory that is kept from pair to pair
 struct OutputBuffers
@@ -22,13 +34,10 @@ struct OutputBuffers
 /** From the disparities of the finest layer to what cv::StereoMatcher promises: those of every pixel of the image, from
 minDisparity on, less what the left-right check and the speckle filter reject.
 @param finest CV_16UC1 of the finest layer's size, a disparity map.
-@param parameters The parameters.
-@param settings What they amount to for the pair.
-@param buffers Memory to work in.
-@param disparity CV_16SC1 or CV_32FC1 of the image's size; receives the result.
-@return Whether anything may have been rejected: only then OutputBuffers::rejected has a meaning. */
-bool outputDisparity(const Mat& finest, const MatcherParameters& parameters, const PairSettings& settings,
-                     OutputBuffers& buffers, Mat& disparity);
+@param plan What to do.
+@param buffers Memory to work in; OutputBuffers::rejected has a meaning if the plan has filters.
+@param disparity CV_16SC1 or CV_32FC1 of the image's size; receives the result. */
+CV_EXPORTS void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity);
 
 }}} // namespace cv::stereo::hdp
 

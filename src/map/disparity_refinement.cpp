@@ -6,7 +6,7 @@
 #include "disparity_refinement.simd.hpp"
 #include "map/disparity_refinement.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
-#include "../pair/image_levels.hpp"
+#include "../base/grey_levels.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

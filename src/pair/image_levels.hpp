@@ -4,6 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_IMAGE_LEVELS_HPP
 #define OPENCV_HDPSTEREO_IMAGE_LEVELS_HPP
 
+#include "../base/grey_levels.hpp"
 #include "opencv2/core.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -22,9 +23,6 @@ are doubled as often; what is brighter then is white.
 @param buffer Memory for the result.
 @return CV_8UC1 or CV_8UC3: the image itself, if it is that. */
 CV_EXPORTS Mat byteLevels(const Mat& image, int bits, Mat& buffer);
-
-//! Units of greyLevels() in one level, and its highest grey level
-const int greyScale = 4, whiteLevel = 256 * greyScale - 1;
 
 /** Grey levels 0.299 R + 0.587 G + 0.114 B in 1 / greyScale of a level: the upper 10 of the bits in use, if there are
 more than 8. Means of many pixels tell faint texture apart that 8 bits lose: the census cost of the coarse layers lives

@@ -25,10 +25,10 @@ void smooth(LayerImages& images, LayerImages& smoothed)
 
 } // namespace
 
-void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
-               PairAlignment& alignment)
+void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
+               PairFindings& findings)
 {
-    alignment = PairAlignment();
+    findings = PairFindings();
     const bool isGrey = images[0].right.depth() == CV_16U; // see greyLevels()
     std::vector<Mat> left, right;
     if (isGrey)
@@ -44,29 +44,27 @@ void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::ve
         left.push_back(buffers.leftLevels);
         right.push_back(buffers.rightLevels);
     }
-    matchCoarsely(left, right, search.numDisparities, buffers.coarse);
-    alignment.hasRows =
-        estimateRows(buffers.coarse, search.finestLayer, search.maxRowOffset, alignment.rows, alignment.noise);
-    if (search.hasLight && isGrey)
-        alignment.hasLight = estimateLight(buffers.coarse, alignment.light);
+    matchCoarsely(left, right, plan.numDisparities, buffers.coarse);
+    findings.hasRows = estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings.rows, findings.noise);
+    if (plan.findsLight && isGrey)
+        findings.hasLight = estimateLight(buffers.coarse, findings.light);
 
-    Mat& finest = images[search.finestLayer].right;
-    if (alignment.hasRows)
+    Mat& finest = images[plan.finestLayer].right;
+    if (findings.hasRows)
     {
-        alignRows(finest, alignment.rows.ofLayer(search.finestLayer), buffers.right);
+        alignRows(finest, findings.rows.ofLayer(plan.finestLayer), buffers.right);
         finest = buffers.right;
     }
-    if (alignment.hasLight)
-        alignLight(finest, alignment.light);
-    if (alignment.hasRows || alignment.hasLight)
-        for (size_t layer = search.finestLayer + 1; layer < images.size(); ++layer)
+    if (findings.hasLight)
+        alignLight(finest, findings.light);
+    if (findings.hasRows || findings.hasLight)
+        for (size_t layer = plan.finestLayer + 1; layer < images.size(); ++layer)
             halveImage(images[layer - 1].right, images[layer].right); // into the memory of the pyramid
 
-    alignment.isNoisy = search.noiseThreshold > 0 && alignment.noise.deviation >= search.noiseThreshold;
-    if (!alignment.isNoisy || !isGrey)
+    if (!isGrey || !plan.isNoisy(findings.noise))
         return;
     buffers.smoothed.resize(images.size());
-    for (size_t layer = search.finestLayer; layer < images.size(); ++layer)
+    for (size_t layer = plan.finestLayer; layer < images.size(); ++layer)
         smooth(images[layer], buffers.smoothed[layer]);
 }
 

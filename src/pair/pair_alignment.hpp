@@ -11,23 +11,30 @@
 namespace cv { namespace stereo { namespace hdp {
 
 //! What alignPair() looks for
-struct AlignmentSearch
+struct AlignmentPlan
 {
     int numDisparities;    // of the images
     int maxRowOffset;      // 0: rows stay
-    bool hasLight;         // of grey levels alone
-    double noiseThreshold; // levels of 255 from which noisy images are smoothed; 0: never
+    bool findsLight;       // in grey levels alone
+    double noiseThreshold; // noise of the finest layer from which a pair is smoothed, in levels of 255; 0: never
     int finestLayer;       // where matching ends
+
+    bool looksForAnything() const { return maxRowOffset > 0 || findsLight || noiseThreshold > 0; }
+
+    //! Whether a pair is to be smoothed: by the noise where matching ends, whichever layer tells it.
+    bool isNoisy(const LayerNoise& noise) const
+    {
+        return noiseThreshold > 0 && noise.ofLayer(finestLayer) >= noiseThreshold;
+    }
 };
 
-//! What was found, about the right image's centre, and what of it was applied
-struct PairAlignment
+//! What was found in a pair, about the right image's centre, and what of it was applied
+struct PairFindings
 {
     RowModel rows;
     LightModel light;
     bool hasRows = false, hasLight = false;
-    LayerNoise noise;
-    bool isNoisy = false; // noise has reached the threshold
+    LayerNoise noise = LayerNoise();
 };
 
 //! Memory of alignPair(), kept from pair to pair
@@ -40,12 +47,12 @@ struct AlignmentBuffers
 
 /** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it, and
 smooths the grey levels of noisy pairs. The guides stay.
-@param search What is looked for.
+@param plan What is looked for.
 @param buffers Memory to work in.
 @param images Those of buildPairPyramids(); they may change.
-@param alignment Receives what was found. */
-void alignPair(const AlignmentSearch& search, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
-               PairAlignment& alignment);
+@param findings Receives what was found. */
+void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
+               PairFindings& findings);
 
 }}} // namespace cv::stereo::hdp
 

@@ -41,10 +41,10 @@ void checkPair(const Mat& left, const Mat& right)
         CV_Error(Error::StsOutOfRange, "left must have less than 2^31 bytes");
 }
 
-void buildPairPyramids(const Mat& left, const Mat& right, const PyramidSettings& settings, PairPyramids& pyramids,
-                       std::vector<LayerImages>& images)
+void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan, int lastBrightening,
+                       PairPyramids& pyramids, std::vector<LayerImages>& images)
 {
-    const int minDisparity = settings.minDisparity, extension = settings.extension, layers = settings.layers;
+    const int minDisparity = plan.minDisparity, extension = plan.extension, layers = plan.layers;
     Mat extended = left, shifted = right;
     if (minDisparity != 0)
     {
@@ -59,12 +59,12 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidSettings&
     int bits = countBits(left, right);
     pyramids.brightening = 0;
     pyramids.isDimmed = false;
-    if (settings.isCensus)
+    if (plan.isCensus)
     {
         greyLevels(extended, bits, pyramids.leftLevels);
         greyLevels(shifted, bits, pyramids.rightLevels);
         const int unused = countUnusedBits(pyramids.leftLevels, pyramids.rightLevels);
-        pyramids.isDimmed = unused == settings.lastBrightening + 1;
+        pyramids.isDimmed = unused == lastBrightening + 1;
         pyramids.brightening = unused - pyramids.isDimmed;
         if (pyramids.brightening > 0)
         {
@@ -72,7 +72,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidSettings&
             greyLevels(extended, bits, pyramids.leftLevels);
             greyLevels(shifted, bits, pyramids.rightLevels);
         }
-        if (settings.smoothsBlocks)
+        if (plan.smoothsBlocks)
             smoothBlocks(pyramids.leftLevels, pyramids.rightLevels);
         buildPyramid(pyramids.leftLevels, layers, pyramids.leftGrey);
         buildPyramid(pyramids.rightLevels, layers, pyramids.right);
@@ -84,7 +84,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidSettings&
     for (int layer = 0; layer < layers; ++layer)
     {
         images[layer].guide = pyramids.left[layer];
-        images[layer].left = settings.isCensus ? pyramids.leftGrey[layer] : pyramids.left[layer];
+        images[layer].left = plan.isCensus ? pyramids.leftGrey[layer] : pyramids.left[layer];
         images[layer].right = pyramids.right[layer];
     }
     pyramids.left[0].release(); // may be the caller's

@@ -48,8 +48,8 @@ struct RowModel
 //! Noise of a pair
 struct LayerNoise
 {
-    double deviation = 0; // standard deviation, in levels of 255
-    int layer = 0;        // that it was measured in
+    double deviation; // standard deviation, in levels of 255
+    int layer;        // that it was measured in
 
     //! Of another layer. White noise would halve from layer to layer; that of cameras, of neighbours alike, falls less.
     double ofLayer(int other) const

@@ -53,7 +53,7 @@ struct MatcherParameters
 };
 
 //! The parameters of a preset; throws if there is none.
-MatcherParameters presetParameters(int preset);
+CV_EXPORTS MatcherParameters presetParameters(int preset);
 
 //! Sets a parameter to a value that is valid by itself, or throws and leaves it as it was. What depends on several
 //! parameters or on the images is checked by resolve(). T: int, double or bool.
@@ -68,26 +68,6 @@ void writeParameters(const MatcherParameters& parameters, FileStorage& fs);
 //! What writeParameters() has written; a parameter that is missing gets the value of PRESET_PAPER. Throws if a value is
 //! not valid. ownStrategy: the strategy of the caller, for files that name it.
 MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ownStrategy);
-
-/** Number of pyramid layers for so many disparities, in images of any size: numLayers or more, until the top layer has
-maxTopDisparities or less or there are mostLayers. A layer that would leave it less than 16 is left out, but for the first two. See
-HDPTreeMatcher::setMaxTopDisparities(). */
-CV_EXPORTS int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int mostLayers);
-
-//! What the parameters amount to for a pair
-struct PairSettings
-{
-    int layers = 0, finestLayer = 0;
-    int windowSide = 0; // of the matching cost
-    int extension = 0; // columns added on the left, for pixels there to have their matches, if disparities are negative
-    Ptr<DisparityPredictionModel> model;
-    double delta0 = 0, beta = 0;
-    int medianSize = 0;
-    bool subpixel = false; // whether the disparities of a layer have a fraction
-};
-
-//! Throws if parameters do not go with one another or with the images. left: the left image.
-PairSettings resolve(const MatcherParameters& parameters, const Mat& left);
 
 }}} // namespace cv::stereo::hdp
 

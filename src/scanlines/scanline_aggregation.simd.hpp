@@ -4,7 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "scanline_aggregation.hpp"
-#include "../pair/image_levels.hpp"
+#include "../base/grey_levels.hpp"
 #include "../base/vectorized.hpp"
 #include "winner_fraction.hpp"
 #include <cstring>

@@ -7,7 +7,7 @@
 #include "video/temporal_prediction.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
 
-#include "../pair/image_levels.hpp"
+#include "../base/grey_levels.hpp"
 #include "../pair/image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -1,0 +1,297 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "pair_plan.hpp"
+
+#include "../base/grey_levels.hpp"
+#include "../pair/image_pyramid.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+typedef HDPTreeMatcher M;
+
+// Pixels. Images as wide as this get the values that the authors' program has for Middlebury's full size, others those for
+// its half size.
+const int largeImageWidth = 1000;
+
+// Candidates. A top layer beyond the second one has no fewer: as many as a window of the scanlines.
+const int minTopDisparities = CandidateWindow::candidates;
+
+// Pixels. The largest window that a cost is averaged over.
+const int maxWindow = 31;
+
+// Standard deviations of the noise. What differs by less is not darker: more loses texture, less takes noise for it.
+const double toleratedNoise = 0.45;
+
+// From this layer on the census has a tolerance of 1 at least: the rounding of means and faint shading are no texture.
+const int coarseLayer = 2;
+
+// Gamma of the means that scanlines get, relative to that of the trees' own sums: scanlines carry costs farther.
+const double meanGamma = 0.2;
+
+// The large penalty over means, relative to P2, and its gamma, relative to that of the trees.
+const double meanP2 = 1.3, edgeGamma = 0.7;
+
+// Layers of scanlines below a top layer that does without trees because the last frame predicts it. They repair what
+// trees would have carried to bare surfaces; one layer cannot.
+const int repairingLayers = 2;
+
+// Halves of a bit per grey level, see ScanlinePenalties::edgeSlope. On the finest layer edges are those of surfaces; on
+// coarser layers, and in noise, they are weaker evidence.
+const int finestSlope = 5, usualSlope = 3;
+
+// What ScanlinePenalties::prior is in the first pass and in later ones, which trust the disparities of the pass before.
+const int firstPrior = 1, laterPrior = 2;
+
+// Gamma of the non-local refinement, relative to that of the sums: with the same one it blurs slanted surfaces.
+const double refinementGamma = 0.25;
+
+//! The side of the matching cost's window. Values that are not odd and positive count as with cv::StereoSGBM.
+int windowSide(const MatcherParameters& p)
+{
+    const int side = p.blockSize > 0 ? p.blockSize / 2 * 2 + 1 : 5;
+    return p.matchingCost == M::COST_CENSUS ? std::min(std::max(side, 3), 7) : std::min(side, maxWindow);
+}
+
+//! Aggregation below the top layer. Without prediction there are no layers, and the plain tree algorithm matches the image.
+int aggregationOf(const MatcherParameters& p) { return p.usePrediction ? p.aggregation : (int)M::AGGREGATION_TREES; }
+
+bool predictsIntervals(const MatcherParameters& p) { return aggregationOf(p) != M::AGGREGATION_SCANLINES; }
+
+bool hasFractions(const MatcherParameters& p) { return p.useSubpixel || aggregationOf(p) != M::AGGREGATION_TREES; }
+
+bool isLarge(Size size) { return size.width >= largeImageWidth; }
+
+void checkCombinations(const MatcherParameters& p, Size size)
+{
+    const int64 min = ((int64)p.minDisparity - 1) * M::DISP_SCALE;
+    const int64 max = ((int64)p.minDisparity + p.numDisparities - 1) * M::DISP_SCALE;
+    if (min < SHRT_MIN || max > SHRT_MAX)
+        CV_Error(Error::StsOutOfRange, format("minDisparity and numDisparities must keep (minDisparity - 1) * %d and "
+                                              "(minDisparity + numDisparities - 1) * %d in CV_16S",
+                                              (int)M::DISP_SCALE, (int)M::DISP_SCALE));
+    const int aggregation = aggregationOf(p);
+    const char* const needsCensus = aggregation == M::AGGREGATION_SCANLINES        ? "AGGREGATION_SCANLINES"
+                                    : aggregation == M::AGGREGATION_TREE_SCANLINES ? "AGGREGATION_TREE_SCANLINES"
+                                    : p.fillOcclusions                             ? "fillOcclusions"
+                                    : p.useTemporalPrediction                      ? "useTemporalPrediction"
+                                                                                   : nullptr;
+    if (needsCensus && p.matchingCost != M::COST_CENSUS)
+        CV_Error(Error::StsBadArg, format("matchingCost must be COST_CENSUS for %s", needsCensus));
+    if (p.speckleWindowSize > 0 && size.area() > INT_MAX / speckleBytes)
+        CV_Error(Error::StsOutOfRange,
+                 format("speckleWindowSize must be <= 0 for images of more than %d pixels", INT_MAX / speckleBytes));
+}
+
+//! The model of the predicted intervals; it has a layer less than the pyramid.
+Ptr<DisparityPredictionModel> modelOf(const MatcherParameters& p, Size size)
+{
+    if (!predictsIntervals(p))
+        return Ptr<DisparityPredictionModel>();
+    if (p.predictionModel)
+        return p.predictionModel;
+    return DisparityPredictionModel::createPublished(isLarge(size) ? DisparityPredictionModel::PUBLISHED_LARGE
+                                                                   : DisparityPredictionModel::PUBLISHED_SMALL);
+}
+
+//! Number of layers of the pyramid
+int countLayers(const MatcherParameters& p, Size size, const Ptr<DisparityPredictionModel>& model)
+{
+    if (!p.usePrediction)
+        return 1;
+    const int maxLayers = model ? model->getNumLayers() + 1 : INT_MAX;
+    const int chosen = chooseLayers(p.numDisparities, p.numLayers, p.maxTopDisparities, maxLayers);
+    const int layers = hdp::countLayers(size, chosen);
+    if (model && model->getNumLayers() < layers - 1)
+        CV_Error(Error::StsOutOfRange, format("predictionModel must have numLayers - 1 = %d layers, not %d", layers - 1,
+                                              model->getNumLayers()));
+    return layers;
+}
+
+//! Columns that are added on the left of the images, for the first ones to have their matches at negative disparities
+int countExtension(const MatcherParameters& p, Size size, int type, int layers)
+{
+    const int missing = std::min(-p.minDisparity, p.numDisparities);
+    const int extension = missing > 0 ? (int)alignSize(missing, 1 << (layers - 1)) : 0;
+    const int64 width = (int64)size.width + extension;
+    if (width > maxSide || width * size.height * (int64)CV_ELEM_SIZE(type) > INT_MAX)
+        CV_Error(Error::StsOutOfRange,
+                 format("minDisparity must not be %d for an image of %d x %d: %d columns are added to it",
+                        p.minDisparity, size.width, size.height, extension));
+    return extension;
+}
+
+CostPlan planCost(const MatcherParameters& p)
+{
+    CostPlan cost;
+    cost.isCensus = p.matchingCost == M::COST_CENSUS;
+    cost.windowSide = windowSide(p);
+    if (cost.isCensus)
+        return cost;
+    cost.colorTruncation = (float)p.colorTruncation;
+    cost.gradientTruncation = (float)p.gradientTruncation;
+    cost.colorWeight = (float)p.colorWeight;
+    return cost;
+}
+
+LayerMethod methodOf(const MatcherParameters& p, bool isTop)
+{
+    const int below = aggregationOf(p);
+    if (below == M::AGGREGATION_SCANLINES && !isTop)
+        return WINDOW_SCANLINES;
+    const int aggregation = below == M::AGGREGATION_SCANLINES ? p.topAggregation : below;
+    return aggregation == M::AGGREGATION_TREE_SCANLINES ? TREE_SCANLINES : TREE_SUMS;
+}
+
+TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size)
+{
+    TreePlan trees;
+    if (!layer.isTop)
+    {
+        trees.prior = p.disparityPrior == M::PRIOR_UPPER_LAYER ? UPPER_LAYER : SUPPORT_POINTS;
+        trees.upperDisparities = layerDisparities(p.numDisparities, layer.layer + 1, layer.hasFractions);
+        // The values of the authors' program; the paper's text has those of large and small images the other way round.
+        const double delta0 = p.delta0 != M::AUTO ? p.delta0 : isLarge(size) ? 0.064 : 0.004;
+        trees.delta = delta0 * (1 << layer.layer);
+        trees.margin = p.intervalMargin;
+        trees.beta = p.beta != M::AUTO ? p.beta : isLarge(size) ? 0.6 : 0.95;
+    }
+    trees.linksTrees = !p.usePrediction;
+    trees.gamma = layer.method == TREE_SCANLINES ? p.gamma * meanGamma : p.gamma;
+    trees.prefersPlanes = layer.method == TREE_SCANLINES && layer.isTop;
+    if (p.useNonLocalRefinement && predictsIntervals(p))
+        trees.refinementGamma = p.gamma * refinementGamma;
+    return trees;
+}
+
+//! Means of costs are smoother, and so is what the last frame predicts: half of P1.
+VolumePenalties planVolume(const MatcherParameters& p)
+{
+    const int scale = CostVolume::scale, large = cvRound(scale * meanP2 * p.P2);
+    return { scale * p.P1 / 2, std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
+}
+
+//! The direction from below costs half as much as the others together: at full size it waits for the second pass.
+std::vector<ScanlinePass> planPasses(const MatcherParameters& p, const LayerPlan& layer)
+{
+    std::vector<ScanlinePass> passes;
+    for (int i = 0; i < p.scanlinePasses; ++i)
+    {
+        const ScanlinePenalties penalties = { p.P1, p.P2, layer.isFinest ? finestSlope : usualSlope,
+                                              i == 0 ? firstPrior : laterPrior };
+        passes.push_back({ penalties, layer.layer > 0 || i > 0 });
+    }
+    return passes;
+}
+
+LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers, int finest)
+{
+    LayerPlan plan;
+    plan.layer = layer;
+    plan.isTop = layer == layers - 1;
+    plan.isFinest = layer == finest;
+    plan.hasFractions = hasFractions(p);
+    plan.numDisparities = layerDisparities(p.numDisparities, layer, plan.hasFractions);
+    plan.maxDisparity = largestDisparity(p.numDisparities, layer);
+    plan.cost = planCost(p);
+    plan.method = methodOf(p, plan.isTop);
+    if (plan.method == WINDOW_SCANLINES)
+        plan.passes = planPasses(p, plan);
+    else
+    {
+        plan.smoothsGuide = p.useMedianPrefilter;
+        plan.trees = planTrees(p, plan, size);
+    }
+    if (plan.method == TREE_SCANLINES)
+        plan.volumePenalties = planVolume(p);
+    plan.fillsOcclusions = p.fillOcclusions;
+    // As in the authors' program; the paper says that nothing is refined.
+    plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
+    plan.medianPasses = plan.medianSize > 0 ? p.disparityMedianPasses : 1;
+    plan.restoresThinStructures = plan.isFinest && !predictsIntervals(p) && plan.medianSize > 0;
+    return plan;
+}
+
+//! Less is as often noise as texture. Where several frames of a moving camera are joined, their noise averages out, and
+//! faint texture is worth more; where nothing moves, the disparities of the last frame are kept anyway.
+int censusTolerance(int layer, const LayerNoise& noise, const VideoFindings& video)
+{
+    if (video.verdict == CONTINUED && !video.isStill && layer < coarseLayer)
+        return 0;
+    const int tolerance = cvRound(toleratedNoise * greyScale * noise.ofLayer(layer));
+    return std::min(std::max(tolerance, (int)(layer >= coarseLayer)), +CensusCost::mostTolerance);
+}
+
+//! Surfaces that the last frame predicts need no trees, where scanlines below repair the rest.
+void predictTop(const LayerPlan& finest, LayerPlan& top)
+{
+    top.prefersLastFrame = top.method == TREE_SCANLINES;
+    if (!top.prefersLastFrame || finest.method != WINDOW_SCANLINES || top.layer - finest.layer < repairingLayers)
+        return;
+    top.method = COST_SCANLINES;
+    top.trees = TreePlan();
+}
+
+} // namespace
+
+int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int maxLayers)
+{
+    if (maxTopDisparities == 0)
+        return numLayers;
+    int layers = numLayers;
+    const auto topDisparities = [&](int count) { return layerDisparities(numDisparities, count - 1, false); };
+    while (layers > 2 && topDisparities(layers) < minTopDisparities)
+        --layers;
+    while (layers < maxLayers && topDisparities(layers) > maxTopDisparities &&
+           topDisparities(layers + 1) >= minTopDisparities)
+        ++layers;
+    return layers;
+}
+
+PairPlan plan(const MatcherParameters& p, Size size, int type)
+{
+    checkCombinations(p, size);
+    PairPlan plan;
+    plan.size = size;
+    plan.treeStrategy = p.treeStrategy;
+    plan.model = modelOf(p, size);
+    const int layers = countLayers(p, size, plan.model), finest = std::min(p.finestLayer, layers - 1);
+    const int extension = countExtension(p, size, type, layers);
+    plan.pyramids = { p.minDisparity, extension, layers, p.matchingCost == M::COST_CENSUS, p.noiseThreshold > 0 };
+    plan.alignment = { p.numDisparities, p.maxRowOffset, p.useLightAlignment, p.noiseThreshold, finest };
+    plan.followsVideo = p.useTemporalPrediction;
+    for (int layer = layers - 1; layer >= finest; --layer)
+        plan.layers.push_back(planLayer(p, size, layer, layers, finest));
+    plan.layers.back().joinsLastFrame = plan.followsVideo;
+    plan.output = { p.minDisparity,
+                    extension,
+                    finest,
+                    !p.useSubpixel,
+                    p.disp12MaxDiff,
+                    p.speckleWindowSize,
+                    p.speckleWindowSize > 0 ? p.speckleRange : 0 };
+    return plan;
+}
+
+PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFindings& video)
+{
+    PairPlan adapted = plan;
+    for (LayerPlan& layer : adapted.layers)
+    {
+        if (layer.cost.isCensus)
+            layer.cost.tolerance = censusTolerance(layer.layer, findings.noise, video);
+        if (!plan.alignment.isNoisy(findings.noise))
+            continue;
+        layer.smoothsGuide |= layer.method != WINDOW_SCANLINES;
+        for (ScanlinePass& pass : layer.passes)
+            pass.penalties.edgeSlope = usualSlope;
+    }
+    if (video.verdict == CONTINUED && video.isEstablished && !video.isStill)
+        predictTop(plan.finest(), adapted.layers.front());
+    return adapted;
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,129 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_PAIR_PLAN_HPP
+#define OPENCV_HDPSTEREO_PAIR_PLAN_HPP
+
+#include "../map/disparity_output.hpp"
+#include "../pair/pair_alignment.hpp"
+#include "../pair/pair_pyramids.hpp"
+#include "../paper/color_gradient_cost.hpp"
+#include "../scanlines/scanline_aggregation.hpp"
+#include "../scanlines/volume_scanlines.hpp"
+#include "../video/verdict.hpp"
+#include "matcher_parameters.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+// All that is decided for a pair. The parameters are asked here and nowhere else; the stages carry out. A member that a
+// layer has no use for keeps its first value.
+
+//! How the winners of a layer are found
+enum LayerMethod
+{
+    TREE_SUMS,       //!< by sums over disparity trees (the paper, section 3.3)
+    TREE_SCANLINES,  //!< by scanlines over the means of the costs in disparity trees
+    COST_SCANLINES,  //!< by scanlines over the costs of all candidates
+    WINDOW_SCANLINES //!< by scanlines over windows of candidates around the disparities of the layer above
+};
+
+//! Where P(D_l) comes from, which predicts the candidates of trees (section 3.1)
+enum PriorSource
+{
+    FULL_RANGE,     //!< nothing is predicted: all disparities are candidates
+    SUPPORT_POINTS, //!< sparse matches
+    UPPER_LAYER     //!< the disparities of the layer above
+};
+
+//! The matching cost of a layer
+struct CostPlan
+{
+    bool isCensus = false;
+    int windowSide = 0;        // pixels
+    int tolerance = 0;         // of the census, in grey levels of the images, see CensusCost::prepare()
+    float colorTruncation = 0; // this and the next two: see ColorGradientParams
+    float gradientTruncation = 0;
+    float colorWeight = 0;
+};
+
+//! The forest of a layer, and what its trees' costs are used for
+struct TreePlan
+{
+    PriorSource prior = FULL_RANGE;
+    int upperDisparities = 0; // candidates of the layer above
+    double delta = 0;         // delta_l, section 3.1
+    int margin = 0;           // candidates added to an interval on both sides
+    double beta = 0;          // of DT-Rule 2; only trees whose intervals differ ask for it
+    bool linksTrees = false;  // whether what Rule 2 leaves apart is joined
+    double gamma = 0;         // grey levels, of the sums or means
+    bool prefersPlanes = false;
+    double refinementGamma = 0; // of the non-local refinement; 0: none
+};
+
+//! A pass of the scanlines over windows
+struct ScanlinePass
+{
+    ScanlinePenalties penalties;
+    bool hasFromBelow; // whether there is a fourth direction
+};
+
+//! What is done on a layer
+struct LayerPlan
+{
+    int layer = 0; // 0 is the image
+    bool isTop = false, isFinest = false;
+    int numDisparities = 0; // candidates
+    int maxDisparity = 0;   // of a map of the layer
+    bool hasFractions = false;
+    CostPlan cost;
+    bool smoothsGuide = false; // a median before the edges are weighed
+    LayerMethod method = TREE_SUMS;
+    TreePlan trees;
+    VolumePenalties volumePenalties = { 0, 0, 0 };
+    std::vector<ScanlinePass> passes;
+    bool prefersLastFrame = false; // whether what the last frame predicts has lower costs
+    bool fillsOcclusions = false;
+    bool joinsLastFrame = false;
+    int medianSize = 0, medianPasses = 1; // of the median over the winners; size 0: none
+    bool restoresThinStructures = false;
+};
+
+//! What is done for a pair
+struct PairPlan
+{
+    Size size; // of the images
+    PyramidPlan pyramids;
+    AlignmentPlan alignment;
+    bool followsVideo = false;
+    std::vector<LayerPlan> layers; // that are matched, the top one first
+    Ptr<TreeStrategy> treeStrategy;
+    Ptr<DisparityPredictionModel> model; // of the layers with predicted intervals; none if no layer has them
+    OutputPlan output;
+
+    const LayerPlan& top() const { return layers.front(); }
+    const LayerPlan& finest() const { return layers.back(); }
+    //! How far the centre of the right image is to the right of where it is matched, in pixels
+    double shift() const { return 0.5 * output.extension + output.minDisparity; }
+};
+
+/** What is done for a pair, as far as it depends on nothing but this:
+@param parameters The parameters; each is valid by itself.
+@param size Of the images.
+@param type Of the images, as checkPair() accepts it.
+@throws cv::Exception if the parameters do not go with one another or with the images. */
+CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int type);
+
+/** What is done now that the pair has been seen.
+@param plan From plan().
+@param findings What alignPair() has found.
+@param video What is known of the video; FIRST without one. */
+CV_EXPORTS PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFindings& video);
+
+/** Number of pyramid layers for so many disparities, in images of any size: numLayers or more, until the top layer has
+maxTopDisparities or less or there are maxLayers. A layer that would leave it less than 16 is left out, but for the first
+two. See HDPTreeMatcher::Params::maxTopDisparities. */
+CV_EXPORTS int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int maxLayers);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

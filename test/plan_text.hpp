@@ -1,0 +1,53 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_TEST_PLAN_TEXT_HPP
+#define OPENCV_HDPSTEREO_TEST_PLAN_TEXT_HPP
+
+#include "test_precomp.hpp"
+#include "../src/plan/pair_plan.hpp"
+
+namespace opencv_test {
+
+//! All members of a plan: two plans are equal if their texts are. A new member belongs here;
+//! HDPStereo_Plan.every_parameter_has_an_effect fails if one is missed that a parameter decides.
+inline std::string textOf(const hdp::LayerPlan& p)
+{
+    std::ostringstream text;
+    text << "layer " << p.layer << " top " << p.isTop << " finest " << p.isFinest << " disparities " << p.numDisparities
+         << " max " << p.maxDisparity << " fractions " << p.hasFractions << " method " << (int)p.method << "\n  cost "
+         << p.cost.isCensus << " " << p.cost.windowSide << " tolerance " << p.cost.tolerance << " truncation "
+         << p.cost.colorTruncation << " " << p.cost.gradientTruncation << " weight " << p.cost.colorWeight
+         << " smooths guide " << p.smoothsGuide << "\n  trees: prior " << (int)p.trees.prior << " upper "
+         << p.trees.upperDisparities << " delta " << p.trees.delta << " margin " << p.trees.margin << " beta "
+         << p.trees.beta << " links " << p.trees.linksTrees << " gamma " << p.trees.gamma << " planes "
+         << p.trees.prefersPlanes << " refinement " << p.trees.refinementGamma << "\n  volume "
+         << p.volumePenalties.small << " " << p.volumePenalties.large << " " << p.volumePenalties.gamma << "\n  passes";
+    for (const hdp::ScanlinePass& pass : p.passes)
+        text << " [" << pass.penalties.small << " " << pass.penalties.large << " slope " << pass.penalties.edgeSlope
+             << " prior " << pass.penalties.prior << " from below " << pass.hasFromBelow << "]";
+    text << "\n  prefers last frame " << p.prefersLastFrame << " fills " << p.fillsOcclusions << " joins last frame "
+         << p.joinsLastFrame << " median " << p.medianSize << " x " << p.medianPasses << " thin structures "
+         << p.restoresThinStructures << "\n";
+    return text.str();
+}
+
+inline std::string textOf(const hdp::PairPlan& p)
+{
+    std::ostringstream text;
+    text << p.size << " pyramids " << p.pyramids.minDisparity << " " << p.pyramids.extension << " " << p.pyramids.layers
+         << " " << p.pyramids.isCensus << " " << p.pyramids.smoothsBlocks << "\nalignment "
+         << p.alignment.numDisparities << " " << p.alignment.maxRowOffset << " " << p.alignment.findsLight << " "
+         << p.alignment.noiseThreshold << " " << p.alignment.finestLayer << " follows video " << p.followsVideo
+         << "\nstrategy " << (void*)p.treeStrategy.get() << " model " << (p.model ? p.model->getNumLayers() : 0)
+         << "\noutput " << p.output.minDisparity << " " << p.output.extension << " " << p.output.finestLayer << " "
+         << p.output.isWhole << " " << p.output.disp12MaxDiff << " " << p.output.speckleWindowSize << " "
+         << p.output.speckleRange << "\n";
+    for (const hdp::LayerPlan& layer : p.layers)
+        text << textOf(layer);
+    return text.str();
+}
+
+} // namespace opencv_test
+
+#endif

@@ -1,0 +1,309 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "plan_text.hpp"
+
+namespace opencv_test { namespace {
+
+using hdp::LayerPlan;
+using hdp::MatcherParameters;
+using hdp::PairPlan;
+
+typedef HDPTreeMatcher M;
+typedef void (*Change)(MatcherParameters&);
+
+const Size imageSize(640, 480);
+
+std::string planText(const MatcherParameters& parameters) { return textOf(hdp::plan(parameters, imageSize, CV_8UC3)); }
+
+MatcherParameters parametersOf(int preset)
+{
+    MatcherParameters p = hdp::presetParameters(preset);
+    p.numDisparities = 128;
+    return p;
+}
+
+void keep(MatcherParameters&) {}
+void withoutPrediction(MatcherParameters& p) { p.usePrediction = false; }
+void withScanlines(MatcherParameters& p)
+{
+    p.matchingCost = M::COST_CENSUS;
+    p.aggregation = M::AGGREGATION_SCANLINES;
+}
+void withTreeSums(MatcherParameters& p) { p.aggregation = p.topAggregation = M::AGGREGATION_TREES; }
+void withTreesBelow(MatcherParameters& p) { p.aggregation = M::AGGREGATION_TREES; }
+void withColorGradient(MatcherParameters& p) { p = parametersOf(M::PRESET_PAPER); }
+void withCensus(MatcherParameters& p) { p.matchingCost = M::COST_CENSUS; }
+void withoutMedian(MatcherParameters& p) { p.disparityMedianSize = 0; }
+void withoutSpeckleFilter(MatcherParameters& p) { p.speckleWindowSize = 0; }
+
+struct Row
+{
+    const char* rule;
+    Change context, change;
+};
+
+//! What the documentation of HDPTreeMatcher says to be without effect
+const Row withoutEffect[] = {
+    { "no prediction: numLayers", withoutPrediction, [](MatcherParameters& p) { p.numLayers = 5; } },
+    { "no prediction: maxTopDisparities", withoutPrediction, [](MatcherParameters& p) { p.maxTopDisparities = 16; } },
+    { "no prediction: finestLayer", withoutPrediction, [](MatcherParameters& p) { p.finestLayer = 2; } },
+    { "no prediction: aggregation", withoutPrediction,
+      [](MatcherParameters& p) { p.aggregation = (p.aggregation + 1) % 3; } },
+    { "no prediction: topAggregation", withoutPrediction,
+      [](MatcherParameters& p) { p.topAggregation = M::AGGREGATION_TREE_SCANLINES - p.topAggregation; } },
+    { "no prediction: P1", withoutPrediction, [](MatcherParameters& p) { p.P1 = 5; } },
+    { "no prediction: scanlinePasses", withoutPrediction, [](MatcherParameters& p) { p.scanlinePasses = 4; } },
+    { "no prediction: disparityPrior", withoutPrediction,
+      [](MatcherParameters& p) { p.disparityPrior = 1 - p.disparityPrior; } },
+    { "no prediction: delta0", withoutPrediction, [](MatcherParameters& p) { p.delta0 = 0.3; } },
+    { "no prediction: beta", withoutPrediction, [](MatcherParameters& p) { p.beta = 0.3; } },
+    { "no prediction: intervalMargin", withoutPrediction, [](MatcherParameters& p) { p.intervalMargin = 7; } },
+    { "scanlines: predictionModel", withScanlines,
+      [](MatcherParameters& p) { p.predictionModel = DisparityPredictionModel::create(); } },
+    { "scanlines: disparityPrior", withScanlines,
+      [](MatcherParameters& p) { p.disparityPrior = 1 - p.disparityPrior; } },
+    { "scanlines: delta0", withScanlines, [](MatcherParameters& p) { p.delta0 = 0.3; } },
+    { "scanlines: beta", withScanlines, [](MatcherParameters& p) { p.beta = 0.3; } },
+    { "scanlines: intervalMargin", withScanlines, [](MatcherParameters& p) { p.intervalMargin = 7; } },
+    { "scanlines: useNonLocalRefinement", withScanlines,
+      [](MatcherParameters& p) { p.useNonLocalRefinement = true; } },
+    { "tree sums: P1 and P2", withTreeSums,
+      [](MatcherParameters& p) {
+          p.P1 = 5;
+          p.P2 = 33;
+      } },
+    { "tree sums: scanlinePasses", withTreeSums, [](MatcherParameters& p) { p.scanlinePasses = 4; } },
+    { "trees below: topAggregation", withTreesBelow,
+      [](MatcherParameters& p) { p.topAggregation = M::AGGREGATION_TREE_SCANLINES - p.topAggregation; } },
+    { "census: truncations and weight", withCensus,
+      [](MatcherParameters& p) {
+          p.colorTruncation = 3;
+          p.gradientTruncation = 1;
+          p.colorWeight = 0.5;
+      } },
+    { "census: blockSize above 7", withCensus,
+      [](MatcherParameters& p) { p.blockSize = p.blockSize >= 7 ? 21 : p.blockSize; } },
+    { "no median: its passes", withoutMedian, [](MatcherParameters& p) { p.disparityMedianPasses = 3; } },
+    { "no speckle filter: speckleRange", withoutSpeckleFilter, [](MatcherParameters& p) { p.speckleRange = 3; } },
+    { "disp12MaxDiff below 1 and a depth", keep, [](MatcherParameters& p) { p.disparityDepth = CV_32F; } },
+};
+
+TEST(HDPStereo_Plan, what_is_documented_to_have_no_effect_has_none)
+{
+    for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
+        for (const Row& row : withoutEffect)
+        {
+            SCOPED_TRACE(format("preset %d, %s", preset, row.rule));
+            MatcherParameters p = parametersOf(preset);
+            row.context(p);
+            if (p.matchingCost == M::COST_CENSUS && row.context == withCensus && preset == M::PRESET_PAPER)
+                p.blockSize = 7;
+            const std::string before = planText(p);
+            row.change(p);
+            EXPECT_EQ(before, planText(p));
+        }
+}
+
+//! Where each parameter matters
+const Row withEffect[] = {
+    { "minDisparity", keep, [](MatcherParameters& p) { p.minDisparity = -5; } },
+    { "numDisparities", keep, [](MatcherParameters& p) { p.numDisparities = 100; } },
+    { "blockSize", keep, [](MatcherParameters& p) { p.blockSize = 3; } },
+    { "speckleWindowSize", keep, [](MatcherParameters& p) { p.speckleWindowSize = 10; } },
+    { "speckleRange", [](MatcherParameters& p) { p.speckleWindowSize = 10; },
+      [](MatcherParameters& p) { p.speckleRange = 2; } },
+    { "disp12MaxDiff", keep, [](MatcherParameters& p) { p.disp12MaxDiff = 2; } },
+    { "maxRowOffset", keep, [](MatcherParameters& p) { p.maxRowOffset = 5; } },
+    { "useLightAlignment", keep, [](MatcherParameters& p) { p.useLightAlignment = !p.useLightAlignment; } },
+    { "noiseThreshold", keep, [](MatcherParameters& p) { p.noiseThreshold = 5; } },
+    { "usePrediction", keep, withoutPrediction },
+    { "useMedianPrefilter", keep, [](MatcherParameters& p) { p.useMedianPrefilter = true; } },
+    { "numLayers", [](MatcherParameters& p) { p.maxTopDisparities = 0; },
+      [](MatcherParameters& p) { p.numLayers = p.numLayers == 2 ? 1 : 2; } },
+    { "maxTopDisparities", withScanlines, [](MatcherParameters& p) { p.maxTopDisparities = 20; } },
+    { "delta0", withTreesBelow, [](MatcherParameters& p) { p.delta0 = 0.3; } },
+    { "beta", withTreesBelow, [](MatcherParameters& p) { p.beta = 0.3; } },
+    { "gamma", keep, [](MatcherParameters& p) { p.gamma = 11; } },
+    { "colorTruncation", withColorGradient, [](MatcherParameters& p) { p.colorTruncation = 3; } },
+    { "gradientTruncation", withColorGradient, [](MatcherParameters& p) { p.gradientTruncation = 3; } },
+    { "colorWeight", withColorGradient, [](MatcherParameters& p) { p.colorWeight = 0.5; } },
+    { "disparityMedianSize", keep, [](MatcherParameters& p) { p.disparityMedianSize = 3; } },
+    { "disparityMedianPasses", keep, [](MatcherParameters& p) { p.disparityMedianPasses = 3; } },
+    { "matchingCost", withTreesBelow,
+      [](MatcherParameters& p) {
+          p.fillOcclusions = false;
+          p.matchingCost = 1 - p.matchingCost;
+      } },
+    { "disparityPrior", withTreesBelow, [](MatcherParameters& p) { p.disparityPrior = 1 - p.disparityPrior; } },
+    { "intervalMargin", withTreesBelow, [](MatcherParameters& p) { p.intervalMargin = 7; } },
+    { "useSubpixel", keep, [](MatcherParameters& p) { p.useSubpixel = !p.useSubpixel; } },
+    { "aggregation", withCensus, [](MatcherParameters& p) { p.aggregation = (p.aggregation + 1) % 3; } },
+    { "topAggregation", withScanlines,
+      [](MatcherParameters& p) { p.topAggregation = M::AGGREGATION_TREE_SCANLINES - p.topAggregation; } },
+    { "P1", withScanlines, [](MatcherParameters& p) { p.P1 = 3; } },
+    { "P2", withScanlines, [](MatcherParameters& p) { p.P2 = 33; } },
+    { "finestLayer", keep, [](MatcherParameters& p) { p.finestLayer = 1 - p.finestLayer; } },
+    { "scanlinePasses", withScanlines, [](MatcherParameters& p) { p.scanlinePasses = 3; } },
+    { "fillOcclusions", withCensus, [](MatcherParameters& p) { p.fillOcclusions = !p.fillOcclusions; } },
+    { "useNonLocalRefinement", withTreesBelow, [](MatcherParameters& p) { p.useNonLocalRefinement = true; } },
+    { "useTemporalPrediction", withCensus, [](MatcherParameters& p) { p.useTemporalPrediction = true; } },
+    { "treeStrategy", keep, [](MatcherParameters& p) { p.treeStrategy = createRandomTree(); } },
+    { "predictionModel", withTreesBelow,
+      [](MatcherParameters& p) {
+          p.predictionModel = DisparityPredictionModel::create();
+          for (int i = 0; i < 7; ++i)
+              p.predictionModel->addLayer({ 0 }, { 1 }, { 1 });
+      } },
+};
+
+TEST(HDPStereo_Plan, every_parameter_has_an_effect)
+{
+    for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
+        for (const Row& row : withEffect)
+        {
+            SCOPED_TRACE(format("preset %d, %s", preset, row.rule));
+            MatcherParameters p = parametersOf(preset);
+            row.context(p);
+            const std::string before = planText(p);
+            row.change(p);
+            EXPECT_NE(before, planText(p));
+        }
+}
+
+//! Without prediction there are no layers, and the plain tree algorithm matches the image.
+TEST(HDPStereo_Plan, without_prediction)
+{
+    for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
+    {
+        SCOPED_TRACE(preset);
+        MatcherParameters p = parametersOf(preset);
+        p.usePrediction = false;
+        const PairPlan plan = hdp::plan(p, imageSize, CV_8UC3);
+        ASSERT_EQ(1u, plan.layers.size());
+        const LayerPlan& layer = plan.finest();
+        EXPECT_EQ(0, layer.layer);
+        EXPECT_EQ(hdp::TREE_SUMS, layer.method);
+        EXPECT_TRUE(layer.trees.linksTrees);
+        EXPECT_FALSE(layer.restoresThinStructures);
+        EXPECT_EQ(p.useSubpixel, layer.hasFractions);
+        EXPECT_EQ(p.numDisparities, layer.numDisparities);
+        p.useNonLocalRefinement = true;
+        EXPECT_GT(hdp::plan(p, imageSize, CV_8UC3).finest().trees.refinementGamma, 0);
+        p.fillOcclusions = false;
+        p.matchingCost = M::COST_COLOR_GRADIENT;
+        EXPECT_NO_THROW(hdp::plan(p, imageSize, CV_8UC3)) << "trees can be grown over any cost";
+    }
+}
+
+TEST(HDPStereo_Plan, methods_of_the_presets)
+{
+    const hdp::LayerMethod tops[] = { hdp::TREE_SUMS, hdp::TREE_SCANLINES, hdp::TREE_SCANLINES, hdp::TREE_SCANLINES,
+                                      hdp::TREE_SCANLINES };
+    const hdp::LayerMethod below[] = { hdp::TREE_SUMS, hdp::WINDOW_SCANLINES, hdp::WINDOW_SCANLINES,
+                                       hdp::WINDOW_SCANLINES, hdp::TREE_SCANLINES };
+    for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
+    {
+        const PairPlan plan = hdp::plan(parametersOf(preset), imageSize, CV_8UC3);
+        EXPECT_EQ(tops[preset], plan.top().method) << preset;
+        for (size_t i = 1; i < plan.layers.size(); ++i)
+        {
+            EXPECT_EQ(plan.layers[i - 1].layer - 1, plan.layers[i].layer);
+            EXPECT_EQ(below[preset], plan.layers[i].method) << preset;
+        }
+        EXPECT_EQ(preset == M::PRESET_ULTRAFAST, plan.finest().layer == 1);
+    }
+}
+
+//! Noise of the image
+hdp::PairFindings withNoise(double deviation)
+{
+    hdp::PairFindings findings;
+    findings.noise.deviation = deviation;
+    return findings;
+}
+
+const hdp::VideoFindings single = { hdp::FIRST, true, false };
+
+TEST(HDPStereo_Plan, adapts_to_noise)
+{
+    const PairPlan plan = hdp::plan(parametersOf(M::PRESET_FAST), imageSize, CV_8UC3);
+    const PairPlan quiet = hdp::adapt(plan, withNoise(0), single);
+    EXPECT_EQ(0, quiet.finest().cost.tolerance);
+    EXPECT_EQ(1, quiet.top().cost.tolerance) << "rounding and shading";
+    const PairPlan some = hdp::adapt(plan, withNoise(2), single), much = hdp::adapt(plan, withNoise(4), single);
+    EXPECT_LT(0, some.finest().cost.tolerance);
+    EXPECT_LT(some.finest().cost.tolerance, much.finest().cost.tolerance);
+    EXPECT_FALSE(some.top().smoothsGuide);
+    EXPECT_TRUE(much.top().smoothsGuide) << "above the threshold";
+    EXPECT_GT(some.finest().passes[0].penalties.edgeSlope, much.finest().passes[0].penalties.edgeSlope);
+    EXPECT_EQ(hdp::CensusCost::mostTolerance + 0, hdp::adapt(plan, withNoise(1e4), single).finest().cost.tolerance);
+
+    MatcherParameters p = parametersOf(M::PRESET_FAST);
+    p.noiseThreshold = 0;
+    EXPECT_FALSE(hdp::adapt(hdp::plan(p, imageSize, CV_8UC3), withNoise(50), single).top().smoothsGuide);
+}
+
+//! The threshold is one of the finest layer's noise, whichever layer the image's size lets matches be followed to.
+TEST(HDPStereo_Plan, noise_threshold_does_not_depend_on_the_size)
+{
+    for (const int preset : { (int)M::PRESET_FAST, (int)M::PRESET_ULTRAFAST })
+    {
+        const hdp::AlignmentPlan alignment = hdp::plan(parametersOf(preset), imageSize, CV_8UC3).alignment;
+        for (double noise = 0.4; noise < 8; noise += 0.25) // of the finest layer
+            for (int layer = 0; layer < 3; ++layer)
+            {
+                const hdp::LayerNoise finest = { noise, alignment.finestLayer };
+                const hdp::LayerNoise seen = { finest.ofLayer(layer), layer };
+                EXPECT_EQ(noise > alignment.noiseThreshold, alignment.isNoisy(seen))
+                    << noise << " seen in layer " << layer;
+            }
+    }
+}
+
+TEST(HDPStereo_Plan, adapts_to_a_video)
+{
+    const struct
+    {
+        hdp::VideoFindings video;
+        bool isPredicted; // the top layer
+    } cases[] = { { { hdp::FIRST, true, false }, false },
+                  { { hdp::FIRST, false, true }, false },
+                  { { hdp::CONTINUED, true, true }, false },
+                  { { hdp::CONTINUED, false, false }, false },
+                  { { hdp::CONTINUED, false, true }, true } };
+    for (const int preset :
+         { (int)M::PRESET_FAST, (int)M::PRESET_ULTRAFAST, (int)M::PRESET_QUALITY, (int)M::PRESET_TREE })
+    {
+        MatcherParameters p = parametersOf(preset);
+        p.useTemporalPrediction = true;
+        const PairPlan plan = hdp::plan(p, imageSize, CV_8UC3);
+        EXPECT_TRUE(plan.finest().joinsLastFrame);
+        for (const auto& c : cases)
+        {
+            SCOPED_TRACE(format("preset %d, verdict %d, still %d, established %d", preset, c.video.verdict,
+                                c.video.isStill, c.video.isEstablished));
+            const PairPlan adapted = hdp::adapt(plan, withNoise(2), c.video);
+            const bool isMoving = c.video.verdict == hdp::CONTINUED && !c.video.isStill;
+            EXPECT_EQ(c.isPredicted, adapted.top().prefersLastFrame);
+            EXPECT_EQ(isMoving, adapted.finest().cost.tolerance == 0) << "faint texture counts in several frames";
+            const bool hasRepairs = preset == M::PRESET_FAST || preset == M::PRESET_QUALITY;
+            EXPECT_EQ(c.isPredicted && hasRepairs && plan.top().layer >= 2 ? hdp::COST_SCANLINES : hdp::TREE_SCANLINES,
+                      adapted.top().method);
+        }
+    }
+}
+
+TEST(HDPStereo_Plan, adapting_changes_nothing_else)
+{
+    for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
+    {
+        const PairPlan plan = hdp::plan(parametersOf(preset), imageSize, CV_8UC3);
+        PairPlan adapted = hdp::adapt(plan, hdp::PairFindings(), single);
+        for (size_t i = 0; i < plan.layers.size(); ++i)
+            adapted.layers[i].cost.tolerance = plan.layers[i].cost.tolerance;
+        EXPECT_EQ(textOf(plan), textOf(adapted)) << preset;
+    }
+}
+
+}} // namespace opencv_test
