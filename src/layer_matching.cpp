@@ -6,7 +6,10 @@
 
 #include "scanlines/candidate_windows.hpp"
 #include "forest/disparity_prediction.hpp"
-#include "map/disparity_refinement.hpp"
+#include "map/left_right_check.hpp"
+#include "map/median_filter.hpp"
+#include "map/occlusion_filling.hpp"
+#include "map/thin_structures.hpp"
 #include "pair/image_levels.hpp"
 #include "pair/image_pyramid.hpp"
 #include "paper/nonlocal_refinement.hpp"
