@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/map/disparity_refinement.hpp"
+#include "../src/map/left_right_check.hpp"
 #include "../src/paper/nonlocal_refinement.hpp"
 
 namespace opencv_test {

@@ -6,7 +6,7 @@
 #include "disparity_confidence.simd.hpp"
 #include "map/disparity_confidence.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
-#include "disparity_refinement.hpp"
+#include "left_right_check.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -4,7 +4,8 @@
 #include "../precomp.hpp"
 #include "disparity_output.hpp"
 
-#include "disparity_refinement.hpp"
+#include "left_right_check.hpp"
+#include "upsampling.hpp"
 #include "../base/disparity_units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -1,0 +1,64 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "visibility.simd.hpp"
+#include "../base/disparity_units.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+/** The left-right check of a row.
+@param disparity In 1 / subpixelScale pixel.
+@param width Of the row.
+@param invalid Disparity of pixels that map to no column, or a value that none has.
+@param maxDifference Of a visible pixel, in the same units.
+@param columns Memory for a row.
+@param nearest Memory for a row and one element.
+@param visibility Receives a Visibility per pixel. */
+void visibilityRow(const ushort* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
+                   uchar* visibility);
+void visibilityRow(const short* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
+                   uchar* visibility);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+//! As cvRound(disparity / 16.), for vectors: of two that are equally near the even one
+inline int roundedDisparity(int disparity)
+{
+    static_assert(subpixelScale == 1 << 4, "divided by a shift, so that negative ones are rounded as others");
+    return (disparity + subpixelScale / 2 - 1 + ((disparity >> 4) & 1)) >> 4;
+}
+
+template <typename T>
+void checkRow(const T* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
+              uchar* visibility)
+{
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        const int column = x + 1 - roundedDisparity(disparity[x]);
+        columns[x] = (column > 0) & (column <= width) & (disparity[x] != invalid) ? column : 0;
+    }
+    testVisibility(disparity, columns, width, width, maxDifference, nearest, visibility);
+}
+
+} // namespace
+
+void visibilityRow(const ushort* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
+                   uchar* visibility)
+{
+    checkRow(disparity, width, invalid, maxDifference, columns, nearest, visibility);
+}
+
+void visibilityRow(const short* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
+                   uchar* visibility)
+{
+    checkRow(disparity, width, invalid, maxDifference, columns, nearest, visibility);
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,198 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "../base/vectorized.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+/** A row of the median of size x size pixels.
+@param rows The `size` rows around it.
+@param size 3, 5 or 7.
+@param width Of the rows.
+@param sorted As many rows to work in, with size / 2 more columns on each side.
+@param filtered Receives the row. */
+void medianRow(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+// Pixels are less 32768 here: the minimum of two signed words is one instruction of SSE2, of unsigned ones two.
+
+inline void sortPair(short& a, short& b)
+{
+    const short smaller = std::min(a, b);
+    b = std::max(a, b);
+    a = smaller;
+}
+
+inline void sortThree(short& a, short& b, short& c)
+{
+    sortPair(a, b);
+    sortPair(b, c);
+    sortPair(a, b);
+}
+
+inline void sortFour(short& a, short& b, short& c, short& d)
+{
+    sortPair(a, b);
+    sortPair(c, d);
+    sortPair(a, c);
+    sortPair(b, d);
+    sortPair(b, c);
+}
+
+inline void sort(short (&v)[3]) { sortThree(v[0], v[1], v[2]); }
+
+inline void sort(short (&v)[5])
+{
+    sortFour(v[0], v[1], v[2], v[3]);
+    sortPair(v[3], v[4]);
+    sortPair(v[2], v[3]);
+    sortPair(v[1], v[2]);
+    sortPair(v[0], v[1]);
+}
+
+inline void sort(short (&v)[7])
+{
+    sortFour(v[0], v[1], v[2], v[3]);
+    sortThree(v[4], v[5], v[6]);
+    // Batcher's merging of four and three
+    sortPair(v[0], v[4]);
+    sortPair(v[1], v[5]);
+    sortPair(v[2], v[6]);
+    sortPair(v[2], v[4]);
+    sortPair(v[3], v[5]);
+    sortPair(v[1], v[2]);
+    sortPair(v[3], v[4]);
+    sortPair(v[5], v[6]);
+}
+
+inline short medianOfThree(short a, short b, short c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
+
+//! The median of kept[0 .. count - 1] and rest[0 .. count - 4]. Kept are more than half of them, so neither the minimum
+//! nor the maximum of kept can be the median: both are forgotten, and one of the rest takes their place.
+template <int count> struct Forgetful
+{
+    static CV_ALWAYS_INLINE short median(short* kept, const short* rest)
+    {
+        HDP_UNROLLED for (int i = 0; i < count / 2; ++i) sortPair(kept[i], kept[count - 1 - i]);
+        HDP_UNROLLED for (int i = 1; i < (count + 1) / 2; ++i) sortPair(kept[0], kept[i]);
+        HDP_UNROLLED for (int i = count / 2; i < count - 1; ++i) sortPair(kept[i], kept[count - 1]);
+        kept[0] = *rest;
+        return Forgetful<count - 1>::median(kept, rest + 1);
+    }
+};
+template <> struct Forgetful<3>
+{
+    static CV_ALWAYS_INLINE short median(short* kept, const short*) { return medianOfThree(kept[0], kept[1], kept[2]); }
+};
+
+// The median of a window of n x n, sorted along rows (i) and columns (j): element (i, j) is not smaller than the
+// (i + 1) (j + 1) elements above and on its left, itself among them, and not larger than the (n - i) (n - j) below and on
+// its right. If one of the two is more than half of the window, the element cannot be the median but by being equal to
+// it: what is near the first and the last corner drops out. So does the smaller of two elements if those that are not
+// smaller than either are more than half of the window, and the larger of two the other way round. As many drop out below
+// the median as above it, so it is the median of those that remain.
+
+inline short medianOfSorted(const short (&d)[3][3]) { return medianOfThree(d[0][2], d[1][1], d[2][0]); }
+
+inline short medianOfSorted(const short (&d)[5][5])
+{
+    const short low = std::max(d[1][2], d[2][1]), high = std::min(d[2][3], d[3][2]);
+    // The median of nine: low <= d[2][2] <= high and two groups of three
+    short a = std::max(d[0][3], d[3][0]), b = d[0][4], c = d[4][0];
+    short e = std::min(d[1][4], d[4][1]), f = d[1][3], g = d[3][1];
+    sortThree(a, b, c);
+    sortThree(e, f, g);
+    return medianOfThree(std::max(std::max(a, e), low), medianOfThree(b, f, d[2][2]), std::min(std::min(c, g), high));
+}
+
+//    . . . . a c x      . drops out
+//    . . . b d x H      x remains
+//    . . x x x G E      a to d: two of a letter, of which the larger remains
+//    . b x x x F .      E to H: two of a letter, of which the smaller remains
+//    a c x x x . .
+//    d x H F . . .
+//    x G E . . . .
+inline short medianOfSorted(const short (&w)[7][7])
+{
+    const short a = std::max(w[0][4], w[4][0]), b = std::max(w[1][3], w[3][1]);
+    const short c = std::max(w[0][5], w[4][1]), d = std::max(w[1][4], w[5][0]);
+    const short e = std::min(w[2][6], w[6][2]), f = std::min(w[3][5], w[5][3]);
+    const short g = std::min(w[2][5], w[6][1]), h = std::min(w[1][6], w[5][2]);
+    short kept[12] = { a, b, w[2][2], c, d, w[2][3], e, f, w[4][4], g, h, w[4][3] };
+    const short rest[9] = { w[3][2], w[3][4], w[0][6], w[6][0], w[1][5], w[5][1], w[2][4], w[4][2], w[3][3] };
+    return Forgetful<12>::median(kept, rest);
+}
+
+//! Sorts each column of the rows.
+template <int size>
+void sortColumns(const ushort* const (&rows)[size], const Range& columns, short* const (&sorted)[size])
+{
+    HDP_VECTORIZED for (int x = columns.start; x < columns.end; ++x)
+    {
+        short column[size];
+        HDP_UNROLLED for (int i = 0; i < size; ++i) column[i] = (short)(rows[i][x] ^ SHRT_MIN);
+        sort(column);
+        HDP_UNROLLED for (int i = 0; i < size; ++i) sorted[i][x] = column[i];
+    }
+}
+
+template <int size> void medianOfColumns(const short* const (&sorted)[size], const Range& columns, ushort* filtered)
+{
+    HDP_VECTORIZED for (int x = columns.start; x < columns.end; ++x)
+    {
+        short window[size][size];
+        HDP_UNROLLED for (int i = 0; i < size; ++i)
+        {
+            HDP_UNROLLED for (int j = 0; j < size; ++j) window[i][j] = sorted[i][x + j - size / 2];
+            sort(window[i]); // the columns remain sorted; the compiler leaves out what is not used
+        }
+        filtered[x] = (ushort)(medianOfSorted(window) ^ SHRT_MIN);
+    }
+}
+
+template <int size> void medianRow(const ushort* const* rows, int width, short* const* sorted, ushort* filtered)
+{
+    const int radius = size / 2;
+    const ushort* r[size];
+    short* s[size];
+    const short* columns[size];
+    for (int i = 0; i < size; ++i)
+    {
+        r[i] = rows[i];
+        columns[i] = s[i] = sorted[i];
+    }
+    // Whole vectors, of which the last ones overlap: what is left over would take as long, pixel by pixel.
+    const int vectors = 32;
+    const Range whole(0, width / vectors * vectors), last(std::max(width - vectors, 0), width);
+    sortColumns(r, whole, s);
+    sortColumns(r, last, s);
+    for (int i = 0; i < size; ++i) // the border is replicated
+    {
+        std::fill(s[i] - radius, s[i], s[i][0]);
+        std::fill(s[i] + width, s[i] + width + radius, s[i][width - 1]);
+    }
+    medianOfColumns(columns, whole, filtered);
+    medianOfColumns(columns, last, filtered);
+}
+
+} // namespace
+
+void medianRow(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered)
+{
+    if (size == 3)
+        medianRow<3>(rows, width, sorted, filtered);
+    else if (size == 5)
+        medianRow<5>(rows, width, sorted, filtered);
+    else
+        medianRow<7>(rows, width, sorted, filtered);
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,39 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "occlusion_filling.hpp"
+
+#include "occlusion_filling.simd.hpp"
+#include "map/occlusion_filling.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
+#include "../base/grey_levels.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+HDP_DISPATCH(fillOccludedRow)
+
+//! The number of columns, from the left border on, that are black
+int countBlank(const ushort* grey, int width)
+{
+    const int black = 2 * greyScale; // at most, as JPEG leaves it
+    return (int)(std::find_if(grey, grey + width, [=](ushort level) { return level > black; }) - grey);
+}
+
+} // namespace
+
+void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right)
+{
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        OcclusionScratch scratch(disparity.cols);
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const int blank = right.empty() ? 0 : countBlank(right.ptr<ushort>(y), right.cols);
+            dispatched::fillOccludedRow(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, blank, scratch);
+        }
+    });
+}
+
+}}} // namespace cv::stereo::hdp

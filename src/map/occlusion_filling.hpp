@@ -1,0 +1,44 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_OCCLUSION_FILLING_HPP
+#define OPENCV_HDPSTEREO_OCCLUSION_FILLING_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! Memory for a row of fillOccluded(), by pixel; by column of the right image where it is said
+struct OcclusionScratch
+{
+    explicit OcclusionScratch(int width)
+        : columns(width), nearest((size_t)width + 1), keys(width), bestKeys((size_t)width + 1), isBest(width),
+          isShown(width), visibility(width)
+    {
+    }
+
+    std::vector<int> columns;       // of the right image that each pixel maps to, from 1 on; 0: none
+    std::vector<int> nearest;       // by column: the maximum disparity that maps to it
+    std::vector<unsigned> keys;     // by which the minimum wins a column: residual, then disparity
+    std::vector<unsigned> bestKeys; // by column: the key that won it
+    std::vector<uchar> isBest;      // whether the pixel has the disparity that won its column
+    std::vector<uchar> isShown;     // whether the pixel keeps its disparity
+    std::vector<uchar> visibility;  // whether nearer pixels hide it, whatever the residuals are
+};
+
+/** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the
+pixels that map to one column of the right image the one with the lowest residual is there; those whose disparity is
+another one, and those that map to no column, are not. Nor are single pixels between two that are not, nor what is left
+of a surface that begins at the border of the right image: the last run of four pixels it shows, without steps, of which
+the first one is in column 0, 1 or 2; or one that is nearer than what is before it, if nearer pixels hide three quarters
+of that from the right image, or it maps to no column, and an eighth at most is visible in columns that are not blank. The
+surface is continued to the left border, half as steep as its first columns are.
+@param disparity CV_16UC1, a disparity map; changed.
+@param residual Matching costs, CV_8UC1.
+@param right Grey levels of the right image, CV_16UC1, see greyLevels(): columns on its left are blank that are black, as
+rectification leaves them. None if empty. */
+CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right = Mat());
+
+}}} // namespace cv::stereo::hdp
+
+#endif

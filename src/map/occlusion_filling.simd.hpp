@@ -1,0 +1,213 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+// Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "occlusion_filling.hpp"
+#include "visibility.simd.hpp"
+#include "../base/disparity_units.hpp"
+#include <cstring>
+
+namespace cv { namespace stereo { namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+//! fillOccluded() for one row. scratch: of this width; blank: columns of the right image, from its left border on, that
+//! show nothing.
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int blank, OcclusionScratch& scratch);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+const int minSurface = 4; // columns of a surface at the border of the right image
+const int nearBorder = 3; // columns of the right image, from 1 on, that count as its border
+
+// A surface begins at the border, too, if of the pixels on its left one in minPerBest at most is the best match of its
+// column.
+const int minPerBest = 7;
+
+// A surface hides what is on its left if one pixel in minPerVisible at most is visible, and one in minPerShown at most is
+// not hidden by nearer ones.
+const int minPerVisible = 8, minPerShown = 4;
+static_assert(minPerVisible % minPerShown == 0, "mapToRight() divides them");
+
+// Columns of the surface at the border that tell its slope: as many as are filled, within these limits
+const int minSlopeColumns = 8, maxSlopeColumns = 32;
+
+//! The first byte from begin on that has this value, or end
+inline int findByte(const uchar* bytes, int begin, int end, uchar value)
+{
+    if (begin >= end) // also tells GCC that the length below is not negative
+        return end;
+    const void* found = std::memchr(bytes + begin, value, (size_t)(end - begin));
+    return found ? (int)((const uchar*)found - bytes) : end;
+}
+
+//! Whether a surface ends between a pixel and the one before
+inline bool isStep(const ushort* disparity, int x) { return std::abs(disparity[x] - disparity[x - 1]) > subpixelScale; }
+
+//! What is known of a row before surfaces are looked for
+struct RowLimits
+{
+    int border;       // from this pixel on no surface begins at the border of the right image
+    int hiding;       // from this pixel on no surface leaves so few columns to what is on its left that it hides it
+    int maxDisparity; // of the row
+};
+
+//! Maps the pixels of a row to the right image: OcclusionScratch::columns and keys.
+inline RowLimits mapToRight(const ushort* disparity, const uchar* residual, int width, int blank,
+                            OcclusionScratch& scratch)
+{
+    int* columns = scratch.columns.data();
+    unsigned* keys = scratch.keys.data();
+    int border = 0, hiding = 0, maxDisparity = 0;
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        const int column = std::max(x + 1 - wholeDisparity(disparity[x]), 0);
+        columns[x] = column;
+        maxDisparity = std::max(maxDisparity, (int)disparity[x]);
+        border = std::max(border, column <= nearBorder ? x + 1 : 0);
+        // The columns that pixels on the left of x can have: of the visible ones, and of those that are not hidden
+        const bool leavesFew = minPerVisible * (column - blank) <= (1 + minPerVisible / minPerShown) * x;
+        hiding = std::max(hiding, leavesFew ? x + 1 : 0);
+        keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
+    }
+    const RowLimits limits = { border, hiding, maxDisparity };
+    return limits;
+}
+
+//! Marks the pixels that have the disparity of the best match of their column, but for a pixel.
+inline void markBestMatches(const ushort* disparity, int width, OcclusionScratch& scratch)
+{
+    unsigned *best = scratch.bestKeys.data(), *keys = scratch.keys.data();
+    const int* columns = scratch.columns.data();
+    uchar* isBest = scratch.isBest.data();
+    std::fill(best, best + width + 1, UINT_MAX);
+    for (int x = 0; x < width; ++x)
+        best[columns[x]] = std::min(best[columns[x]], keys[x]);
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) keys[x] = best[columns[x]];
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        const int difference = (int)(0xffff - (keys[x] & 0xffff)) - disparity[x];
+        isBest[x] = (uchar)((columns[x] > 0) & (difference <= subpixelScale) & (difference >= -subpixelScale));
+    }
+}
+
+//! Where the part of the row begins that the right image shows: at the last surface of best matches that begins at the
+//! border of the right image. One that begins farther inside counts, too, if hardly a pixel before it is a best match.
+inline int findBorder(const ushort* disparity, const OcclusionScratch& scratch, int width, int end)
+{
+    const uchar* isBest = scratch.isBest.data();
+    const int* columns = scratch.columns.data();
+    int border = 0, bestBefore = 0;
+    for (int begin = findByte(isBest, 0, width, 1); begin < width && (begin < end || minPerBest * bestBefore < width);)
+    {
+        const int runEnd = findByte(isBest, begin, width, 0);
+        for (int x = begin; x < runEnd; ++x)
+        {
+            const bool isAtBorder = columns[x] <= nearBorder;
+            if (!isAtBorder && (x > begin || minPerBest * bestBefore > x))
+                break;
+            int surfaceEnd = x + 1;
+            while (surfaceEnd < std::min(x + minSurface, runEnd) && !isStep(disparity, surfaceEnd))
+                ++surfaceEnd;
+            if (surfaceEnd == x + minSurface)
+                border = x;
+        }
+        bestBefore += runEnd - begin;
+        begin = findByte(isBest, runEnd, width, 1);
+    }
+    return border;
+}
+
+/** Where the part of the row begins that the right image shows, if matches by chance are the best ones of their columns:
+at the last surface that hides what is on its left, whatever the residuals are.
+@param border What findBorder() has found.
+@param limit RowLimits::hiding. */
+inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int width, int blank, int border,
+                             int limit)
+{
+    const int* columns = scratch.columns.data();
+    int last = limit - 1;
+    while (last > border && !isStep(disparity, last))
+        --last;
+    if (last <= border)
+        return border;
+
+    const int end = std::min(2 * last + minSurface, width); // surfaces farther on are not so near that they hide much
+    uchar* visibility = scratch.visibility.data();
+    testVisibility(disparity, columns, end, width, subpixelScale, scratch.nearest.data(), visibility);
+    const auto isHidden = [=](int x) { return visibility[x] != VISIBLE; };
+    int visibleBefore = 0, hiddenBefore = 0;
+    for (int x = 0; x <= last && x + minSurface <= end; ++x)
+    {
+        const bool hides = minPerVisible * visibleBefore <= x && minPerShown * (x - hiddenBefore) <= x;
+        if (hides && x > border && (isHidden(x - 1) || isStep(disparity, x)))
+        {
+            int next = x;
+            while (next < x + minSurface && !isHidden(next) && (next == x || !isStep(disparity, next)))
+                ++next;
+            if (next == x + minSurface)
+                border = x;
+        }
+        hiddenBefore += isHidden(x);
+        visibleBefore += !isHidden(x) && columns[x] > blank;
+    }
+    return border;
+}
+
+//! Continues the surface that begins at this pixel to the left border, half as steep as it is: most surfaces are bent.
+inline void continueSurface(ushort* disparity, const uchar* isShown, int begin, int width, int maxDisparity)
+{
+    const int last = std::min(width, begin + std::min(std::max(begin, +minSlopeColumns), +maxSlopeColumns));
+    int end = begin + 1;
+    while (end < last && isShown[end] && !isStep(disparity, end))
+        ++end;
+    const int half = (end - begin) / 2;
+    if (2 * half < minSlopeColumns)
+        return std::fill(disparity, disparity + begin, disparity[begin]);
+    int rise = 0; // between the halves, times half
+    for (int x = begin; x < begin + half; ++x)
+        rise += disparity[x + half] - disparity[x];
+    const int first = disparity[begin], scale = 2 * half * half;
+    for (int x = 0; x < begin; ++x)
+    {
+        const int fall = std::abs(rise) * (begin - x), steps = (fall + scale / 2) / scale;
+        disparity[x] = (ushort)std::min(std::max(first + (rise > 0 ? -steps : steps), 0), maxDisparity);
+    }
+}
+
+//! Gives the pixels that are not shown the farther one of the disparities on both sides.
+inline void fillGaps(ushort* disparity, const uchar* isShown, int width, int maxDisparity)
+{
+    for (int begin = findByte(isShown, 0, width, 0); begin < width;)
+    {
+        const int end = findByte(isShown, begin, width, 1);
+        if (begin == 0 && end < width)
+            continueSurface(disparity, isShown, end, width, maxDisparity);
+        else if (begin > 0)
+            std::fill(disparity + begin, disparity + end,
+                      std::min(disparity[begin - 1], disparity[end < width ? end : begin - 1]));
+        begin = findByte(isShown, end, width, 0);
+    }
+}
+
+} // namespace
+
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int blank, OcclusionScratch& scratch)
+{
+    const RowLimits limits = mapToRight(disparity, residual, width, blank, scratch);
+    markBestMatches(disparity, width, scratch);
+    const int border = findBorder(disparity, scratch, width, limits.border);
+    uchar *isBest = scratch.isBest.data(), *isShown = scratch.isShown.data();
+    std::fill(isBest, isBest + findHidingSurface(disparity, scratch, width, blank, border, limits.hiding), (uchar)0);
+    isShown[0] = isBest[0];
+    isShown[width - 1] = isBest[width - 1];
+    // Single best matches between others are by chance.
+    HDP_VECTORIZED for (int x = 1; x < width - 1; ++x) isShown[x] = isBest[x] & (isBest[x - 1] | isBest[x + 1]);
+    fillGaps(disparity, isShown, width, limits.maxDisparity);
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,112 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "../src/map/occlusion_filling.hpp"
+
+namespace opencv_test { namespace {
+
+// In one row; whole disparities.
+Mat filled(const std::vector<int>& disparities, const std::vector<int>& residuals, const Mat& right = Mat())
+{
+    Mat disparity(1, (int)disparities.size(), CV_16UC1), residual(disparity.size(), CV_8UC1);
+    for (int x = 0; x < disparity.cols; ++x)
+    {
+        disparity.at<ushort>(x) = (ushort)(16 * disparities[x]);
+        residual.at<uchar>(x) = (uchar)residuals[x];
+    }
+    hdp::fillOccluded(disparity, residual, right);
+    return disparity / 16;
+}
+
+TEST(HDPStereo_OcclusionFilling, occluded_pixels_get_the_farther_disparity)
+{
+    // Columns 4 and 5 of disparity 1 lie behind columns 6 and 7 of disparity 3: both map to 3 and 4. Column 0 is within a
+    // pixel of what is there.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 9 }, { 0, 1, 1, 1, 1, 1, 3, 3, 3 })),
+                    filled({ 0, 1, 1, 1, 1, 1, 3, 3, 3 }, { 5, 0, 0, 0, 9, 9, 1, 1, 1 }));
+    // An outlier, in front of what it would hide, that matches badly
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 8 }, { 1, 1, 1, 1, 1, 1, 1, 1 })),
+                    filled({ 1, 1, 1, 1, 1, 4, 1, 1 }, { 9, 0, 0, 0, 0, 8, 0, 0 }));
+    // Nothing is visible: all map beside the right image.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 3 }, { 4, 5, 6 })), filled({ 4, 5, 6 }, { 0, 0, 0 }));
+}
+
+TEST(HDPStereo_OcclusionFilling, what_is_left_of_a_surface_at_the_border_is_not_visible)
+{
+    // A surface of disparity 4 begins in column 0 of the right image. Two of the pixels on its left match better there,
+    // but it is seen from column 2 on.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 12 }, { 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4 })),
+                    filled({ 0, 0, 0, 0, 4, 4, 4, 4, 4, 4, 4, 4 }, { 0, 0, 9, 9, 5, 5, 5, 5, 5, 5, 5, 5 }));
+    // Three columns of disparity 6 stand in front of a background that is seen on both sides of them.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 12 }, { 1, 1, 1, 1, 1, 1, 1, 6, 6, 6, 1, 1 })),
+                    filled({ 1, 1, 1, 1, 1, 1, 1, 6, 6, 6, 1, 1 }, { 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1 }));
+}
+
+TEST(HDPStereo_OcclusionFilling, what_is_left_of_the_first_surface_is_not_visible)
+{
+    // The surface is seen from column 4 of the right image on. On its left all but one pixel map to what it has itself, or
+    // beside the right image.
+    const std::vector<int> residuals = { 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 0, 0, 0, 0, 0, 0, 0, 0 };
+    std::vector<int> disparities = { 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 8, 8, 8, 8, 8, 8, 8, 8 };
+    const Mat surface(1, (int)disparities.size(), CV_16UC1, Scalar(8));
+    for (int x = 0; x < 12; ++x)
+        disparities[x] = x < 5 ? x + 1 : x - 5; // no column, and column 5
+    disparities[3] = 1;                         // column 2, which nothing else maps to
+    expectIdentical(surface, filled(disparities, residuals));
+}
+
+TEST(HDPStereo_OcclusionFilling, a_match_by_chance_in_an_occlusion_is_not_visible)
+{
+    // Columns 5 to 7 lie behind disparity 4. Column 6 matches one that column 4 has.
+    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 12 }, { 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 4 })),
+                    filled({ 1, 1, 1, 1, 1, 1, 3, 1, 4, 4, 4, 4 }, { 1, 1, 1, 1, 1, 9, 0, 9, 1, 1, 1, 1 }));
+}
+
+//! A block of the smallest disparities beside a surface that maps to the same columns, whatever matches better
+TEST(HDPStereo_OcclusionFilling, what_a_nearer_surface_hides_is_not_visible)
+{
+    const int width = 40, blockEnd = 16;
+    std::vector<int> disparities(width, 14), residuals(width, 9);
+    std::fill(disparities.begin(), disparities.begin() + blockEnd, 0); // the surface has column 2 and those after it
+    std::fill(residuals.begin(), residuals.begin() + blockEnd, 1);
+    expectIdentical(Mat(1, width, CV_16UC1, Scalar(14)), filled(disparities, residuals));
+
+    // Four columns are left to the block: it is visible, unless they are black in the right image.
+    std::fill(disparities.begin() + blockEnd, disparities.end(), 12);
+    Mat right(1, width, CV_16UC1, Scalar(400));
+    EXPECT_EQ(0, filled(disparities, residuals, right).at<ushort>(0));
+    right.colRange(0, 4).setTo(Scalar(0));
+    expectIdentical(Mat(1, width, CV_16UC1, Scalar(12)), filled(disparities, residuals, right));
+}
+
+//! On the left of the right image's border a surface goes on, half as steep.
+TEST(HDPStereo_OcclusionFilling, slanted_surface_at_the_border)
+{
+    for (int rise : { -4, 0, 4 }) // per column, in 1/16 pixel
+    {
+        SCOPED_TRACE(rise);
+        const int width = 80, border = 24; // the surface has column 0 there
+        Mat disparity(1, width, CV_16UC1), residual(1, width, CV_8UC1, Scalar(0)), result;
+        for (int x = 0; x < width; ++x)
+            disparity.at<ushort>(x) = (ushort)(x < border ? 16 * 60 : 16 * border + rise * (x - border));
+        disparity.copyTo(result);
+        hdp::fillOccluded(result, residual);
+        const int visible = border + 4;
+        expectIdentical(Mat(disparity.colRange(visible, width)), Mat(result.colRange(visible, width)));
+        for (int x = 0; x < border; ++x)
+            ASSERT_EQ(rise / 2, result.at<ushort>(x + 1) - result.at<ushort>(x)) << "at " << x;
+    }
+}
+
+TEST(HDPStereo_OcclusionFilling, visible_pixels_are_not_filled)
+{
+    RNG rng(47);
+    Mat disparity(40, 60, CV_16UC1, Scalar(16 * 5 + 3)), residual = randomImage(rng, Size(60, 40), CV_8UC1, 30), result;
+    disparity.copyTo(result);
+    hdp::fillOccluded(result, residual);
+    expectIdentical(disparity, result); // a plane, and its left border
+}
+
+}} // namespace opencv_test
