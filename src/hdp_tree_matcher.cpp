@@ -14,7 +14,12 @@ namespace {
 
 //! The setter and the getter of a parameter
 #define HDP_PARAMETER(type, Name, member)                                                                              \
-    void set##Name(type value) CV_OVERRIDE { setParameter(p_, &MatcherParameters::member, value); }                    \
+    void set##Name(type value) CV_OVERRIDE                                                                             \
+    {                                                                                                                  \
+        MatcherParameters changed = p_;                                                                                \
+        changed.member = value;                                                                                        \
+        change(changed);                                                                                               \
+    }                                                                                                                  \
     type get##Name() const CV_OVERRIDE { return p_.member; }
 
 class HDPTreeMatcherImpl CV_FINAL : public HDPTreeMatcher
@@ -54,46 +59,46 @@ public:
     HDP_PARAMETER(int, Disp12MaxDiff, disp12MaxDiff)
 
     // HDPTreeMatcher
-    Ptr<TreeStrategy> getTreeStrategy() const CV_OVERRIDE { return p_.treeStrategy; }
-    void setTreeStrategy(const Ptr<TreeStrategy>& value) CV_OVERRIDE { hdp::setTreeStrategy(p_, value); }
-    Ptr<DisparityPredictionModel> getPredictionModel() const CV_OVERRIDE { return p_.predictionModel; }
-    void setPredictionModel(const Ptr<DisparityPredictionModel>& value) CV_OVERRIDE { p_.predictionModel = value; }
-    HDP_PARAMETER(bool, UsePrediction, usePrediction)
-    HDP_PARAMETER(bool, UseMedianPrefilter, useMedianPrefilter)
-    HDP_PARAMETER(int, NumLayers, numLayers)
-    HDP_PARAMETER(int, MaxTopDisparities, maxTopDisparities)
-    HDP_PARAMETER(double, Delta0, delta0)
-    HDP_PARAMETER(double, Beta, beta)
-    HDP_PARAMETER(double, Gamma, gamma)
-    HDP_PARAMETER(double, ColorTruncation, colorTruncation)
-    HDP_PARAMETER(double, GradientTruncation, gradientTruncation)
-    HDP_PARAMETER(double, ColorWeight, colorWeight)
-    HDP_PARAMETER(int, DisparityMedianSize, disparityMedianSize)
-    HDP_PARAMETER(int, DisparityMedianPasses, disparityMedianPasses)
-    HDP_PARAMETER(int, MatchingCost, matchingCost)
-    HDP_PARAMETER(int, DisparityPrior, disparityPrior)
-    HDP_PARAMETER(int, IntervalMargin, intervalMargin)
-    HDP_PARAMETER(bool, UseSubpixel, useSubpixel)
-    HDP_PARAMETER(int, Aggregation, aggregation)
-    HDP_PARAMETER(int, TopAggregation, topAggregation)
-    HDP_PARAMETER(int, P1, P1)
-    HDP_PARAMETER(int, P2, P2)
-    HDP_PARAMETER(int, FinestLayer, finestLayer)
-    HDP_PARAMETER(int, ScanlinePasses, scanlinePasses)
-    HDP_PARAMETER(bool, FillOcclusions, fillOcclusions)
+    void setParams(const Params& params) CV_OVERRIDE
+    {
+        MatcherParameters changed = p_;
+        static_cast<Params&>(changed) = params;
+        change(changed);
+    }
+    Params getParams() const CV_OVERRIDE { return p_; }
     HDP_PARAMETER(int, DisparityDepth, disparityDepth)
-    HDP_PARAMETER(bool, UseNonLocalRefinement, useNonLocalRefinement)
     HDP_PARAMETER(bool, UseTemporalPrediction, useTemporalPrediction)
     HDP_PARAMETER(int, MaxRowOffset, maxRowOffset)
     HDP_PARAMETER(bool, UseLightAlignment, useLightAlignment)
     HDP_PARAMETER(double, NoiseThreshold, noiseThreshold)
-
-    void getSearchRatios(std::vector<double>& ratios) const CV_OVERRIDE
+    Ptr<TreeStrategy> getTreeStrategy() const CV_OVERRIDE { return p_.treeStrategy; }
+    void setTreeStrategy(const Ptr<TreeStrategy>& strategy) CV_OVERRIDE
     {
-        ratios.assign(result_.isMatched ? result_.plan.top().layer + 1 : 0, 0);
-        for (const LayerPlan& layer : result_.plan.layers)
-            if (result_.isMatched)
-                ratios[layer.layer] = layers_[layer.layer].searchRatio;
+        MatcherParameters changed = p_;
+        changed.treeStrategy = strategy;
+        change(changed);
+    }
+
+    Findings getFindings() const CV_OVERRIDE
+    {
+        const Result r = result_.isMatched ? result_ : Result();
+        const RowModel rows = r.findings.rows.about(r.plan.shift());
+        const LightModel light = r.findings.light.scaled(1 / r.brightness);
+        Findings findings;
+        findings.rows.assign(rows.coefficients.val, rows.coefficients.val + RowModel::terms);
+        findings.areRowsMoved = r.findings.hasRows;
+        findings.light.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
+        findings.isLightChanged = r.findings.hasLight;
+        findings.noise = 0;
+        if (!r.isMatched)
+            return findings;
+        findings.noise = r.findings.noise.ofLayer(r.plan.finest().layer) / r.brightness;
+        findings.searchRatios.assign(r.plan.top().layer + 1, 0);
+        for (const LayerPlan& layer : r.plan.layers)
+            findings.searchRatios[layer.layer] = layers_[layer.layer].searchRatio;
+        findings.stages = clock_.stages;
+        findings.stageTimes = clock_.milliseconds;
+        return findings;
     }
 
     void getForest(OutputArray treesArray, OutputArray intervalsArray) const CV_OVERRIDE
@@ -155,36 +160,10 @@ public:
             confidence.setTo(Scalar(0), output_.rejected);
     }
 
-    bool getRowAlignment(std::vector<double>& model) const CV_OVERRIDE
-    {
-        const RowModel rows = result_.isMatched ? result_.findings.rows.about(result_.plan.shift()) : RowModel();
-        model.assign(rows.coefficients.val, rows.coefficients.val + RowModel::terms);
-        return result_.isMatched && result_.findings.hasRows;
-    }
-
-    bool getLightAlignment(std::vector<double>& model) const CV_OVERRIDE
-    {
-        const LightModel light =
-            result_.isMatched ? result_.findings.light.scaled(1 / result_.brightness) : LightModel();
-        model.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
-        return result_.isMatched && result_.findings.hasLight;
-    }
-
-    double getNoiseLevel() const CV_OVERRIDE
-    {
-        return result_.isMatched ? result_.findings.noise.deviation / result_.brightness : 0;
-    }
-
-    void getStageTimes(std::vector<String>& stages, std::vector<double>& milliseconds) const CV_OVERRIDE
-    {
-        stages = result_.isMatched ? clock_.stages : std::vector<String>();
-        milliseconds = result_.isMatched ? clock_.milliseconds : std::vector<double>();
-    }
-
     // cv::Algorithm
     void clear() CV_OVERRIDE { temporal_.clear(); }
 
-    String getDefaultName() const CV_OVERRIDE { return "hdpstereo_HDPTreeMatcher"; }
+    String getDefaultName() const CV_OVERRIDE { return "StereoMatcher.HDPTree"; }
 
     void write(FileStorage& fs) const CV_OVERRIDE
     {
@@ -194,7 +173,8 @@ public:
 
     void read(const FileNode& fn) CV_OVERRIDE
     {
-        if (!fn.isMap() || !fn["name"].isString() || (String)fn["name"] != getDefaultName())
+        const String name = fn.isMap() && fn["name"].isString() ? (String)fn["name"] : String();
+        if (name != getDefaultName() && name != "hdpstereo_HDPTreeMatcher") // of version 1.0
             CV_Error(Error::StsParseError, "name must be " + getDefaultName());
         p_ = readParameters(fn, p_.treeStrategy);
         temporal_.clear();
@@ -209,6 +189,13 @@ private:
         PairFindings findings;
         double brightness = 1; // of the levels that were matched, relative to those of the images
     };
+
+    //! To values that are valid, or not at all
+    void change(const MatcherParameters& parameters)
+    {
+        checkParameters(parameters);
+        p_ = parameters;
+    }
 
     //! Whether the last compute() matched this layer
     bool hasLayer(int layer) const
@@ -306,10 +293,22 @@ private:
 
 Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities, int preset)
 {
-    MatcherParameters parameters = presetParameters(preset);
-    setParameter(parameters, &MatcherParameters::minDisparity, minDisparity);
-    setParameter(parameters, &MatcherParameters::numDisparities, numDisparities);
+    MatcherParameters parameters(preset);
+    parameters.minDisparity = minDisparity;
+    parameters.numDisparities = numDisparities;
+    checkParameters(parameters);
     return makePtr<HDPTreeMatcherImpl>(parameters);
+}
+
+Ptr<HDPTreeMatcher> HDPTreeMatcher::createLike(const Ptr<StereoSGBM>& sgbm, int preset)
+{
+    if (!sgbm)
+        CV_Error(Error::StsNullPtr, "sgbm must not be empty");
+    const Ptr<HDPTreeMatcher> matcher = create(sgbm->getMinDisparity(), sgbm->getNumDisparities(), preset);
+    matcher->setDisp12MaxDiff(sgbm->getDisp12MaxDiff());
+    matcher->setSpeckleWindowSize(sgbm->getSpeckleWindowSize());
+    matcher->setSpeckleRange(std::max(sgbm->getSpeckleRange(), 0));
+    return matcher;
 }
 
 }} // namespace cv::stereo

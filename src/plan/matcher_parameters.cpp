@@ -4,264 +4,252 @@
 #include "../precomp.hpp"
 #include "matcher_parameters.hpp"
 
-#include "../scanlines/scanline_aggregation.hpp"
 #include "../forest/tree_strategy.hpp"
+#include "../scanlines/scanline_aggregation.hpp"
 
 #include <cmath>
 
-namespace cv { namespace stereo { namespace hdp {
+// The parameters by name: presets, valid values, files.
+
+namespace cv { namespace stereo {
 
 namespace {
 
-typedef MatcherParameters P;
 typedef HDPTreeMatcher M;
 
-const int maxPenalty = ScanlinePenalties::largest;
+const int maxPenalty = hdp::ScanlinePenalties::largest;
 
-bool isPositive(double value) { return std::isfinite(value) && value > 0; }
-bool isNotNegative(double value) { return std::isfinite(value) && value >= 0; }
 bool isIn(int value, int first, int last) { return first <= value && value <= last; }
-bool isOddIn(int value, int first, int last) { return isIn(value, first, last) && value % 2 == 1; }
+bool isNotNegative(double value) { return std::isfinite(value) && value >= 0; }
 
-//! Of a valid value
-template <typename T> struct Condition
-{
-    typedef bool (*Type)(T);
-};
+// The lists, in the order of a file: name, value, whether it is valid, and the valid values in words. Parameters and
+// Visitor may be constant.
 
-// clang-format off
-//! The list of the parameters, in the order of a file: name, member, valid values in words and as a condition if not
-//! all of them are
-template <typename Visitor> void visitParameters(Visitor&& visit)
+//! What only cv::StereoMatcher has
+template <typename Parameters, typename Visitor> void visitRange(Parameters& p, const Visitor& visit)
 {
-    visit("minDisparity", &P::minDisparity);
-    visit("numDisparities", &P::numDisparities, "> 0", [](int v) { return v > 0; });
-    visit("blockSize", &P::blockSize);
-    visit("speckleWindowSize", &P::speckleWindowSize);
-    visit("speckleRange", &P::speckleRange, ">= 0", [](int v) { return v >= 0; });
-    visit("disp12MaxDiff", &P::disp12MaxDiff);
-    visit("maxRowOffset", &P::maxRowOffset, ">= 0", [](int v) { return v >= 0; });
-    visit("useLightAlignment", &P::useLightAlignment);
-    visit("noiseThreshold", &P::noiseThreshold, "finite and >= 0", isNotNegative);
-    visit("usePrediction", &P::usePrediction);
-    visit("useMedianPrefilter", &P::useMedianPrefilter);
-    visit("numLayers", &P::numLayers, "in 1..16", [](int v) { return isIn(v, 1, 16); });
-    visit("maxTopDisparities", &P::maxTopDisparities, ">= 0", [](int v) { return v >= 0; });
-    visit("delta0", &P::delta0, "in [0, 1) or AUTO", [](double v) { return v == M::AUTO || (v >= 0 && v < 1); });
-    visit("beta", &P::beta, "in [0, 1] or AUTO", [](double v) { return v == M::AUTO || (v >= 0 && v <= 1); });
-    visit("gamma", &P::gamma, "finite and > 0", isPositive);
-    visit("colorTruncation", &P::colorTruncation, "finite and >= 0", isNotNegative);
-    visit("gradientTruncation", &P::gradientTruncation, "finite and >= 0", isNotNegative);
-    visit("colorWeight", &P::colorWeight, "in [0, 1]", [](double v) { return v >= 0 && v <= 1; });
-    visit("disparityMedianSize", &P::disparityMedianSize, "0, 3, 5, 7 or AUTO",
-          [](int v) { return v == M::AUTO || v == 0 || isOddIn(v, 3, 7); });
-    visit("disparityMedianPasses", &P::disparityMedianPasses, "in 1..8", [](int v) { return isIn(v, 1, 8); });
-    visit("matchingCost", &P::matchingCost, "COST_COLOR_GRADIENT or COST_CENSUS",
-          [](int v) { return v == M::COST_COLOR_GRADIENT || v == M::COST_CENSUS; });
-    visit("disparityPrior", &P::disparityPrior, "PRIOR_SUPPORT_POINTS or PRIOR_UPPER_LAYER",
-          [](int v) { return v == M::PRIOR_SUPPORT_POINTS || v == M::PRIOR_UPPER_LAYER; });
-    visit("intervalMargin", &P::intervalMargin, "in 0..64", [](int v) { return isIn(v, 0, 64); });
-    visit("useSubpixel", &P::useSubpixel);
-    visit("aggregation", &P::aggregation, "AGGREGATION_TREES, AGGREGATION_SCANLINES or AGGREGATION_TREE_SCANLINES",
-          [](int v) { return isIn(v, M::AGGREGATION_TREES, M::AGGREGATION_TREE_SCANLINES); });
-    visit("topAggregation", &P::topAggregation, "AGGREGATION_TREES or AGGREGATION_TREE_SCANLINES",
-          [](int v) { return v == M::AGGREGATION_TREES || v == M::AGGREGATION_TREE_SCANLINES; });
-    visit("P1", &P::P1, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
-    visit("P2", &P::P2, "in 0..100", [](int v) { return isIn(v, 0, maxPenalty); });
-    visit("finestLayer", &P::finestLayer, "in 0..15", [](int v) { return isIn(v, 0, 15); });
-    visit("scanlinePasses", &P::scanlinePasses, "in 1..4", [](int v) { return isIn(v, 1, 4); });
-    visit("fillOcclusions", &P::fillOcclusions);
-    visit("disparityDepth", &P::disparityDepth, "CV_16S or CV_32F", [](int v) { return v == CV_16S || v == CV_32F; });
-    visit("useNonLocalRefinement", &P::useNonLocalRefinement);
-    visit("useTemporalPrediction", &P::useTemporalPrediction);
+    visit("minDisparity", p.minDisparity);
+    visit("numDisparities", p.numDisparities, p.numDisparities > 0, "> 0");
+    visit("speckleWindowSize", p.speckleWindowSize);
+    visit("speckleRange", p.speckleRange, p.speckleRange >= 0, ">= 0");
+    visit("disp12MaxDiff", p.disp12MaxDiff);
 }
-// clang-format on
 
-template <typename T> struct ParameterSetter
+//! HDPTreeMatcher::Params, but for what is not a number
+template <typename Parameters, typename Visitor> void visitParams(Parameters& p, const Visitor& visit)
 {
-    MatcherParameters& parameters;
-    T P::*const parameter;
-    const T value;
+    visit("disparityDepth", p.disparityDepth, p.disparityDepth == CV_16S || p.disparityDepth == CV_32F,
+          "CV_16S or CV_32F");
+    visit("useTemporalPrediction", p.useTemporalPrediction);
+    visit("maxRowOffset", p.maxRowOffset, p.maxRowOffset >= 0, ">= 0");
+    visit("useLightAlignment", p.useLightAlignment);
+    visit("noiseThreshold", p.noiseThreshold, isNotNegative(p.noiseThreshold), "finite and >= 0");
+    visit("usePrediction", p.usePrediction);
+    visit("numLayers", p.numLayers, isIn(p.numLayers, 1, 16), "in 1..16");
+    visit("maxTopDisparities", p.maxTopDisparities, p.maxTopDisparities >= 0, ">= 0");
+    visit("finestLayer", p.finestLayer, isIn(p.finestLayer, 0, 15), "in 0..15");
+    visit("matchingCost", p.matchingCost, isIn(p.matchingCost, M::COST_COLOR_GRADIENT, M::COST_CENSUS),
+          "COST_COLOR_GRADIENT or COST_CENSUS");
+    visit("blockSize", p.blockSize);
+    visit("colorTruncation", p.colorTruncation, isNotNegative(p.colorTruncation), "finite and >= 0");
+    visit("gradientTruncation", p.gradientTruncation, isNotNegative(p.gradientTruncation), "finite and >= 0");
+    visit("colorWeight", p.colorWeight, p.colorWeight >= 0 && p.colorWeight <= 1, "in [0, 1]");
+    visit("aggregation", p.aggregation, isIn(p.aggregation, M::AGGREGATION_TREES, M::AGGREGATION_TREE_SCANLINES),
+          "AGGREGATION_TREES, AGGREGATION_SCANLINES or AGGREGATION_TREE_SCANLINES");
+    visit("topAggregation", p.topAggregation,
+          p.topAggregation == M::AGGREGATION_TREES || p.topAggregation == M::AGGREGATION_TREE_SCANLINES,
+          "AGGREGATION_TREES or AGGREGATION_TREE_SCANLINES");
+    visit("gamma", p.gamma, isNotNegative(p.gamma) && p.gamma > 0, "finite and > 0");
+    visit("useMedianPrefilter", p.useMedianPrefilter);
+    visit("disparityPrior", p.disparityPrior, isIn(p.disparityPrior, M::PRIOR_SUPPORT_POINTS, M::PRIOR_UPPER_LAYER),
+          "PRIOR_SUPPORT_POINTS or PRIOR_UPPER_LAYER");
+    visit("delta0", p.delta0, p.delta0 == M::AUTO || (p.delta0 >= 0 && p.delta0 < 1), "in [0, 1) or AUTO");
+    visit("beta", p.beta, p.beta == M::AUTO || (p.beta >= 0 && p.beta <= 1), "in [0, 1] or AUTO");
+    visit("intervalMargin", p.intervalMargin, isIn(p.intervalMargin, 0, 64), "in 0..64");
+    visit("P1", p.P1, isIn(p.P1, 0, maxPenalty), "in 0..100");
+    visit("P2", p.P2, isIn(p.P2, 0, maxPenalty), "in 0..100");
+    visit("scanlinePasses", p.scanlinePasses, isIn(p.scanlinePasses, 1, 4), "in 1..4");
+    visit("useSubpixel", p.useSubpixel);
+    const int side = p.disparityMedianSize;
+    visit("disparityMedianSize", p.disparityMedianSize,
+          side == M::AUTO || side == 0 || side == 3 || side == 5 || side == 7, "0, 3, 5, 7 or AUTO");
+    visit("disparityMedianPasses", p.disparityMedianPasses, isIn(p.disparityMedianPasses, 1, 8), "in 1..8");
+    visit("fillOcclusions", p.fillOcclusions);
+    visit("useNonLocalRefinement", p.useNonLocalRefinement);
+}
 
-    void operator()(const char* name, T P::*member, const char* valid = "",
-                    typename Condition<T>::Type isValid = nullptr) const
+struct Checker
+{
+    template <typename T> void operator()(const char* name, T value, bool isValid = true, const char* valid = "") const
     {
-        if (member != parameter)
+        if (isValid)
             return;
-        if (isValid && !isValid(value))
-        {
-            std::ostringstream message;
-            message << name << " must be " << valid << ", not " << value;
-            CV_Error(Error::StsOutOfRange, message.str());
-        }
-        parameters.*member = value;
-    }
-    template <typename Other>
-    void operator()(const char*, Other P::*, const char* = "", typename Condition<Other>::Type = nullptr) const
-    {
+        std::ostringstream message;
+        message << name << " must be " << valid << ", not " << value;
+        CV_Error(Error::StsOutOfRange, message.str());
     }
 };
 
-struct ParameterWriter
+struct Writer
 {
-    const MatcherParameters& parameters;
     FileStorage& fs;
 
-    template <typename T>
-    void operator()(const char* name, T P::*member, const char* = "", typename Condition<T>::Type = nullptr) const
+    template <typename T> void operator()(const char* name, T value, bool = true, const char* = "") const
     {
-        fs << name << parameters.*member;
+        fs << name << value;
     }
-    void operator()(const char* name, bool P::*member, const char* = "", bool (*)(bool) = nullptr) const
-    {
-        fs << name << (int)(parameters.*member);
-    }
+    void operator()(const char* name, bool value) const { fs << name << (int)value; }
 };
 
-struct ParameterReader
+struct Reader
 {
     const FileNode& fn;
-    MatcherParameters& parameters;
 
-    void operator()(const char* name, int P::*member, const char* = "", bool (*)(int) = nullptr) const
+    template <typename T> void operator()(const char* name, T& value, bool = true, const char* = "") const
     {
         const FileNode node = fn[name];
-        if (!node.empty())
-            setParameter(parameters, member, number<int>(node, name, node.isInt()));
-    }
-    void operator()(const char* name, double P::*member, const char* = "", bool (*)(double) = nullptr) const
-    {
-        const FileNode node = fn[name];
-        if (!node.empty())
-            setParameter(parameters, member, number<double>(node, name, node.isInt() || node.isReal()));
-    }
-    void operator()(const char* name, bool P::*member, const char* = "", bool (*)(bool) = nullptr) const
-    {
-        const FileNode node = fn[name];
-        if (!node.empty())
-            setParameter(parameters, member, number<int>(node, name, node.isInt()) != 0);
-    }
-
-private:
-    template <typename T> static T number(const FileNode& node, const char* name, bool isNumber)
-    {
-        if (!isNumber)
+        if (node.empty())
+            return;
+        if (!node.isInt() && !(std::is_same<T, double>::value && node.isReal()))
             CV_Error(Error::StsParseError, format("%s must be a number", name));
-        return (T)node;
+        value = (T)node;
+    }
+    void operator()(const char* name, bool& value) const
+    {
+        int number = value;
+        operator()(name, number);
+        value = number != 0;
     }
 };
+
+void checkParams(const M::Params& params)
+{
+    visitParams(params, Checker());
+    if (!params.treeStrategy)
+        CV_Error(Error::StsNullPtr, "treeStrategy must not be empty");
+}
 
 Ptr<TreeStrategy> readStrategy(const FileNode& fn, const Ptr<TreeStrategy>& own)
 {
     if (!fn.isMap() || !fn["strategy"].isString())
         CV_Error(Error::StsParseError, "treeStrategy must name a strategy");
     const String name = (String)fn["strategy"];
-    const Ptr<TreeStrategy> strategy = createTreeStrategy(name);
+    const Ptr<TreeStrategy> strategy = hdp::createTreeStrategy(name);
     if (strategy)
     {
         strategy->read(fn);
         return strategy;
     }
-    if (name != own->getDefaultName()) // only the caller can create it
+    if (!own || name != own->getDefaultName()) // only the caller can create it
         CV_Error(Error::StsParseError, "treeStrategy: set a strategy named " + name + " before reading");
     return own;
 }
 
 } // namespace
 
-MatcherParameters presetParameters(int preset)
+HDPTreeMatcher::Params::Params(int preset)
 {
-    if (preset < M::PRESET_PAPER || preset > M::PRESET_TREE)
+    if (preset < PRESET_PAPER || preset > PRESET_TREE)
         CV_Error(Error::StsOutOfRange, format("preset must be one of HDPTreeMatcher::PRESET_*, not %d", preset));
-    MatcherParameters p;
-    if (preset == M::PRESET_PAPER)
-        return p;
+    const bool isPaper = preset == PRESET_PAPER, isTree = preset == PRESET_TREE, isQuality = preset == PRESET_QUALITY;
+    const bool hasScanlines = !isPaper && !isTree;
 
-    p.maxRowOffset = 64;
-    p.useLightAlignment = true;
-    p.noiseThreshold = 3;
-    p.matchingCost = M::COST_CENSUS;
-    p.blockSize = 7;
-    p.gamma = 20;
-    p.useSubpixel = true;
-    p.disparityMedianSize = 5;
-    p.fillOcclusions = true;
-    if (preset == M::PRESET_TREE)
-    {
-        p.numLayers = 2;
-        p.maxTopDisparities = 64;
-        p.aggregation = M::AGGREGATION_TREE_SCANLINES;
-        p.disparityPrior = M::PRIOR_UPPER_LAYER;
-        p.intervalMargin = 2;
-        p.delta0 = 0.02;
-        p.beta = 0.9;
-        return p;
-    }
+    disparityDepth = CV_16S;
+    useTemporalPrediction = false;
 
-    p.aggregation = M::AGGREGATION_SCANLINES;
-    p.treeStrategy = createSegmentTree();
-    p.topAggregation = M::AGGREGATION_TREE_SCANLINES;
-    p.maxTopDisparities = 32;
-    if (preset == M::PRESET_ULTRAFAST)
-        p.finestLayer = 1;
-    if (preset == M::PRESET_QUALITY)
-    {
-        p.numLayers = 2;
-        p.maxTopDisparities = 48;
-        p.scanlinePasses = 2;
-        p.disparityMedianSize = 7;
-        p.disparityMedianPasses = 2;
-    }
-    return p;
+    maxRowOffset = isPaper ? 0 : 64;
+    useLightAlignment = !isPaper;
+    noiseThreshold = isPaper ? 0 : 3;
+
+    usePrediction = true;
+    numLayers = isQuality || isTree ? 2 : 3; // PAPER: as in the authors' program; "L = 3" in the paper would be four
+    maxTopDisparities = isPaper ? 0 : isTree ? 64 : isQuality ? 48 : 32;
+    finestLayer = preset == PRESET_ULTRAFAST ? 1 : 0;
+
+    matchingCost = isPaper ? COST_COLOR_GRADIENT : COST_CENSUS;
+    blockSize = isPaper ? 1 : 7;
+    colorTruncation = 10; // these three, and the gamma of PAPER, are from the authors' program; the paper has no values
+    gradientTruncation = 2;
+    colorWeight = 0.11;
+
+    aggregation = isPaper ? AGGREGATION_TREES : isTree ? AGGREGATION_TREE_SCANLINES : AGGREGATION_SCANLINES;
+    topAggregation = hasScanlines ? AGGREGATION_TREE_SCANLINES : AGGREGATION_TREES;
+    treeStrategy = hasScanlines ? createSegmentTree() : createMinimumSpanningTree();
+    gamma = isPaper ? 25.5 : 20;
+    useMedianPrefilter = false;
+
+    disparityPrior = isTree ? PRIOR_UPPER_LAYER : PRIOR_SUPPORT_POINTS;
+    delta0 = isTree ? 0.02 : (double)AUTO;
+    beta = isTree ? 0.9 : (double)AUTO;
+    intervalMargin = isTree ? 2 : 0;
+
+    P1 = 16;
+    P2 = 65;
+    scanlinePasses = isQuality ? 2 : 1;
+
+    useSubpixel = !isPaper;
+    disparityMedianSize = isPaper ? (int)AUTO : isQuality ? 7 : 5;
+    disparityMedianPasses = isQuality ? 2 : 1;
+    fillOcclusions = !isPaper;
+    useNonLocalRefinement = false;
 }
 
-template <typename T> void setParameter(MatcherParameters& parameters, T MatcherParameters::*parameter, const T& value)
+void HDPTreeMatcher::Params::write(FileStorage& fs) const
 {
-    const ParameterSetter<T> setter = { parameters, parameter, value };
-    visitParameters(setter);
-}
-
-template void setParameter(MatcherParameters&, int MatcherParameters::*, const int&);
-template void setParameter(MatcherParameters&, double MatcherParameters::*, const double&);
-template void setParameter(MatcherParameters&, bool MatcherParameters::*, const bool&);
-
-void setTreeStrategy(MatcherParameters& parameters, const Ptr<TreeStrategy>& strategy)
-{
-    if (!strategy)
-        CV_Error(Error::StsNullPtr, "treeStrategy must not be empty");
-    parameters.treeStrategy = strategy;
-}
-
-void writeParameters(const MatcherParameters& parameters, FileStorage& fs)
-{
-    const ParameterWriter writer = { parameters, fs };
-    visitParameters(writer);
+    visitParams(*this, Writer{ fs });
+    CV_Assert(treeStrategy);
     fs << "treeStrategy"
        << "{"
-       << "strategy" << parameters.treeStrategy->getDefaultName();
-    parameters.treeStrategy->write(fs);
+       << "strategy" << treeStrategy->getDefaultName();
+    treeStrategy->write(fs);
     fs << "}";
-    if (parameters.predictionModel)
+    if (predictionModel)
     {
         fs << "predictionModel"
            << "{";
-        parameters.predictionModel->write(fs);
+        predictionModel->write(fs);
         fs << "}";
     }
 }
 
-MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ownStrategy)
+void HDPTreeMatcher::Params::read(const FileNode& fn)
 {
-    MatcherParameters p;
-    const ParameterReader reader = { fn, p };
-    visitParameters(reader);
-    p.treeStrategy = readStrategy(fn["treeStrategy"], ownStrategy);
+    Params params(PRESET_PAPER);
+    visitParams(params, Reader{ fn });
+    params.treeStrategy = readStrategy(fn["treeStrategy"], treeStrategy);
     if (!fn["predictionModel"].empty())
     {
-        p.predictionModel = DisparityPredictionModel::create();
-        p.predictionModel->read(fn["predictionModel"]);
+        params.predictionModel = DisparityPredictionModel::create();
+        params.predictionModel->read(fn["predictionModel"]);
     }
-    return p;
+    checkParams(params);
+    *this = params;
 }
 
-}}} // namespace cv::stereo::hdp
+namespace hdp {
+
+void checkParameters(const MatcherParameters& parameters)
+{
+    visitRange(parameters, Checker());
+    checkParams(parameters);
+}
+
+void writeParameters(const MatcherParameters& parameters, FileStorage& fs)
+{
+    visitRange(parameters, Writer{ fs });
+    parameters.write(fs);
+}
+
+MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ownStrategy)
+{
+    MatcherParameters parameters;
+    visitRange(parameters, Reader{ fn });
+    parameters.treeStrategy = ownStrategy; // for files that name it
+    parameters.read(fn);
+    checkParameters(parameters);
+    return parameters;
+}
+
+} // namespace hdp
+
+}} // namespace cv::stereo
