@@ -10,19 +10,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-namespace {
-
-//! The layers above the image are kept in a buffer; the image itself belongs to the caller.
-void buildPyramid(const Mat& image, int layers, std::vector<Mat>& pyramid)
-{
-    pyramid.resize(layers);
-    pyramid[0] = image;
-    for (int layer = 1; layer < layers; ++layer)
-        halveImage(pyramid[layer - 1], pyramid[layer]);
-}
-
-} // namespace
-
 void checkPair(const Mat& left, const Mat& right)
 {
     if (left.empty())
@@ -74,12 +61,12 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidSettings&
         }
         if (settings.smoothsBlocks)
             smoothBlocks(pyramids.leftLevels, pyramids.rightLevels);
-        buildPyramid(pyramids.leftLevels, layers, pyramids.leftGrey);
-        buildPyramid(pyramids.rightLevels, layers, pyramids.right);
+        buildPyramid({ pyramids.leftLevels }, layers, pyramids.leftGrey);
+        buildPyramid({ pyramids.rightLevels }, layers, pyramids.right);
     }
     else
-        buildPyramid(byteLevels(shifted, bits, pyramids.rightBytes), layers, pyramids.right);
-    buildPyramid(byteLevels(extended, bits, pyramids.leftBytes), layers, pyramids.left);
+        buildPyramid({ byteLevels(shifted, bits, pyramids.rightBytes) }, layers, pyramids.right);
+    buildPyramid({ byteLevels(extended, bits, pyramids.leftBytes) }, layers, pyramids.left);
     images.resize(layers);
     for (int layer = 0; layer < layers; ++layer)
     {
