@@ -41,7 +41,7 @@ public:
 
         if (!matchPair(left, right, settings))
         {
-            temporal_.clear();
+            lastFrame_.clear();
             matchPair(left, right, settings);
         }
 
@@ -193,7 +193,7 @@ public:
     }
 
     // cv::Algorithm
-    void clear() CV_OVERRIDE { temporal_.clear(); }
+    void clear() CV_OVERRIDE { lastFrame_.clear(); }
 
     String getDefaultName() const CV_OVERRIDE { return "hdpstereo_HDPTreeMatcher"; }
 
@@ -208,7 +208,7 @@ public:
         if (!fn.isMap() || !fn["name"].isString() || (String)fn["name"] != getDefaultName())
             CV_Error(Error::StsParseError, "name must be " + getDefaultName());
         p_ = readParameters(fn, p_.treeStrategy);
-        temporal_.clear();
+        lastFrame_.clear();
     }
 
 private:
@@ -240,9 +240,12 @@ private:
     {
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
-            const PyramidSettings pyramid = { p_.minDisparity,       settings.extension,
-                                              settings.layers,       p_.matchingCost == COST_CENSUS,
-                                              p_.noiseThreshold > 0, lastBrightening() };
+            const PyramidSettings pyramid = {
+                p_.minDisparity,           settings.extension,
+                settings.layers,           p_.matchingCost == COST_CENSUS,
+                p_.noiseThreshold > 0,     p_.useTemporalPrediction && !lastFrame_.isEmpty(),
+                lastFrame_.key.brightening
+            };
             buildPairPyramids(left, right, pyramid, pyramids_, images);
         });
 
@@ -254,39 +257,35 @@ private:
             });
 
         if (p_.useTemporalPrediction)
-            clock_.run("temporal prediction", [&] { follow(images[settings.finestLayer].left, settings.finestLayer); });
+            clock_.run("temporal prediction",
+                       [&] { predict(images[settings.finestLayer].left, settings.finestLayer); });
         else
-            temporal_ = TemporalState();
-        const int age = temporal_.age;
-        if (age == 0 && pyramids_.isDimmed)
+            lastFrame_ = FrameMemory();
+        if (p_.useTemporalPrediction && prediction_.verdict == FIRST && pyramids_.isDimmed)
             return false; // not the next frame after all
 
+        Verdict verdict = FIRST;
         layers_.resize(settings.layers);
         for (int layer = settings.layers - 1; layer >= settings.finestLayer; --layer)
         {
             const MatchedLayer* const upper = layer + 1 < settings.layers ? &layers_[layer + 1] : nullptr;
-            TemporalState* const temporal = p_.useTemporalPrediction ? &temporal_ : nullptr;
-            const LayerInput input = { layer, images[layer], upper, p_, settings, result_.alignment, temporal };
-            matchLayer(input, buffers_, clock_, layers_[layer]);
+            const FramePrediction* const prediction = p_.useTemporalPrediction ? &prediction_ : nullptr;
+            const LayerInput input = { layer,    images[layer],     upper,      p_,
+                                       settings, result_.alignment, lastFrame_, prediction };
+            verdict = matchLayer(input, buffers_, clock_, layers_[layer]);
         }
-        return temporal_.age == age;
-    }
-
-    int lastBrightening() const
-    {
-        return p_.useTemporalPrediction && !temporal_.last.disparity.empty() ? temporal_.layer.brightening
-                                                                             : noBrightening;
+        if (p_.useTemporalPrediction)
+            std::swap(lastFrame_, buffers_.frame);
+        return verdict != CONTRADICTED;
     }
 
     //! What a frame has to do with the one before
-    void follow(const Mat& left, int finestLayer)
+    void predict(const Mat& left, int finestLayer)
     {
         const int scale = 1 << finestLayer;
-        const TemporalLayer layer = { scale, p_.minDisparity / (double)scale,
-                                      largestDisparity(p_.numDisparities, finestLayer), pyramids_.brightening };
-        followVideo(left, layer, temporal_);
-        if (temporal_.age > 0)
-            findSources(temporal_);
+        const FrameKey key = { scale, p_.minDisparity / (double)scale, largestDisparity(p_.numDisparities, finestLayer),
+                               pyramids_.brightening };
+        predictFrame(left, key, lastFrame_, buffers_.video, prediction_);
     }
 
     //! Without the columns that are added to the images
@@ -318,7 +317,8 @@ private:
     std::vector<MatchedLayer> layers_;
     LayerBuffers buffers_;
     OutputBuffers output_;
-    TemporalState temporal_;
+    FrameMemory lastFrame_; // of a video
+    FramePrediction prediction_;
 };
 
 } // namespace

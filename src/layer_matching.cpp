@@ -57,7 +57,7 @@ int censusTolerance(const LayerInput& in)
 {
     // Faint texture is worth more than noise costs if the noise of several frames averages out. Where nothing moves, the
     // disparities of the last frame are kept anyway.
-    if (in.temporal && in.temporal->age > 0 && !in.temporal->motion.isStill && in.layer < coarseLayer)
+    if (in.prediction && in.prediction->isMoving() && in.layer < coarseLayer)
         return 0;
     const int tolerance = cvRound(toleratedNoise * greyScale * in.alignment.noise.ofLayer(in.layer));
     return std::min(std::max(tolerance, (int)(in.layer >= coarseLayer)), CensusCost::mostTolerance + 0);
@@ -147,11 +147,12 @@ VolumePenalties volumePenalties(const MatcherParameters& p)
     return { scale * p.P1 / 2, std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
 }
 
-bool hasPrior(const LayerInput& in) { return in.isTop() && in.temporal && hasPrior(*in.temporal); }
+bool hasPrior(const LayerInput& in) { return in.isTop() && in.prediction && hasPrior(in.lastFrame, *in.prediction); }
 
 void preferLastFrame(const LayerInput& in, bool areMeans, CostVolume& volume)
 {
-    preferLastFrame(*in.temporal, 1 << (in.layer - in.settings.finestLayer), areMeans, volume);
+    const int side = 1 << (in.layer - in.settings.finestLayer);
+    preferLastFrame(in.lastFrame, *in.prediction, side, areMeans, volume);
 }
 
 //! Scanlines over the means of the costs in the layer's trees
@@ -289,7 +290,7 @@ void filter(const LayerInput& in, MatchedLayer& matched)
 
 } // namespace
 
-void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
+Verdict matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched)
 {
     matched.prior.clear();
     const bool hasTrees = in.parameters.aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES;
@@ -302,9 +303,14 @@ void matchLayer(const LayerInput& in, LayerBuffers& buffers, StageClock& clock, 
         aggregateScanlines(in, buffers, clock, matched);
     if (in.parameters.useNonLocalRefinement && hasTrees)
         clock.run("non-local refinement", [&] { refine(in, buffers, matched); });
-    if (in.temporal && in.isFinest())
-        clock.run("temporal prediction", [&] { joinLastFrame(matched.census, *in.temporal, matched.winner); });
+    Verdict verdict = FIRST;
+    if (in.prediction && in.isFinest())
+        clock.run("temporal prediction", [&] {
+            verdict = joinLastFrame(matched.census, in.lastFrame, *in.prediction, buffers.video, buffers.frame,
+                                    matched.winner);
+        });
     clock.run("disparity median", [&] { filter(in, matched); });
+    return verdict;
 }
 
 }}} // namespace cv::stereo::hdp

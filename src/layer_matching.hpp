@@ -48,7 +48,8 @@ struct LayerInput
     const MatcherParameters& parameters;
     const PairSettings& settings;
     const PairAlignment& alignment;
-    TemporalState* temporal; // what is known of the video; none if it is not used
+    const FrameMemory& lastFrame;      // of the video
+    const FramePrediction* prediction; // of this frame; none if videos are not predicted
 
     bool isTop() const { return !upper; }
     bool isFinest() const { return layer == settings.finestLayer; }
@@ -73,10 +74,13 @@ struct LayerBuffers
     ScanlineBuffers scanlines;
     CostVolume volume;
     VolumeScanlineBuffers volumeScanlines;
+    VideoScratch video;
+    FrameMemory frame; // what the finest layer leaves to the next frame of a video
 };
 
-//! Section 3: from the disparities of the layer above to those of this layer
-void matchLayer(const LayerInput& input, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched);
+//! Section 3: from the disparities of the layer above to those of this layer. Returns what the frame is to the last one of
+//! a video, as joinLastFrame() does.
+Verdict matchLayer(const LayerInput& input, LayerBuffers& buffers, StageClock& clock, MatchedLayer& matched);
 
 }}} // namespace cv::stereo::hdp
 

@@ -51,7 +51,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidSettings&
         greyLevels(extended, bits, pyramids.leftLevels);
         greyLevels(shifted, bits, pyramids.rightLevels);
         const int unused = countUnusedBits(pyramids.leftLevels, pyramids.rightLevels);
-        pyramids.isDimmed = unused == settings.lastBrightening + 1;
+        pyramids.isDimmed = settings.isContinued && unused == settings.lastBrightening + 1;
         pyramids.brightening = unused - pyramids.isDimmed;
         if (pyramids.brightening > 0)
         {

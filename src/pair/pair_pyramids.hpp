@@ -41,11 +41,9 @@ struct PyramidSettings
     int layers;          // their number
     bool isCensus;       // whether the matching cost gets grey levels, see greyLevels(), instead of byteLevels()
     bool smoothsBlocks;  // of grey levels, see smoothBlocks()
-    int lastBrightening; // that of the frame before: kept if one more is possible, so that a video seldom changes it
+    bool isContinued;    // whether the pair follows another one, in a video
+    int lastBrightening; // of that pair: kept if one more is possible, so that a video seldom changes it
 };
-
-//! In place of lastBrightening: no pair was before.
-const int noBrightening = -2;
 
 /** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,
 see countUnusedBits(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well exposed.
