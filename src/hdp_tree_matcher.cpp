@@ -5,6 +5,7 @@
 
 #include "layer_matching.hpp"
 #include "map/disparity_confidence.hpp"
+#include "video/temporal_prior.hpp"
 
 namespace cv { namespace stereo {
 
@@ -39,7 +40,7 @@ public:
 
         if (matchPair(left, right, pairPlan) == CONTRADICTED)
         {
-            temporal_.clear();
+            lastFrame_.clear();
             matchPair(left, right, pairPlan);
         }
 
@@ -161,7 +162,7 @@ public:
     }
 
     // cv::Algorithm
-    void clear() CV_OVERRIDE { temporal_.clear(); }
+    void clear() CV_OVERRIDE { lastFrame_.clear(); }
 
     String getDefaultName() const CV_OVERRIDE { return "StereoMatcher.HDPTree"; }
 
@@ -177,7 +178,7 @@ public:
         if (name != getDefaultName() && name != "hdpstereo_HDPTreeMatcher") // of version 1.0
             CV_Error(Error::StsParseError, "name must be " + getDefaultName());
         p_ = readParameters(fn, p_.treeStrategy);
-        temporal_.clear();
+        lastFrame_.clear();
     }
 
 private:
@@ -210,50 +211,47 @@ private:
     Verdict matchPair(const Mat& left, const Mat& right, const PairPlan& pairPlan)
     {
         const int finest = pairPlan.finest().layer;
+        if (!pairPlan.followsVideo)
+            lastFrame_ = FrameMemory();
         std::vector<LayerImages> images;
-        clock_.run("image pyramid",
-                   [&] { buildPairPyramids(left, right, pairPlan.pyramids, lastBrightening(), pyramids_, images); });
+        clock_.run("image pyramid", [&] {
+            const int* const lastBrightening = lastFrame_.isEmpty() ? nullptr : &lastFrame_.key.brightening;
+            buildPairPyramids(left, right, pairPlan.pyramids, lastBrightening, pyramids_, images);
+        });
         result_.brightness = 1 << pyramids_.brightening;
         if (pairPlan.alignment.looksForAnything())
             clock_.run("alignment",
                        [&] { alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings); });
         VideoFindings video = { FIRST, true, false };
         if (pairPlan.followsVideo)
-            clock_.run("temporal prediction", [&] { video = follow(images[finest].left, finest); });
-        else
-            temporal_ = TemporalState();
+            clock_.run("temporal prediction", [&] { video = predict(images[finest].left, finest); });
         if (video.verdict == FIRST && pyramids_.isDimmed)
-            return CONTRADICTED;
+            return CONTRADICTED; // it is not the next frame after all
 
         result_.plan = adapt(pairPlan, result_.findings, video);
         layers_.resize(pairPlan.top().layer + 1);
         scratch_.resize(layers_.size());
         const LayerResult* upper = nullptr;
+        Verdict verdict = FIRST;
         for (const LayerPlan& layer : result_.plan.layers)
         {
-            const LayerInput input = { result_.plan, layer, images[layer.layer], upper, &temporal_ };
-            matchLayer(input, scratch_[layer.layer], shared_, clock_, layers_[layer.layer]);
+            const LayerInput input = { result_.plan, layer, images[layer.layer], upper, lastFrame_, prediction_ };
+            verdict = matchLayer(input, scratch_[layer.layer], shared_, clock_, layers_[layer.layer]);
             upper = &layers_[layer.layer];
         }
-        return video.verdict == CONTINUED && temporal_.age == 0 ? CONTRADICTED : video.verdict;
+        if (pairPlan.followsVideo)
+            std::swap(lastFrame_, shared_.frame);
+        return verdict;
     }
 
-    int lastBrightening() const
-    {
-        return p_.useTemporalPrediction && !temporal_.last.disparity.empty() ? temporal_.layer.brightening
-                                                                             : noBrightening;
-    }
-
-    //! What a frame has to do with the one before
-    VideoFindings follow(const Mat& left, int finestLayer)
+    //! What a frame is to the one before
+    VideoFindings predict(const Mat& left, int finestLayer)
     {
         const int scale = 1 << finestLayer;
-        const TemporalLayer layer = { scale, p_.minDisparity / (double)scale,
-                                      largestDisparity(p_.numDisparities, finestLayer), pyramids_.brightening };
-        followVideo(left, layer, temporal_);
-        if (temporal_.age > 0)
-            findSources(temporal_);
-        return { temporal_.age > 0 ? CONTINUED : FIRST, temporal_.motion.isStill, temporal_.age > 1 };
+        const FrameKey key = { scale, p_.minDisparity / (double)scale, largestDisparity(p_.numDisparities, finestLayer),
+                               pyramids_.brightening };
+        predictFrame(left, key, lastFrame_, shared_.video, prediction_);
+        return { prediction_.verdict, prediction_.motion.isStill, hasPrior(lastFrame_, prediction_) };
     }
 
     //! Without the columns that are added to the images
@@ -286,7 +284,8 @@ private:
     std::vector<LayerScratch> scratch_;
     SharedScratch shared_;
     OutputBuffers output_;
-    TemporalState temporal_;
+    FrameMemory lastFrame_; // of a video
+    FramePrediction prediction_;
 };
 
 } // namespace

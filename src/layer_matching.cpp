@@ -35,7 +35,7 @@ public:
     {
     }
 
-    void run()
+    Verdict run()
     {
         result_.prior.clear();
         clock_.run("matching cost", [&] { prepareCost(); });
@@ -47,9 +47,14 @@ public:
             matchTrees();
         if (plan_.trees.refinementGamma > 0)
             clock_.run("non-local refinement", [&] { refine(); });
+        Verdict verdict = FIRST;
         if (plan_.joinsLastFrame)
-            clock_.run("temporal prediction", [&] { joinLastFrame(own_.census, *in_.video, result_.winners); });
+            clock_.run("temporal prediction", [&] {
+                verdict = joinLastFrame(own_.census, in_.lastFrame, in_.prediction, shared_.video, shared_.frame,
+                                        result_.winners);
+            });
         clock_.run("disparity median", [&] { filter(); });
+        return verdict;
     }
 
 private:
@@ -153,7 +158,7 @@ private:
     void preferLastFrame(bool areMeans)
     {
         const int side = 1 << (plan_.layer - in_.pair.finest().layer);
-        hdp::preferLastFrame(*in_.video, side, areMeans, shared_.volume);
+        hdp::preferLastFrame(in_.lastFrame, in_.prediction, side, areMeans, shared_.volume);
     }
 
     //! Scanlines over the costs as they are, and what the last frame predicts
@@ -259,10 +264,10 @@ private:
 
 } // namespace
 
-void matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
-                LayerResult& result)
+Verdict matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
+                   LayerResult& result)
 {
-    LayerMatching(input, own, shared, clock, result).run();
+    return LayerMatching(input, own, shared, clock, result).run();
 }
 
 }}} // namespace cv::stereo::hdp

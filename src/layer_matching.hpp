@@ -28,8 +28,9 @@ struct LayerInput
     const PairPlan& pair;
     const LayerPlan& plan;
     const LayerImages& images;
-    const LayerResult* upper; // the layer above; none at the top layer
-    TemporalState* video;     // what is known of the video; none if it is not used
+    const LayerResult* upper;          // the layer above; none at the top layer
+    const FrameMemory& lastFrame;      // of a video
+    const FramePrediction& prediction; // of this frame, if it is one of a video
 };
 
 //! Memory of one layer, kept for the next pair
@@ -69,11 +70,14 @@ struct SharedScratch
     ScanlineBuffers scanlines;
     CostVolume volume;
     VolumeScanlineBuffers volumeScanlines;
+    VideoScratch video;
+    FrameMemory frame; // what the finest layer leaves to the next frame of a video
 };
 
-//! Section 3: from the disparities of the layer above to those of this layer
-void matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
-                LayerResult& result);
+//! Section 3: from the disparities of the layer above to those of this layer. Returns what the frame is to the last one of
+//! a video, as joinLastFrame() does; FIRST on the layers above.
+Verdict matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
+                   LayerResult& result);
 
 }}} // namespace cv::stereo::hdp
 

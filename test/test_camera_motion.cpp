@@ -6,8 +6,7 @@
 #include "synthetic_video.hpp"
 #include "../src/video/camera_motion.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace cv::stereo::hdp;
 
@@ -119,8 +118,7 @@ TEST(HDPStereo_CameraMotion, corrected)
     const double minDisparity = -3, factor = 1.008, offset = -0.3;
     CameraMotion motion;
     motion.forward = rigidMotion(Vec3d(.01, .02, -.01), Vec3d(.05, -.02, .1), 500, 0.4);
-    DisparityChange change = BackwardMotion(motion, minDisparity, 100).change();
-    const DisparityChange before = change;
+    const DisparityChange before = BackwardMotion(motion, minDisparity, 100).change();
     std::vector<float> predicted, measured;
     for (int i = 0; i < 600; ++i)
     {
@@ -128,7 +126,7 @@ TEST(HDPStereo_CameraMotion, corrected)
         const double now = factor * (predicted.back() + minDisparity) + offset - minDisparity + rng.gaussian(0.2);
         measured.push_back((float)(i % 3 ? now : rng.uniform(0., 60.)));
     }
-    correctChange(predicted, measured, change);
+    const DisparityChange change = correctedChange(before, predicted, measured);
     for (int i = 0; i < 50; ++i)
     {
         const int x = rng.uniform(0, 600), y = rng.uniform(0, 400);
@@ -137,9 +135,8 @@ TEST(HDPStereo_CameraMotion, corrected)
         EXPECT_NEAR(factor * uncorrected + offset - minDisparity, change.now(d, change.ofX * x + change.ofRow(y)), 0.1);
     }
 
-    change = before;
-    correctChange(std::vector<float>(), std::vector<float>(), change);
-    EXPECT_EQ(before.now(20, 0.9f), change.now(20, 0.9f));
+    const DisparityChange same = correctedChange(before, std::vector<float>(), std::vector<float>());
+    EXPECT_EQ(before.now(20, 0.9f), same.now(20, 0.9f));
 }
 
 TEST(HDPStereo_CameraMotion, scaled)
@@ -188,7 +185,8 @@ TEST(HDPStereo_CameraMotion, tracks_points)
         CameraMotion near; // four pixels beside the right one
         near.forward(0, 3) = shift.x + 4;
         near.forward(1, 3) = shift.y - 4;
-        trackPoints(before, now, near, points);
+        movePoints(near, now[0].size(), points);
+        trackNearby(before, now, points);
         int again = 0;
         for (const TrackedPoint& point : points)
             again += cv::norm(point.now - point.before - Point2d(shift)) <= 0.5;
@@ -207,5 +205,4 @@ TEST(HDPStereo_CameraMotion, tracks_nothing_without_texture)
     EXPECT_TRUE(points.empty());
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -18,7 +18,7 @@ std::string planText(const MatcherParameters& parameters) { return textOf(hdp::p
 
 MatcherParameters parametersOf(int preset)
 {
-    MatcherParameters p = hdp::presetParameters(preset);
+    MatcherParameters p = MatcherParameters(preset);
     p.numDisparities = 128;
     return p;
 }
@@ -263,15 +263,10 @@ TEST(HDPStereo_Plan, noise_threshold_does_not_depend_on_the_size)
 
 TEST(HDPStereo_Plan, adapts_to_a_video)
 {
-    const struct
-    {
-        hdp::VideoFindings video;
-        bool isPredicted; // the top layer
-    } cases[] = { { { hdp::FIRST, true, false }, false },
-                  { { hdp::FIRST, false, true }, false },
-                  { { hdp::CONTINUED, true, true }, false },
-                  { { hdp::CONTINUED, false, false }, false },
-                  { { hdp::CONTINUED, false, true }, true } };
+    const hdp::VideoFindings videos[] = { { hdp::FIRST, true, false },
+                                          { hdp::CONTINUED, true, false },
+                                          { hdp::CONTINUED, false, false },
+                                          { hdp::CONTINUED, false, true } };
     for (const int preset :
          { (int)M::PRESET_FAST, (int)M::PRESET_ULTRAFAST, (int)M::PRESET_QUALITY, (int)M::PRESET_TREE })
     {
@@ -279,16 +274,16 @@ TEST(HDPStereo_Plan, adapts_to_a_video)
         p.useTemporalPrediction = true;
         const PairPlan plan = hdp::plan(p, imageSize, CV_8UC3);
         EXPECT_TRUE(plan.finest().joinsLastFrame);
-        for (const auto& c : cases)
+        for (const hdp::VideoFindings& video : videos)
         {
-            SCOPED_TRACE(format("preset %d, verdict %d, still %d, established %d", preset, c.video.verdict,
-                                c.video.isStill, c.video.isEstablished));
-            const PairPlan adapted = hdp::adapt(plan, withNoise(2), c.video);
-            const bool isMoving = c.video.verdict == hdp::CONTINUED && !c.video.isStill;
-            EXPECT_EQ(c.isPredicted, adapted.top().prefersLastFrame);
+            SCOPED_TRACE(format("preset %d, verdict %d, still %d, prior %d", preset, video.verdict, video.isStill,
+                                video.hasPrior));
+            const PairPlan adapted = hdp::adapt(plan, withNoise(2), video);
+            const bool isMoving = video.verdict == hdp::CONTINUED && !video.isStill;
+            EXPECT_EQ(video.hasPrior, adapted.top().prefersLastFrame);
             EXPECT_EQ(isMoving, adapted.finest().cost.tolerance == 0) << "faint texture counts in several frames";
             const bool hasRepairs = preset == M::PRESET_FAST || preset == M::PRESET_QUALITY;
-            EXPECT_EQ(c.isPredicted && hasRepairs && plan.top().layer >= 2 ? hdp::COST_SCANLINES : hdp::TREE_SCANLINES,
+            EXPECT_EQ(video.hasPrior && hasRepairs && plan.top().layer >= 2 ? hdp::COST_SCANLINES : hdp::TREE_SCANLINES,
                       adapted.top().method);
         }
     }

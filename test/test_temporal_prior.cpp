@@ -6,8 +6,7 @@
 #include "oracles.hpp"
 #include "../src/video/temporal_prior.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace hdp;
 
@@ -38,20 +37,25 @@ int penalty(double disparity, int candidate, bool isMean)
 }
 
 //! The third frame of a video: everything moved to the left by a cell, and nothing else is known to be as it was.
-TemporalState movedState(ushort disparity)
+struct MovedVideo
 {
-    TemporalState s;
-    s.age = 2;
-    s.layer.scale = 1;
-    s.layer.largest = side * candidates * subpixelScale;
-    s.motion.isStill = false;
-    s.motion.forward(0, 3) = -VideoFollowing::cell;
-    s.backward = BackwardMotion(s.motion, 0, side * candidates);
-    s.last.disparity = Mat(layerSize, CV_16U, Scalar(disparity));
-    s.shifts = Mat(layerSize / (int)VideoFollowing::block, CV_16SC2, Scalar(VideoFollowing::cell, 0));
-    s.sources = Mat(layerSize / (int)VideoFollowing::cell, CV_8U, Scalar(0));
-    return s;
-}
+    explicit MovedVideo(ushort disparity)
+    {
+        last.frames = 2;
+        last.disparity = Mat(layerSize, CV_16U, Scalar(disparity));
+        next.verdict = CONTINUED;
+        next.key.scale = 1;
+        next.key.largest = side * candidates * subpixelScale;
+        next.motion.isStill = false;
+        next.motion.forward(0, 3) = -FrameMemory::cell;
+        next.backward = BackwardMotion(next.motion, 0, side * candidates);
+        next.warp.size = layerSize;
+        next.warp.shifts = Mat(layerSize / (int)FrameWarp::block, CV_16SC2, Scalar(FrameMemory::cell, 0));
+        next.sources = Mat(layerSize / (int)FrameMemory::cell, CV_8U, Scalar(0));
+    }
+    FrameMemory last;
+    FramePrediction next;
+};
 
 void expectCosts(const CostVolume& volume, int x, int y, double disparity, bool areMeans)
 {
@@ -68,18 +72,18 @@ TEST(HDPStereo_TemporalPrior, sources)
     const int places[] = { MOVED_PLACE, SAME_PLACE, MOVED_PLACE | SAME_PLACE, MOVED_PLACE | SAME_PLACE, 0 };
     const double there[] = { unmoved, unmoved, nearby, unmoved, unmoved },
                  expected[] = { moved, unmoved, moved, -1, -1 };
-    TemporalState s = movedState(0);
+    MovedVideo video(0);
     for (int i = 0; i < 5; ++i)
     {
         const int x = 3 * i * side + side / 2, half = side / 2; // one column of the volume in three is looked at
-        s.sources.colRange((x - half) / VideoFollowing::cell, (x + half) / VideoFollowing::cell).setTo(places[i]);
-        s.last.disparity.col(x).setTo(there[i] * side * subpixelScale);
-        s.last.disparity.col(x + VideoFollowing::cell).setTo(moved * side * subpixelScale);
+        video.next.sources.colRange((x - half) / FrameMemory::cell, (x + half) / FrameMemory::cell).setTo(places[i]);
+        video.last.disparity.col(x).setTo(there[i] * side * subpixelScale);
+        video.last.disparity.col(x + FrameMemory::cell).setTo(moved * side * subpixelScale);
     }
     for (bool areMeans : { false, true })
     {
         CostVolume volume = flatVolume(layerSize / side);
-        preferLastFrame(s, side, areMeans, volume);
+        preferLastFrame(video.last, video.next, side, areMeans, volume);
         for (int y = 0; y < volume.size.height; ++y)
             for (int i = 0; i < 5; ++i)
                 expectCosts(volume, 3 * i, y, expected[i], areMeans);
@@ -89,14 +93,14 @@ TEST(HDPStereo_TemporalPrior, sources)
 //! Means that contradict stay, other costs do not.
 TEST(HDPStereo_TemporalPrior, contradiction)
 {
-    TemporalState s = movedState(10 * side * subpixelScale);
-    s.sources.setTo(MOVED_PLACE);
+    MovedVideo video(10 * side * subpixelScale);
+    video.next.sources.setTo(MOVED_PLACE);
     for (bool areMeans : { false, true })
     {
         CostVolume volume = flatVolume(layerSize / side);
         volume.costs[15] = (uchar)(flatCost - CostVolume::mostContradiction - 1);
         const std::vector<uchar> before = volume.costs;
-        preferLastFrame(s, side, areMeans, volume);
+        preferLastFrame(video.last, video.next, side, areMeans, volume);
         for (int k = 0; k < candidates; ++k)
             EXPECT_EQ(before[k] + (areMeans ? 0 : penalty(10, k, false)), volume.costs[k]) << k;
         expectCosts(volume, 1, 0, 10, areMeans);
@@ -106,13 +110,16 @@ TEST(HDPStereo_TemporalPrior, contradiction)
 //! None before a second pair has agreed, and none if nothing moves.
 TEST(HDPStereo_TemporalPrior, hasPrior)
 {
-    TemporalState s = movedState(0);
-    EXPECT_TRUE(hasPrior(s));
-    s.age = 1;
-    EXPECT_FALSE(hasPrior(s));
-    s.age = 2;
-    s.motion.isStill = true;
-    EXPECT_FALSE(hasPrior(s));
+    for (int frames : { 1, 2, 3 })
+        for (bool isStill : { false, true })
+            for (Verdict verdict : { FIRST, CONTINUED })
+            {
+                MovedVideo video(0);
+                video.last.frames = frames;
+                video.next.motion.isStill = isStill;
+                video.next.verdict = verdict;
+                EXPECT_EQ(frames > 1 && !isStill && verdict == CONTINUED, hasPrior(video.last, video.next));
+            }
 }
 
 TEST(HDPStereo_CostVolume, prefer)
@@ -204,5 +211,4 @@ TEST(HDPStereo_CostVolume, fill)
         }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

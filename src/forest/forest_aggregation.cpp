@@ -6,6 +6,8 @@
 #include "forest_aggregation.simd.hpp"
 #include "forest/forest_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
+#include "../base/parabola.hpp"
+
 #include <cmath>
 #include <mutex>
 
@@ -25,14 +27,6 @@ const int maxGroups = 4;
 
 // Work, in aggregated costs, of a task of small trees
 const int64 taskWork = 1 << 16;
-
-//! The parabola through the costs of three neighbouring candidates has its minimum this far from the middle one, in
-//! 1 / subpixelScale pixels.
-int parabolaOffset(float before, float middle, float after)
-{
-    const float curvature = (before - middle) + (after - middle);
-    return curvature > 0 ? cvRound((before - after) / curvature * (subpixelScale / 2)) : 0;
-}
 
 //! The lanes for a run of candidates: few more than there are, and not too many for the memory
 int countLanes(int candidates, int treeSize)
@@ -99,7 +93,9 @@ private:
     int offset(const RunWinner& winner) const
     {
         const bool hasParabola = winner.before >= 0 && winner.after >= 0;
-        return subpixel_ && hasParabola ? parabolaOffset(winner.before, winner.lowest, winner.after) : 0;
+        return subpixel_ && hasParabola
+                   ? cvRound(subpixelScale * parabolaOffset(winner.before, winner.lowest, winner.after))
+                   : 0;
     }
 
     const MatchingCost& cost_;

@@ -7,6 +7,7 @@
 #include "pair/corner_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
 #include "image_pyramid.hpp"
+#include "point_tracker.hpp"
 
 #include <cmath>
 
@@ -14,15 +15,15 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-const double leastCorrelation = 0.8;  // of a match on the coarse layer
-const double rivalCorrelation = 0.1;  // a rival is at least so much farther from a correlation of 1, and
-const double rivalDistance = 0.01;    // this
-const double leastContrast = 6;       // standard deviation of a left window, in its values
-const double largestMove = 2;         // of a match that is tracked on a layer, in pixels
-const double largestResidual = 0.5;   // mean square difference of a tracked match, as a share of the left variance
-const double leastDeterminant = 1e-3; // of a structure tensor, as a share of the product of its diagonal
-const double wholeVariance = 0.1;     // of a match to whole pixels
-const int fractions = 32;             // of a pixel
+const double minCorrelation = 0.8;     // of a match on the coarse layer
+const double rivalCorrelation = 0.1;   // share by which a rival has to be farther from a correlation of 1 than the best
+const double rivalDistance = 0.01;     // what it has to be farther from it beside that share
+const double minContrast = 6;          // standard deviation of a left window, in its values
+const double maxMove = 2;              // of a match that is tracked on a layer, in pixels
+const double maxResidual = 0.5;        // mean square difference of a tracked match, as a share of the left variance
+const double minDeterminant = 1e-3;    // of a structure tensor, as a share of the product of its diagonal
+const double wholePixelVariance = 0.1; // of the row of a match to whole pixels, in square pixels
+const int fractions = 32;              // of a pixel, at which tracked windows may begin
 
 HDP_DISPATCH(structureTensors)
 HDP_DISPATCH(windowSums)
@@ -30,12 +31,36 @@ HDP_DISPATCH(correlate)
 HDP_DISPATCH(cutWindow)
 HDP_DISPATCH(trackingSums)
 
-//! The smaller eigenvalue of a structure tensor
-double cornerness(int xx, int xy, int yy)
+//! How much of a corner the pixels of an area are: the smaller eigenvalue of the structure tensor
+class Cornerness
 {
-    const double mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy);
-    return mean - std::sqrt(half * half + (double)xy * xy);
-}
+public:
+    Cornerness(const Mat& image, Rect area)
+        : image_(image), area_(area), columns_(3 * (area.width + CornerMatching::tensorSide - 1)),
+          tensors_(3 * area.width)
+    {
+    }
+
+    void enterRow(int y)
+    {
+        const int radius = CornerMatching::tensorSide / 2, width = area_.width;
+        int* const xx = tensors_.data();
+        dispatched::structureTensors(image_.ptr<ushort>(area_.y + y - radius) + area_.x - radius, image_.step1(), width,
+                                     columns_.data(), xx, xx + width, xx + 2 * width);
+    }
+
+    double operator()(int x) const
+    {
+        const double xx = tensors_[x], xy = tensors_[area_.width + x], yy = tensors_[2 * area_.width + x];
+        const double mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy);
+        return mean - std::sqrt(half * half + xy * xy);
+    }
+
+private:
+    const Mat& image_;
+    const Rect area_;
+    std::vector<int> columns_, tensors_;
+};
 
 //! The best corner of every cell
 void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matches)
@@ -44,32 +69,12 @@ void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matche
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
     const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / CornerMatching::points)), spacing);
     const Size grid(inside.width / cell, inside.height / cell);
-    const int count = grid.width * cell, radius = CornerMatching::tensorSide / 2;
-    matches.assign(grid.area(), CornerMatch());
-    parallel_for_(Range(0, grid.height), [&](const Range& range) {
-        std::vector<int> columns(3 * (count + 2 * radius)), tensors(3 * count);
-        int *const xx = tensors.data(), *const xy = xx + count, *const yy = xy + count;
-        std::vector<double> best(grid.width);
-        for (int i = range.start; i < range.end; ++i)
-        {
-            std::fill(best.begin(), best.end(), -1);
-            for (int y = inside.y + i * cell; y < inside.y + (i + 1) * cell; y += 2)
-            {
-                dispatched::structureTensors(image.ptr<ushort>(y - radius) + inside.x - radius, image.step1(), count,
-                                             columns.data(), xx, xy, yy);
-                for (int j = 0; j < grid.width; ++j)
-                    for (int x = j * cell; x < (j + 1) * cell; x += 2)
-                    {
-                        const double value = cornerness(xx[x], xy[x], yy[x]);
-                        if (value > best[j])
-                        {
-                            best[j] = value;
-                            matches[i * grid.width + j].left = Point(inside.x + x, y);
-                        }
-                    }
-            }
-        }
-    });
+    const int step = 2; // from a pixel that is looked at to the next: neighbours are about as good
+    std::vector<Point> corners;
+    bestOfCells(grid, cell, step, -1, Cornerness(image, Rect(inside.tl(), grid * cell)), corners);
+    matches.assign(corners.size(), CornerMatch());
+    for (size_t i = 0; i < corners.size(); ++i)
+        matches[i].left = inside.tl() + corners[i];
 }
 
 void measureWindows(const Mat& image, SearchWindows& windows)
@@ -112,7 +117,7 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     int memory[2 * CornerMatching::searchSide], sum;
     float scale;
     dispatched::windowSums(window, left.step1(), 1, memory, &sum, &scale);
-    if (scale == 0 || scale * leastContrast * pixels > 1)
+    if (scale == 0 || scale * minContrast * pixels > 1)
         return;
     const SearchArea area = { right.ptr<ushort>(y0) + x0,
                               windows.sums.ptr<int>(y0) + x0,
@@ -126,11 +131,11 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     for (int end = columns; end <= rows * columns; end += columns) // negative disparities
         std::fill(correlations.begin() + end - (columns - count), correlations.begin() + end, -1.f);
     const int best = (int)(std::max_element(correlations.begin(), correlations.end()) - correlations.begin());
-    if (correlations[best] < leastCorrelation || !isUnique(correlations, columns, best))
+    if (correlations[best] < minCorrelation || !isUnique(correlations, columns, best))
         return;
     match.x = x0 + best % columns + side / 2;
     match.y = y0 + best / columns + side / 2;
-    match.variance = wholeVariance;
+    match.variance = wholePixelVariance;
     match.isValid = true;
 }
 
@@ -157,12 +162,12 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     const double sum = w.sums[0], sumX = w.sums[2], sumY = w.sums[3];
     const double productX = w.sums[7] - sumX * sum / n, productY = w.sums[8] - sumY * sum / n;
     const double variance = (double)w.sums[1] * n - sum * sum; // times n * n
-    if (variance < leastContrast * leastContrast * n * n)
+    if (variance < minContrast * minContrast * n * n)
         return;
     // Gradients are over two pixels.
     const double xx = 0.25 * w.sums[4], xy = 0.25 * w.sums[5], yy = 0.25 * w.sums[6];
     const double determinant = xx * yy - xy * xy;
-    if (determinant <= leastDeterminant * xx * yy)
+    if (determinant <= minDeterminant * xx * yy)
         return;
 
     Point2d place(first.x + match.x - match.left.x, first.y + match.y - match.left.y);
@@ -189,10 +194,10 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
         const double ey = 0.5 * (gain * (sums[4] - sumY * sums[0] / n) - productY);
         place.x = (double)x / fractions - (yy * ex - xy * ey) / determinant;
         place.y = (double)y / fractions - (xx * ey - xy * ex) / determinant;
-        if (std::max(std::abs(place.x - start.x), std::abs(place.y - start.y)) > largestMove)
+        if (std::max(std::abs(place.x - start.x), std::abs(place.y - start.y)) > maxMove)
             return;
     }
-    if (residual * n * n > largestResidual * variance)
+    if (residual * n * n > maxResidual * variance)
         return;
     match.x = match.left.x + place.x - first.x;
     match.y = match.left.y + place.y - first.y;
@@ -201,20 +206,12 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     match.isValid = true;
 }
 
-//! The pyramid down to CornerMatching::coarseArea; returns its last layer.
-int buildCoarse(const std::vector<Mat>& layers, std::vector<Mat>& pyramid)
+//! The first layer of a pyramid that has no more than CornerMatching::coarseArea pixels
+int coarseLayer(Size size)
 {
-    if (pyramid.size() < layers.size())
-        pyramid.resize(layers.size());
-    std::copy(layers.begin(), layers.end(), pyramid.begin());
     int layer = 0;
-    for (; pyramid[layer].total() > (size_t)CornerMatching::coarseArea; ++layer)
-        if (layer + 1 >= (int)layers.size())
-        {
-            if (layer + 1 == (int)pyramid.size())
-                pyramid.push_back(Mat());
-            halveImage(pyramid[layer], pyramid[layer + 1]);
-        }
+    while ((size.width >> layer) * (size.height >> layer) > CornerMatching::coarseArea)
+        ++layer;
     return layer;
 }
 
@@ -245,8 +242,9 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
                    CoarseMatches& coarse)
 {
     coarse.matches.clear();
-    coarse.layer = buildCoarse(left, coarse.left);
-    buildCoarse(right, coarse.right);
+    coarse.layer = coarseLayer(left[0].size());
+    buildPyramid(left, coarse.layer + 1, coarse.left);
+    buildPyramid(right, coarse.layer + 1, coarse.right);
     const Mat &coarseLeft = coarse.left[coarse.layer], &coarseRight = coarse.right[coarse.layer];
     if (std::min(coarseLeft.rows, coarseLeft.cols) < CornerMatching::leastSide)
         return;

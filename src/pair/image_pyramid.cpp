@@ -51,4 +51,12 @@ void halveImage(const Mat& image, Mat& half)
         halve<uchar>(image, half);
 }
 
+void buildPyramid(const std::vector<Mat>& given, size_t layers, std::vector<Mat>& pyramid)
+{
+    pyramid.resize(layers);
+    std::copy_n(given.begin(), std::min(given.size(), layers), pyramid.begin());
+    for (size_t layer = given.size(); layer < layers; ++layer)
+        halveImage(pyramid[layer - 1], pyramid[layer]);
+}
+
 }}} // namespace cv::stereo::hdp

@@ -6,6 +6,8 @@
 
 #include "opencv2/core.hpp"
 
+#include <vector>
+
 namespace cv { namespace stereo { namespace hdp {
 
 // The graph pyramid of section 2.1 with S = 2. Functions of the stages are exported for the tests only.
@@ -24,6 +26,12 @@ inline int layerDisparities(int numDisparities, int layer, bool subpixel)
 //! G_{l+1} of G_l: means of 2 x 2 pixels, truncated to 8 bit (CV_8U) or rounded (CV_16U); an odd last row or column is
 //! left out. The authors' program truncates and leaves out, too; the paper rounds sizes up.
 CV_EXPORTS void halveImage(const Mat& image, Mat& half);
+
+/** Halves an image layer by layer.
+@param given Its first layers, at least one.
+@param layers How many there shall be.
+@param pyramid Receives them: the given ones as they are, the others in memory that is used again. */
+CV_EXPORTS void buildPyramid(const std::vector<Mat>& given, size_t layers, std::vector<Mat>& pyramid);
 
 }}} // namespace cv::stereo::hdp
 

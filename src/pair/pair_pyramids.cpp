@@ -10,19 +10,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-namespace {
-
-//! The layers above the image are kept in a buffer; the image itself belongs to the caller.
-void buildPyramid(const Mat& image, int layers, std::vector<Mat>& pyramid)
-{
-    pyramid.resize(layers);
-    pyramid[0] = image;
-    for (int layer = 1; layer < layers; ++layer)
-        halveImage(pyramid[layer - 1], pyramid[layer]);
-}
-
-} // namespace
-
 void checkPair(const Mat& left, const Mat& right)
 {
     if (left.empty())
@@ -41,7 +28,7 @@ void checkPair(const Mat& left, const Mat& right)
         CV_Error(Error::StsOutOfRange, "left must have less than 2^31 bytes");
 }
 
-void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan, int lastBrightening,
+void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan, const int* lastBrightening,
                        PairPyramids& pyramids, std::vector<LayerImages>& images)
 {
     const int minDisparity = plan.minDisparity, extension = plan.extension, layers = plan.layers;
@@ -64,7 +51,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& pla
         greyLevels(extended, bits, pyramids.leftLevels);
         greyLevels(shifted, bits, pyramids.rightLevels);
         const int unused = countUnusedBits(pyramids.leftLevels, pyramids.rightLevels);
-        pyramids.isDimmed = unused == lastBrightening + 1;
+        pyramids.isDimmed = lastBrightening && unused == *lastBrightening + 1;
         pyramids.brightening = unused - pyramids.isDimmed;
         if (pyramids.brightening > 0)
         {
@@ -74,12 +61,12 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& pla
         }
         if (plan.smoothsBlocks)
             smoothBlocks(pyramids.leftLevels, pyramids.rightLevels);
-        buildPyramid(pyramids.leftLevels, layers, pyramids.leftGrey);
-        buildPyramid(pyramids.rightLevels, layers, pyramids.right);
+        buildPyramid({ pyramids.leftLevels }, layers, pyramids.leftGrey);
+        buildPyramid({ pyramids.rightLevels }, layers, pyramids.right);
     }
     else
-        buildPyramid(byteLevels(shifted, bits, pyramids.rightBytes), layers, pyramids.right);
-    buildPyramid(byteLevels(extended, bits, pyramids.leftBytes), layers, pyramids.left);
+        buildPyramid({ byteLevels(shifted, bits, pyramids.rightBytes) }, layers, pyramids.right);
+    buildPyramid({ byteLevels(extended, bits, pyramids.leftBytes) }, layers, pyramids.left);
     images.resize(layers);
     for (int layer = 0; layer < layers; ++layer)
     {

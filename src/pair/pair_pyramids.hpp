@@ -43,18 +43,16 @@ struct PyramidPlan
     bool smoothsBlocks; // of grey levels, see smoothBlocks()
 };
 
-//! In place of the brightening of the frame before: there was none.
-const int noBrightening = -2;
-
 /** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,
 see countUnusedBits(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well exposed.
 @param left CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param right Of the same size and type.
 @param plan What to build.
-@param lastBrightening That of the frame before: kept if one more is possible, so that a video seldom changes it.
+@param lastBrightening That of the frame before, if there was one: kept if one more is possible, so that a video seldom
+changes it.
 @param pyramids Memory to work in.
 @param images Receives the images of each layer. */
-void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan, int lastBrightening,
+void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan, const int* lastBrightening,
                        PairPyramids& pyramids, std::vector<LayerImages>& images);
 
 //! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:

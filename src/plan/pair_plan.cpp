@@ -289,7 +289,7 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
         for (ScanlinePass& pass : layer.passes)
             pass.penalties.edgeSlope = usualSlope;
     }
-    if (video.verdict == CONTINUED && video.isEstablished && !video.isStill)
+    if (video.hasPrior)
         predictTop(plan.finest(), adapted.layers.front());
     return adapted;
 }

@@ -12,111 +12,12 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-typedef MotionTracking T;
-
-const int halfSide = T::side / 2;
-const Point nowhere(-1, -1);
+typedef MotionFit T;
 
 // Of a motion: the rows of X, Y and W, but for the 1 that is the last of W
 const int terms = 11;
 typedef Matx<double, terms, 1> Terms;
 typedef Matx<double, terms, terms> NormalMatrix;
-
-//! Whether the square around a pixel, and another pixel on each side, are in the image
-bool isInside(const Mat& image, Point at)
-{
-    return at.x > halfSide && at.y > halfSide && at.x + halfSide < image.cols && at.y + halfSide < image.rows;
-}
-
-//! Sum of absolute differences of the squares around two pixels
-int difference(const Mat& before, Point from, const Mat& now, Point to)
-{
-    int sum = 0;
-    for (int dy = -halfSide; dy < halfSide; ++dy)
-    {
-        const uchar* a = before.ptr(from.y + dy) + from.x - halfSide;
-        const uchar* b = now.ptr(to.y + dy) + to.x - halfSide;
-        for (int k = 0; k < T::side; ++k)
-            sum += std::abs(a[k] - b[k]);
-    }
-    return sum;
-}
-
-//! Sum of absolute differences from a pixel to the next, in the direction that has less
-int texture(const Mat& image, Point at)
-{
-    int sumX = 0, sumY = 0;
-    for (int y = at.y - halfSide; y < at.y + halfSide; ++y)
-    {
-        const uchar *row = image.ptr(y), *above = image.ptr(y - 1);
-        for (int x = at.x - halfSide; x < at.x + halfSide; ++x)
-        {
-            sumX += std::abs(row[x] - row[x - 1]);
-            sumY += std::abs(row[x] - above[x]);
-        }
-    }
-    return std::min(sumX, sumY);
-}
-
-//! The pixel with the least difference, among those at most radius pixels away from a guess
-Point search(const Mat& before, Point from, const Mat& now, Point guess, int radius)
-{
-    Point best = nowhere;
-    int least = INT_MAX;
-    for (int y = guess.y - radius; y <= guess.y + radius; ++y)
-        for (int x = guess.x - radius; x <= guess.x + radius; ++x)
-        {
-            const Point to(x, y);
-            const int sum = isInside(now, to) ? difference(before, from, now, to) : INT_MAX;
-            if (sum < least)
-            {
-                least = sum;
-                best = to;
-            }
-        }
-    return best;
-}
-
-//! Where a parabola through three successive sums has its minimum
-double parabolaOffset(int before, int middle, int after)
-{
-    const int curvature = before - 2 * middle + after;
-    return curvature > 0 ? std::max(-0.5, std::min(0.5, 0.5 * (before - after) / curvature)) : 0;
-}
-
-//! From a match in whole pixels of the finest level
-Point2d refine(const Mat& before, Point from, const Mat& now, Point match)
-{
-    const auto sum = [&](int dx, int dy) {
-        const Point to = match + Point(dx, dy);
-        return isInside(now, to) ? difference(before, from, now, to) : INT_MAX / 4;
-    };
-    const int middle = sum(0, 0);
-    return Point2d(match.x + parabolaOffset(sum(-1, 0), middle, sum(1, 0)),
-                   match.y + parabolaOffset(sum(0, -1), middle, sum(0, 1)));
-}
-
-//! Of four places in a square of the grid on the coarsest level, the one with the most texture on the finest
-Point choosePlace(const std::vector<Mat>& before, Point corner)
-{
-    const int top = (int)before.size() - 1;
-    Point chosen = nowhere;
-    int most = T::minTexture * T::side * T::side - 1;
-    for (int k = 0; k < 4; ++k)
-    {
-        const Point place = corner + Point(k % 2, k / 2) * (T::spacing / 2);
-        const Point fine(place.x << top, place.y << top);
-        if (!isInside(before[top], place) || !isInside(before[0], fine))
-            continue;
-        const int there = texture(before[0], fine);
-        if (there > most)
-        {
-            most = there;
-            chosen = place;
-        }
-    }
-    return chosen;
-}
 
 Matx44d matrixOf(const Terms& t)
 {
@@ -163,73 +64,14 @@ double medianSquaredError(const Matx44d& forward, const std::vector<TrackedPoint
 
 } // namespace
 
-int trackingLevels(int width)
+void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>& points)
 {
-    int levels = 1;
-    while (width >> (levels - 1) > T::coarsestWidth)
-        ++levels;
-    return levels;
-}
-
-void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points)
-{
-    const int top = (int)before.size() - 1;
-    const Size grid(before[top].cols / T::spacing, before[top].rows / T::spacing);
-    std::vector<Point> places(grid.area());
-    parallel_for_(Range(0, grid.height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            for (int x = 0; x < grid.width; ++x)
-                places[y * grid.width + x] = choosePlace(before, Point(x, y) * T::spacing);
-    });
-    points.clear();
-    for (const Point& place : places)
-        if (place != nowhere)
-        {
-            TrackedPoint point;
-            point.before = point.now = place * (1 << top);
-            point.disparity = 0;
-            points.push_back(point);
-        }
-}
-
-void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
-{
-    const int top = (int)before.size() - 1;
-    parallel_for_(Range(0, (int)points.size()), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-        {
-            const Point from = points[i].before, coarse(from.x >> top, from.y >> top);
-            Point match = search(before[top], coarse, now[top], coarse, T::searchRadius);
-            for (int level = top - 1; level >= 0 && match != nowhere; --level)
-                match = search(before[level], Point(from.x >> level, from.y >> level), now[level], 2 * match,
-                               T::refinementRadius);
-            points[i].now = match != nowhere ? refine(before[0], from, now[0], match) : points[i].before;
-        }
-    });
-}
-
-void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, const CameraMotion& motion,
-                 std::vector<TrackedPoint>& points)
-{
-    const int coarse = std::min(1, (int)before.size() - 1);
-    parallel_for_(Range(0, (int)points.size()), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-        {
-            TrackedPoint& point = points[i];
-            point.now = point.before;
-            const Vec4d p = motion.forward * Vec4d(point.before.x, point.before.y, point.disparity, 1);
-            if (!(p[0] >= 0 && p[1] >= 0 && p[0] < p[3] * now[0].cols && p[1] < p[3] * now[0].rows))
-                continue;
-            const Point from = point.before, half(from.x >> coarse, from.y >> coarse);
-            Point match(cvFloor(p[0] / p[3] + 0.5), cvFloor(p[1] / p[3] + 0.5));
-            if (isInside(before[coarse], half))
-                match = (1 << coarse) * search(before[coarse], half, now[coarse],
-                                               Point(match.x >> coarse, match.y >> coarse), T::refinementRadius);
-            match = search(before[0], from, now[0], match, T::refinementRadius);
-            if (match != nowhere)
-                point.now = refine(before[0], from, now[0], match);
-        }
-    });
+    for (TrackedPoint& point : points)
+    {
+        const Vec4d p = motion.forward * Vec4d(point.before.x, point.before.y, point.disparity, 1);
+        const bool isInside = p[0] >= 0 && p[1] >= 0 && p[0] < p[3] * size.width && p[1] < p[3] * size.height;
+        point.now = isInside ? Point2d(p[0] / p[3], p[1] / p[3]) : Point2d(nowhere);
+    }
 }
 
 CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance)
@@ -251,10 +93,10 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, doubl
     Terms none = Terms::zeros();
     none(0) = none(5) = 1;
     const double inertia = 1e-5 * points.size(); // decides what the points leave open
-    const double leastTolerance = 0.25;          // in pixels
+    const double minTolerance = 0.25;            // in pixels
     std::vector<double> weights(points.size(), 1.);
     Matx44d forward = Matx44d::eye();
-    for (int rounds = T::fittingRounds; rounds > 0; rounds -= tolerance == leastTolerance)
+    for (int rounds = T::fittingRounds; rounds > 0; rounds -= tolerance == minTolerance)
     {
         NormalMatrix a = inertia * NormalMatrix::eye();
         Terms b = inertia * none;
@@ -264,7 +106,7 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, doubl
         const double scale = tolerance / unit;
         for (size_t i = 0; i < normed.size(); ++i)
             weights[i] = 1 / (1 + squaredError(forward, normed[i]) / (scale * scale));
-        tolerance = std::max(tolerance * 0.6, leastTolerance);
+        tolerance = std::max(tolerance * 0.6, minTolerance);
     }
 
     // Things that move by themselves may look as if the camera did, but most points tell whether it is at rest.
@@ -296,7 +138,8 @@ CameraMotion scaled(const CameraMotion& motion, double scale)
     return result;
 }
 
-void correctChange(const std::vector<float>& predicted, const std::vector<float>& measured, DisparityChange& change)
+DisparityChange correctedChange(const DisparityChange& change, const std::vector<float>& predicted,
+                                const std::vector<float>& measured)
 {
     const double deviation = 0.15;                        // of a measured disparity
     const FitPrior<2> none = { Vec2d(), Vec2d(1, 0.02) }; // of the offset, and of the factor's difference from 1
@@ -308,13 +151,15 @@ void correctChange(const std::vector<float>& predicted, const std::vector<float>
         samples[i] = sample;
     }
     if (samples.empty())
-        return;
+        return change;
     const Vec2d fit = fitRobustly(samples, none, Vec2d()).coefficients;
     const float factor = (float)(1 + fit[1]);
-    change.offset = (float)fit[0];
-    change.ofX *= factor;
-    change.ofY *= factor;
-    change.constant *= factor;
+    DisparityChange corrected = change;
+    corrected.offset = (float)fit[0];
+    corrected.ofX *= factor;
+    corrected.ofY *= factor;
+    corrected.constant *= factor;
+    return corrected;
 }
 
 BackwardMotion::BackwardMotion(const CameraMotion& motion, double minDisparity, double largest)

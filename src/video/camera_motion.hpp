@@ -4,9 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_CAMERA_MOTION_HPP
 #define OPENCV_HDPSTEREO_CAMERA_MOTION_HPP
 
-#include "opencv2/core.hpp"
-
-#include <vector>
+#include "../pair/point_tracker.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -22,52 +20,21 @@ struct CameraMotion
     double error = 0;    // median distance of the points from where it takes them, in pixels
 };
 
-//! A point of the scene in two frames, in pixels
-struct TrackedPoint
-{
-    Point2d before, now;
-    double disparity; // in the frame before
-};
-
-//! The constants of trackPoints() and fitMotion()
-struct MotionTracking
+//! The constants of fitMotion()
+struct MotionFit
 {
     enum
     {
-        coarsestWidth = 160,  // of the level that the search begins at, at most
-        spacing = 4,          // of the points, in pixels of that level
-        side = 8,             // of the squares that are compared, in pixels of any level
-        searchRadius = 8,     // on the coarsest level, in its pixels
-        refinementRadius = 2, // on the others
-        minTexture = 3,       // levels from a pixel to the next, in both directions, on average
-        minPoints = 30,       // of a motion
-        fittingRounds = 3     // of reweighted least squares, after those with larger tolerances
+        minPoints = 30,   // with fewer of them, there is no motion
+        fittingRounds = 3 // of reweighted least squares, after those with larger tolerances
     };
 };
 
-//! Number of levels that trackPoints() needs if the finest one has this width
-CV_EXPORTS int trackingLevels(int width);
-
-/** Chooses points to be tracked: on a grid, where the image has texture in both directions.
-@param before Pyramid of the frame before, CV_8UC1, the finest level first, each of half the size of the one before.
-@param points Receives TrackedPoint::before of each, in pixels of the finest level. */
-CV_EXPORTS void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points);
-
-/** Finds points again, from the coarsest level to the finest: where the sum of absolute differences over a square is
-least, with the fraction of a parabola.
-@param before Pyramid of the frame before.
-@param now That of this frame, of the same sizes.
-@param points Receives TrackedPoint::now of each; those that leave the image stay where they were. */
-CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now,
-                            std::vector<TrackedPoint>& points);
-
-/** Finds points again near the places that a motion takes them to. See trackPoints().
-@param before Pyramid of the frame before.
-@param now That of this frame, of the same sizes.
-@param motion In pixels of the finest level, disparities as well.
+/** Moves points to where a motion takes them.
+@param motion In pixels of the points, disparities as well.
+@param size Of the image; points that leave it are nowhere.
 @param points Receives TrackedPoint::now of each. */
-CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, const CameraMotion& motion,
-                            std::vector<TrackedPoint>& points);
+CV_EXPORTS void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>& points);
 
 /** Fits a motion to most of the points. Those that do not fit, as on things that move by themselves, lose their weight.
 @param points The points.
@@ -98,13 +65,14 @@ struct DisparityChange
     }
 };
 
-/** Corrects a change by what was measured: cameras shake against each other, and the motion is an estimate. The
-disparities become factor d + offset, both fitted robustly.
-@param predicted Disparities that DisparityChange::now() gave for pixels.
+/** A change as it was measured: cameras shake against each other, and the motion is an estimate. The disparities become
+factor d + offset, both fitted robustly.
+@param change The change by the motion; its offset is 0.
+@param predicted Disparities that its now() gave for pixels.
 @param measured Those of the same pixels now.
-@param change The change; its offset is 0. */
-CV_EXPORTS void correctChange(const std::vector<float>& predicted, const std::vector<float>& measured,
-                              DisparityChange& change);
+@return The corrected change. */
+CV_EXPORTS DisparityChange correctedChange(const DisparityChange& change, const std::vector<float>& predicted,
+                                           const std::vector<float>& measured);
 
 //! From a pixel of this frame to where it was; disparities count from minDisparity, up to largest, in pixels.
 class CV_EXPORTS BackwardMotion
@@ -124,7 +92,6 @@ public:
     }
 
     const DisparityChange& change() const { return change_; }
-    DisparityChange& change() { return change_; }
 
 private:
     Vec4f x_, y_, w_;

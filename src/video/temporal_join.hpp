@@ -5,7 +5,7 @@
 #define OPENCV_HDPSTEREO_TEMPORAL_JOIN_HPP
 
 #include "../cost/census_cost.hpp"
-#include "temporal_sources.hpp"
+#include "temporal_prediction.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -16,18 +16,19 @@ struct TemporalJoin
     {
         window = 7,        // side of the square that costs are compared over, in cells
         sameDisparity = 1, // in pixels: costs of disparities no farther apart are not compared
-        costOffset = 6,    // in bits of a census of 24
-        keptShare = 26,  // percent of the measured disparity's cost, and costOffset, by which the last frame's may cost
-        movedShare = 60, // more; the same if the camera moved. A wrong pair contradicts its neighbours by more than
-        wrongShare = 33, // this, which also limits what the second frame takes from the first one
+        costOffset = 6,    // what is added to the cost of the measured disparity for the shares below, in bits of 24
+        keptShare = 26, // percent of that sum by which a disparity of the last frame may cost more if the camera stands
+        movedShare = 60, // still, and if it moved
+        wrongShare =
+            33, // percent beyond which a cell contradicts the last frame; the second frame takes no more either
         contradictedShare = 30, // percent of the cells with a source: if more of them contradict, a pair was wrong
         fringe = 2,          // pixels beside one that agrees: what disagrees there, where the motion leads, is measured
-        driftStep = 12,      // from a cell that corrects the predicted disparities to the next
+        driftStep = 12,      // from a cell that corrects the predicted disparities to the next, in cells
         tolerance = 4,       // between disparities that agree, in pixels of the image
         maxStep = 1,         // towards the measured disparity, before it is divided by the weight, in pixels
         maxCount = 4,        // frames that a disparity may stand for
-        maxUnmovedCount = 2, // and for its weight, if the camera moved: a disparity at the same place,
-        maxMovedCount = 1    // and one where the motion leads
+        maxUnmovedCount = 2, // frames that it counts for at most, at the same place, if the camera moved
+        maxMovedCount = 1    // frames that it counts for at most where the motion leads
     };
 };
 
@@ -67,7 +68,7 @@ struct TemporalRow
     const uchar *unmovedCounts, *movedCounts;
 };
 
-//! How disparities are joined, in TemporalFrame's units; see TemporalJoin.
+//! How disparities are joined, in FrameMemory's units; see TemporalJoin.
 struct JoinRule
 {
     int tolerance, maxStep, maxUnmovedWeight, maxMovedWeight, maxCount;
@@ -78,11 +79,17 @@ measured one, that of the last frame at the same place, if the image stands stil
 the camera takes there, if the image looks the same where it comes from. One of the last frame is kept unless the
 measured one has clearly lower costs in the window around. It moves towards the measured one if both agree, by less the
 more frames it stands for; if not, it stands for fewer frames, in the end for none, and the measured one is taken. If
-that is so for many of the pixels, the video begins anew.
+that is so for many of the pixels, the pair contradicts the last frame.
 @param cost The layer's census cost.
-@param state What followVideo() found; this frame becomes the last one.
-@param disparity CV_16UC1, a disparity map; changed. */
-CV_EXPORTS void joinLastFrame(const CensusCost& cost, TemporalState& state, Mat& disparity);
+@param last The last frame.
+@param prediction What predictFrame() found.
+@param scratch Memory to work in.
+@param next Receives what this frame leaves to the next one; nothing if the image is smaller than a cell, or the pair
+contradicts the last frame.
+@param disparity CV_16UC1, a disparity map; changed if the frame continues.
+@return The prediction's verdict, or CONTRADICTED: the pair is to be matched again, as the first one of a video. */
+CV_EXPORTS Verdict joinLastFrame(const CensusCost& cost, const FrameMemory& last, const FramePrediction& prediction,
+                                 VideoScratch& scratch, FrameMemory& next, Mat& disparity);
 
 }}} // namespace cv::stereo::hdp
 

@@ -11,10 +11,10 @@ namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** A row of the frame before as joinRow() takes it.
-@param disparity Of TemporalFrame.
-@param detail Of TemporalFrame.
+@param disparity Of FrameMemory.
+@param detail Of FrameMemory.
 @param width Of the row.
-@param finer Receives the disparities in 1 / TemporalFrame::scale pixel.
+@param finer Receives the disparities in 1 / FrameMemory::scale pixel.
 @param counts Receives how many frames each stands for. */
 void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts);
 
@@ -41,11 +41,12 @@ are far apart.
 @param unmoved Those of the frame before at the same places.
 @param moved Those where the motion leads, of each cell, as of changeDisparities().
 @param count Number of cells.
-@param farthest TemporalSources::farthest, in units of a map.
-@param sources Of each cell, changed.
+@param maxDistance TemporalSources::maxDistance, in units of a map.
+@param sources Of each cell.
+@param used Receives those of them that count.
 @param different Receives which of the sources have another disparity than the measured one. */
-void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int farthest,
-                        uchar* sources, uchar* different);
+void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int maxDistance,
+                        const uchar* sources, uchar* used, uchar* different);
 
 /** Adds up what the pixels on the diagonals of cells tell, see TemporalEvidence.
 @param rows The rows of the cells.
@@ -73,8 +74,8 @@ int chooseCells(const short* sums, const uchar* sources, int count, bool isStill
 @param rows What the frame before has.
 @param width Number of pixels.
 @param rule How to join them.
-@param disparity Receives TemporalFrame::disparity.
-@param detail Receives TemporalFrame::detail. */
+@param disparity Receives FrameMemory::disparity.
+@param detail Receives FrameMemory::detail. */
 void joinRow(const ushort* measured, const TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
              uchar* detail);
 
@@ -124,11 +125,11 @@ void compareCellsOf(const ComparedRow* rows, const int* moved, const uchar* diff
 {
     for (int k = 0; k < count; ++k)
     {
-        const int j = cells[k], sources = different[j], movedHere = moved[j] >> TemporalFrame::detailBits;
+        const int j = cells[k], sources = different[j], movedHere = moved[j] >> FrameMemory::detailBits;
         int unmovedCost = 0, movedCost = 0, scale = 0;
-        for (int i = 0; i < VideoFollowing::cell; ++i)
+        for (int i = 0; i < FrameMemory::cell; ++i)
         {
-            const int x = VideoFollowing::cell * j + i, here = costOf<planes>(rows[i], x, rows[i].measured[x]);
+            const int x = FrameMemory::cell * j + i, here = costOf<planes>(rows[i], x, rows[i].measured[x]);
             scale += here + offset;
             if (sources & SAME_PLACE)
                 unmovedCost += costOf<planes>(rows[i], x, rows[i].unmoved[x]) - here;
@@ -149,17 +150,17 @@ void unpackRow(const ushort* disparity, const uchar* detail, int width, int* fin
 {
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        finer[x] = TemporalFrame::finer(disparity[x], detail[x]);
-        counts[x] = (uchar)(detail[x] & TemporalFrame::countMask);
+        finer[x] = FrameMemory::finer(disparity[x], detail[x]);
+        counts[x] = (uchar)(detail[x] & FrameMemory::countMask);
     }
 }
 
 void changeDisparities(const DisparityChange& change, int y, int step, int count, int* finer)
 {
     const DisparityChange c = change;
-    const float rowFactor = c.ofRow(y), columnFactor = c.ofX * step, unit = 1.f / TemporalFrame::scale;
+    const float rowFactor = c.ofRow(y), columnFactor = c.ofX * step, unit = 1.f / FrameMemory::scale;
     HDP_VECTORIZED for (int i = 0; i < count; ++i) finer[i] =
-        (int)(c.now(finer[i] * unit, i * columnFactor + rowFactor) * TemporalFrame::scale);
+        (int)(c.now(finer[i] * unit, i * columnFactor + rowFactor) * FrameMemory::scale);
 }
 
 void addEvidence(const short* row, int sign, int length, short* columns)
@@ -176,18 +177,18 @@ void sumWindow(const short* columns, int length, short* sums)
                 columns[i + 5 * c] + columns[i + 6 * c]);
 }
 
-void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int farthest,
-                        uchar* sources, uchar* different)
+void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int maxDistance,
+                        const uchar* sources, uchar* used, uchar* different)
 {
     const int same = TemporalJoin::sameDisparity * subpixelScale;
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
-        const int here = measured[j * VideoFollowing::cell], there = unmoved[j * VideoFollowing::cell];
-        const int hasMoved = (sources[j] & MOVED_PLACE) != 0, where = moved[j] >> TemporalFrame::detailBits;
+        const int here = measured[j * FrameMemory::cell], there = unmoved[j * FrameMemory::cell];
+        const int hasMoved = (sources[j] & MOVED_PLACE) != 0, where = moved[j] >> FrameMemory::detailBits;
         const int distance = std::abs(there - where);
-        const int isOther = (hasMoved ^ 1) | ((distance > same) & (distance <= farthest));
+        const int isOther = (hasMoved ^ 1) | ((distance > same) & (distance <= maxDistance));
         const int hasUnmoved = ((sources[j] & SAME_PLACE) != 0) & isOther;
-        sources[j] = (uchar)(hasUnmoved * SAME_PLACE + hasMoved * MOVED_PLACE);
+        used[j] = (uchar)(hasUnmoved * SAME_PLACE + hasMoved * MOVED_PLACE);
         different[j] = (uchar)((hasUnmoved & (std::abs(there - here) > same)) * SAME_PLACE +
                                (hasMoved & (std::abs(where - here) > same)) * MOVED_PLACE);
     }
@@ -222,21 +223,21 @@ void joinRow(const ushort* measured, const TemporalRow& row, int width, const Jo
 {
     const int tolerance = rule.tolerance, maxStep = rule.maxStep, maxCount = rule.maxCount;
     const int maxUnmoved = rule.maxUnmovedWeight, maxMoved = rule.maxMovedWeight;
-    const int half = 1 << (TemporalFrame::detailBits - 1);
+    const int half = 1 << (FrameMemory::detailBits - 1);
     const int *unmoved = row.unmoved, *moved = row.moved;
     const uchar *unmovedCounts = row.unmovedCounts, *movedCounts = row.movedCounts, *choices = row.choices;
     uchar* const agreesMoved = row.agrees;
     static_assert(TemporalJoin::fringe == 2, "There are as many terms on each side.");
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        const int distance = std::abs((measured[x] << TemporalFrame::detailBits) - moved[x]);
+        const int distance = std::abs((measured[x] << FrameMemory::detailBits) - moved[x]);
         agreesMoved[x] = (uchar)((choices[x] == MOVED) & (distance <= tolerance));
     }
     HDP_VECTORIZED for (int x = 0; x < width; ++x) // without branches, so that it can be
     {
         const int isBeside = agreesMoved[x - 2] | agreesMoved[x - 1] | agreesMoved[x + 1] | agreesMoved[x + 2];
         const int isFringe = (choices[x] == MOVED) & isBeside & (agreesMoved[x] ^ 1);
-        const int here = measured[x] << TemporalFrame::detailBits, choice = select(isFringe, MEASURED, choices[x]),
+        const int here = measured[x] << FrameMemory::detailBits, choice = select(isFringe, MEASURED, choices[x]),
                   isMoved = choice == MOVED;
         const int there = select(isMoved, moved[x], unmoved[x]), difference = here - there;
         const int count = select(isMoved, movedCounts[x], unmovedCounts[x]) & -(choice != MEASURED);
@@ -249,8 +250,8 @@ void joinRow(const ushort* measured, const TemporalRow& row, int width, const Jo
         const int joined = select(isNew, here, select(agrees, approached, there));
         const int joinedCount = select(isNew, 1, select(agrees, std::min(count + 1, maxCount), count - 1));
         const int rounded = joined + half;
-        disparity[x] = (ushort)(rounded >> TemporalFrame::detailBits);
-        detail[x] = (uchar)((rounded & TemporalFrame::countMask) << TemporalFrame::detailBits | joinedCount);
+        disparity[x] = (ushort)(rounded >> FrameMemory::detailBits);
+        detail[x] = (uchar)((rounded & FrameMemory::countMask) << FrameMemory::detailBits | joinedCount);
     }
 }
 

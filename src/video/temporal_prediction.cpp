@@ -3,9 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "temporal_prediction.hpp"
-#include "temporal_prediction.simd.hpp"
-#include "video/temporal_prediction.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 #include "../base/grey_levels.hpp"
 #include "../pair/image_pyramid.hpp"
@@ -16,101 +13,59 @@ namespace {
 
 typedef VideoFollowing T;
 
-HDP_DISPATCH(stepBack)
-HDP_DISPATCH(changeBlocks)
+const int cell = FrameMemory::cell;
 
-void buildGrey(const Mat& left, TemporalState& s)
+void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
 {
-    std::vector<Mat>& pyramid = s.next.grey;
-    halveImage(left, s.halved);
-    pyramid.resize(trackingLevels(s.halved.cols));
-    s.halved.convertTo(pyramid[0], CV_8U, 1. / greyScale);
-    for (size_t level = 1; level < pyramid.size(); ++level)
-        halveImage(pyramid[level - 1], pyramid[level]);
+    halveImage(left, halved);
+    grey.resize(std::max<size_t>(grey.size(), 1));
+    halved.convertTo(grey[0], CV_8U, 1. / greyScale);
+    buildPyramid({ grey[0] }, trackingLevels(halved.cols), grey);
 }
 
-//! From the last frame to this one. The camera most likely moves on as it did.
-void findMotion(TemporalState& s)
+//! From the last frame to this one, in pixels of the layer. The camera most likely moves on as it did.
+CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
 {
-    const std::vector<Mat>&before = s.last.grey, &now = s.next.grey;
-    const Size cells = now[0].size();
-    choosePoints(before, s.points);
-    for (TrackedPoint& point : s.points)
+    const double anyError = 4.5; // in cells: points of a first guess may be this far from it
+    const double smallError = 1; // in cells: of a guess that is good, and of points that are near the motion
+    const std::vector<Mat>& before = last.grey;
+    const Size size = now[0].size();
+    choosePoints(before, points);
+    for (TrackedPoint& point : points)
     {
-        const int x = T::cell * (int)point.before.x, y = T::cell * (int)point.before.y;
-        const double disparity = s.last.disparity.at<ushort>(y, x) / (double)subpixelScale + s.layer.minDisparity;
-        point.disparity = disparity / T::cell;
+        const ushort disparity = last.disparity.at<ushort>(cell * (int)point.before.y, cell * (int)point.before.x);
+        point.disparity = (disparity / (double)subpixelScale + last.key.minDisparity) / cell;
     }
-    const double anyError = 4.5, smallError = 1; // in cells
-    trackPoints(before, now, scaled(s.motion, 1. / T::cell), s.points);
-    CameraMotion motion = fitMotion(s.points, cells, anyError);
+    movePoints(scaled(last.motion, 1. / cell), size, points);
+    trackNearby(before, now, points);
+    CameraMotion motion = fitMotion(points, size, anyError);
     if (motion.error > smallError)
     {
-        trackPoints(before, now, s.points);
-        motion = fitMotion(s.points, cells, anyError);
+        trackPoints(before, now, points);
+        motion = fitMotion(points, size, anyError);
     }
-    trackPoints(before, now, motion, s.points);
-    s.motion = scaled(fitMotion(s.points, cells, smallError), T::cell);
-}
-
-//! Where blocks were depends on their disparities, and these on where they were: from what the last frame had at the
-//! same place, some steps lead to both.
-void findShifts(TemporalState& s)
-{
-    const Size size = s.last.disparity.size();
-    const int steps = 4, maxLastStep = 2, count = (size.width + T::block - 1) / T::block;
-    s.shifts.create((size.height + T::block - 1) / T::block, count, CV_16SC2);
-    parallel_for_(Range(0, s.shifts.rows), [&](const Range& rows) {
-        std::vector<float> disparity(count);
-        std::vector<ushort> before(count);
-        std::vector<int> atX(count), atY(count), lastStep(count), state(count);
-        for (int i = rows.start; i < rows.end; ++i)
-        {
-            const int y = std::min(i * T::block + T::block / 2, size.height - 1);
-            const BlockRow row = { y,          size.width, count,           disparity.data(),
-                                   atX.data(), atY.data(), lastStep.data(), state.data() };
-            for (int j = 0; j < count; ++j)
-            {
-                atX[j] = row.centre(j);
-                atY[j] = y;
-                disparity[j] = s.last.disparity.ptr<ushort>(y)[atX[j]] / (float)subpixelScale;
-                state[j] = BlockRow::MOVING;
-            }
-            for (int step = 0; step < steps && !dispatched::stepBack(s.backward, size, step == 0, row); ++step)
-            {
-                for (int j = 0; j < count; ++j)
-                    before[j] = s.last.disparity.ptr<ushort>(atY[j])[atX[j]];
-                dispatched::changeBlocks(s.backward.change(), before.data(), row);
-            }
-            Vec2s* const shifts = s.shifts.ptr<Vec2s>(i);
-            for (int j = 0; j < count; ++j)
-            {
-                const bool isFound = state[j] != BlockRow::OUTSIDE && lastStep[j] <= maxLastStep;
-                shifts[j] = isFound ? Vec2s((short)(atX[j] - row.centre(j)), (short)(atY[j] - y))
-                                    : Vec2s((short)TemporalState::noShift, 0);
-            }
-        }
-    });
+    movePoints(motion, size, points);
+    trackNearby(before, now, points);
+    return scaled(fitMotion(points, size, smallError), cell);
 }
 
 //! Whether this frame shows another scene: on the coarsest level, about as much changed as there is contrast.
-bool isCut(const TemporalState& s)
+bool isCut(const std::vector<Mat>& greyBefore, const FramePrediction& p)
 {
-    const int level = (int)s.next.grey.size() - 1, side = T::cell << level;
-    const Mat &before = s.last.grey[level], &now = s.next.grey[level];
+    const int level = (int)p.grey.size() - 1, side = cell << level;
+    const Mat &before = greyBefore[level], &now = p.grey[level];
     const int mean = cvRound(cv::mean(now)[0]);
     int64 known = 0, change = 0, contrast = 0;
     for (int y = 0; y < now.rows; ++y)
         for (int x = 0; x < now.cols; ++x)
         {
             Point at(x, y);
-            if (!s.motion.isStill)
+            if (!p.motion.isStill)
             {
-                const int px = x * side + side / 2, py = y * side + side / 2;
-                const Vec2s& shift = s.shifts.ptr<Vec2s>(py / T::block)[px / T::block];
-                if (shift[0] == TemporalState::noShift)
+                const Point centre(x * side + side / 2, y * side + side / 2);
+                if (!p.warp.isKnown(centre.x, centre.y))
                     continue;
-                at = shifted(px, py, shift, s.last.disparity.size()) / side;
+                at = p.warp(centre.x, centre.y) / side;
                 at = Point(std::min(at.x, before.cols - 1), std::min(at.y, before.rows - 1));
             }
             ++known;
@@ -120,30 +75,30 @@ bool isCut(const TemporalState& s)
     return 4 * known < (int64)now.total() || (change > T::cutNoise * known && 100 * change > T::cutShare * contrast);
 }
 
-//! Whether there is a last frame, and it shows the same scene
-bool isContinued(const Mat& left, const TemporalLayer& layer, TemporalState& s)
-{
-    if (s.last.disparity.size() != left.size() || !(s.layer == layer))
-        return false;
-    findMotion(s);
-    s.backward = BackwardMotion(s.motion, layer.minDisparity, (double)layer.largest / subpixelScale);
-    if (!s.motion.isStill)
-        findShifts(s);
-    return !isCut(s);
-}
-
 } // namespace
 
-void followVideo(const Mat& left, const TemporalLayer& layer, TemporalState& s)
+void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
+                  FramePrediction& p)
 {
-    if (std::min(left.cols, left.rows) < T::cell)
-        return s.clear();
-    buildGrey(left, s);
-    if (isContinued(left, layer, s))
-        ++s.age;
-    else
-        s.clear();
-    s.layer = layer;
+    p.verdict = FIRST;
+    p.key = key;
+    p.motion = CameraMotion();
+    if (std::min(left.cols, left.rows) < cell)
+        return;
+    buildGrey(left, scratch.halved, p.grey);
+    if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
+        return;
+    p.motion = findMotion(last, p.grey, scratch.points);
+    p.backward = BackwardMotion(p.motion, key.minDisparity, (double)key.largest / subpixelScale);
+    if (!p.motion.isStill)
+        findWarp(p.backward, last.disparity, p.warp);
+    if (isCut(last.grey, p))
+    {
+        p.motion = CameraMotion();
+        return;
+    }
+    findSources(last.grey[0], p.grey[0], p.motion.isStill ? nullptr : &p.warp, scratch, p.sources);
+    p.verdict = CONTINUED;
 }
 
 }}} // namespace cv::stereo::hdp

@@ -4,120 +4,46 @@
 #ifndef OPENCV_HDPSTEREO_TEMPORAL_PREDICTION_HPP
 #define OPENCV_HDPSTEREO_TEMPORAL_PREDICTION_HPP
 
-#include "camera_motion.hpp"
-#include "../base/disparity_units.hpp"
+#include "temporal_sources.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of followVideo()
+//! The constants of predictFrame()
 struct VideoFollowing
 {
     enum
     {
-        cell = 2,      // side of the pixels of TemporalFrame::grey's finest level, in pixels of the layer
-        block = 4,     // side of the squares that move together
         cutShare = 60, // percent of its contrast by which a coarse image changes at a cut
-        cutNoise = 4   // grey levels; what changes less is no cut
+        cutNoise = 4   // grey levels; a coarse image that changes by no more on average is no cut
     };
 };
 
-//! What a frame leaves to the next
-struct TemporalFrame
+//! What the last frame tells of this one before it is matched
+struct FramePrediction
 {
-    Mat disparity;         // CV_16UC1, a disparity map; empty: there is no such frame
-    Mat detail;            // CV_8UC1: four more bits of each disparity, and the number of frames it stands for
-    std::vector<Mat> grey; // CV_8UC1: the pyramid of the left image from cells on
+    Verdict verdict = FIRST; // or CONTINUED
+    FrameKey key;            // of this frame
+    CameraMotion motion;     // from the last frame, in pixels of the layer; none for a first frame
+    std::vector<Mat> grey;   // of this frame, see FrameMemory
 
-    enum
-    {
-        detailBits = 4,
-        countMask = (1 << detailBits) - 1,
-        scale = subpixelScale << detailBits // of disparities with all their bits: means over frames need them
-    };
-    static CV_ALWAYS_INLINE int finer(int disparity, int detail)
-    {
-        return (disparity << detailBits) + (detail >> detailBits) - (1 << (detailBits - 1)); // they were rounded
-    }
+    // Of a frame that continues
+    BackwardMotion backward; // the same motion
+    FrameWarp warp;          // the same for all pixels; unknown if the camera stands still
+    Mat sources;             // CV_8UC1, of TemporalSource per cell, see findSources()
+
+    //! Whether there is a last frame from another place
+    bool isMoving() const { return verdict == CONTINUED && !motion.isStill; }
 };
 
-//! What the disparities of a map stand for
-struct TemporalLayer
-{
-    int scale;           // pixels of the image in a side of a pixel
-    double minDisparity; // that a map counts from, in pixels of the layer
-    int largest;         // of a map, in its units
-    int brightening;     // of the pair, see PairPyramids
-
-    bool operator==(const TemporalLayer& other) const
-    {
-        return scale == other.scale && minDisparity == other.minDisparity && largest == other.largest &&
-               brightening == other.brightening;
-    }
-};
-
-//! What is known of a video, and memory that is kept from pair to pair
-struct TemporalState
-{
-    TemporalFrame last, next;
-    TemporalLayer layer = TemporalLayer(); // of the last frame
-    int age = 0;                           // frames before the next one, since it began anew
-
-    CameraMotion motion; // to the last frame that followVideo() saw, in pixels of the layer
-    BackwardMotion backward;
-    Mat shifts; // CV_16SC2, per block: from a pixel to where it was in the last frame; see noShift
-
-    std::vector<TrackedPoint> points;
-    Mat halved;
-    Mat sources;                                     // CV_8UC1, see findSources()
-    Mat warped, change, contrast, evidence, choices; // of findSources() and joinLastFrame(), per cell
-
-    //! In place of the x of a shift: the block was not in the last frame.
-    enum
-    {
-        noShift = SHRT_MIN
-    };
-
-    //! Forgets the last frame.
-    void clear()
-    {
-        last.disparity.release();
-        motion = CameraMotion();
-        age = 0;
-    }
-};
-
-//! The pixel that a shift leads to
-inline Point shifted(int x, int y, const Vec2s& shift, Size size)
-{
-    return Point(std::min(std::max(x + shift[0], 0), size.width - 1),
-                 std::min(std::max(y + shift[1], 0), size.height - 1));
-}
-
-//! A row of blocks that findShifts() follows to where they were
-struct BlockRow
-{
-    enum State
-    {
-        MOVING,
-        ARRIVED,
-        OUTSIDE // of the last frame
-    };
-    int y, width, count;               // of the blocks' centres, of the layer, number of blocks
-    float* disparity;                  // of the centres now, if they were at (atX, atY)
-    int *atX, *atY, *lastStep, *state; // lastStep: sum of both coordinates' changes
-
-    CV_ALWAYS_INLINE int centre(int j) const
-    {
-        return std::min(j * VideoFollowing::block + VideoFollowing::block / 2, width - 1);
-    }
-};
-
-/** Finds how the cameras moved since the last frame, and where everything was then. The first frame, one of another
-size or with other disparities, and one that shows another scene begin anew.
+/** Finds how the camera moved since the last frame, where everything was then, and what may be taken from there. A frame is
+the first one if nothing is remembered, at another size, with disparities of another key, and if it shows another scene.
 @param left The left image of the finest layer that is matched, see greyLevels().
-@param layer What its disparities stand for.
-@param state What is known of the video; TemporalState::age is 0 if it begins anew. */
-CV_EXPORTS void followVideo(const Mat& left, const TemporalLayer& layer, TemporalState& state);
+@param key Of the disparities that this layer will have.
+@param last What the last frame left.
+@param scratch Memory to work in.
+@param prediction Receives all that is known. */
+CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
+                             FramePrediction& prediction);
 
 }}} // namespace cv::stereo::hdp
 

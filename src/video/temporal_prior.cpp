@@ -8,69 +8,45 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-typedef VideoFollowing V;
-
-// Of disparities that the last frame does not predict. Means vary less than costs, and contradict more clearly.
-const int largestPenalty = 6 * CostVolume::scale, largestOfMeans = 3 * CostVolume::scale;
-
-//! What the last frame predicts for the pixels of a row
-class RowPrediction
+//! The disparity that the last frame predicts for a pixel, in pixels; false if there is none.
+bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, float& disparity)
 {
-public:
-    RowPrediction(const TemporalState& s, int y)
-        : s_(s), y_(y), change_(s.backward.change()), ofRow_(change_.ofRow(y)),
-          sources_(s.sources.ptr(std::min(y / V::cell, s.sources.rows - 1))),
-          shifts_(s.shifts.ptr<Vec2s>(y / V::block)), unmoved_(s.last.disparity.ptr<ushort>(y)),
-          size_(s.last.disparity.size()), lastCell_(s.sources.cols - 1)
-    {
-    }
-
-    //! In pixels; false if there is none.
-    bool operator()(int x, float& disparity) const
-    {
-        const float unit = 1.f / subpixelScale, unmoved = unmoved_[x] * unit;
-        const int sources = sources_[std::min(x / V::cell, lastCell_)];
-        disparity = unmoved;
-        if (!(sources & MOVED_PLACE))
-            return sources != 0;
-        const Point from = shifted(x, y_, shifts_[x / V::block], size_);
-        disparity = change_.now(s_.last.disparity.ptr<ushort>(from.y)[from.x] * unit, change_.ofX * x + ofRow_);
-        return !(sources & SAME_PLACE) || s_.layer.scale * std::abs(disparity - unmoved) <= TemporalSources::farthest;
-    }
-
-private:
-    const TemporalState& s_;
-    const int y_;
-    const DisparityChange change_;
-    const float ofRow_;
-    const uchar* const sources_;
-    const Vec2s* const shifts_;
-    const ushort* const unmoved_;
-    const Size size_;
-    const int lastCell_;
-};
+    const float unit = 1.f / subpixelScale, unmoved = last.disparity.ptr<ushort>(y)[x] * unit;
+    const int cell = FrameMemory::cell, i = std::min(y / cell, p.sources.rows - 1);
+    const int sources = p.sources.ptr(i)[std::min(x / cell, p.sources.cols - 1)];
+    disparity = unmoved;
+    if (!(sources & MOVED_PLACE))
+        return sources != 0;
+    const DisparityChange& change = p.backward.change();
+    const Point from = p.warp(x, y);
+    disparity = change.now(last.disparity.ptr<ushort>(from.y)[from.x] * unit, change.ofX * x + change.ofRow(y));
+    return !(sources & SAME_PLACE) || p.key.scale * std::abs(disparity - unmoved) <= TemporalSources::maxDistance;
+}
 
 } // namespace
 
-bool hasPrior(const TemporalState& s) { return s.age > 1 && !s.motion.isStill; }
-
-void preferLastFrame(const TemporalState& s, int side, bool areMeans, CostVolume& volume)
+bool hasPrior(const FrameMemory& last, const FramePrediction& prediction)
 {
-    const Size size = s.last.disparity.size();
+    return prediction.isMoving() && last.frames > 1;
+}
+
+void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side, bool areMeans,
+                     CostVolume& volume)
+{
+    const Size size = last.disparity.size();
+    const int maxPenalty = areMeans ? TemporalPrior::maxPenaltyOfMeans : TemporalPrior::maxPenalty;
     parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
-        {
-            const RowPrediction predict(s, std::min(y * side + side / 2, size.height - 1));
             for (int x = 0; x < volume.size.width; ++x)
             {
                 const int own = y * volume.size.width + x;
+                const int centreX = std::min(x * side + side / 2, size.width - 1);
+                const int centreY = std::min(y * side + side / 2, size.height - 1);
                 float disparity;
-                if (!predict(std::min(x * side + side / 2, size.width - 1), disparity) ||
-                    (areMeans && volume.contradicts(own, disparity / side)))
-                    continue;
-                volume.prefer(own, disparity / side, areMeans ? largestOfMeans : largestPenalty);
+                if (predict(last, prediction, centreX, centreY, disparity) &&
+                    !(areMeans && volume.contradicts(own, disparity / side)))
+                    volume.prefer(own, disparity / side, maxPenalty);
             }
-        }
     });
 }
 

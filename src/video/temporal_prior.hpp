@@ -5,22 +5,34 @@
 #define OPENCV_HDPSTEREO_TEMPORAL_PRIOR_HPP
 
 #include "../forest/cost_volume.hpp"
-#include "temporal_sources.hpp"
+#include "temporal_prediction.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
+//! The constants of preferLastFrame()
+struct TemporalPrior
+{
+    enum
+    {
+        maxPenalty = 6 * CostVolume::scale,       // of disparities other than the predicted one, in units of the volume
+        maxPenaltyOfMeans = 3 * CostVolume::scale // the same for means: they vary less, and contradict more clearly
+    };
+};
+
 //! Whether the last frame predicts disparities: not before a second pair has agreed with the first one, nor if nothing
 //! moves, as joinLastFrame() keeps disparities then.
-CV_EXPORTS bool hasPrior(const TemporalState& state);
+CV_EXPORTS bool hasPrior(const FrameMemory& last, const FramePrediction& prediction);
 
 /** P(D_t | D_(t-1)): raises the costs of disparities other than the one that the last frame predicts, see
 CostVolume::prefer(). Where the image stands still and looks moved as well, with different disparities, it predicts
 none.
-@param state What findSources() found; see hasPrior().
-@param side Of the volume's pixels, in pixels of the layer that the state is of.
+@param last The last frame.
+@param prediction What predictFrame() found; see hasPrior().
+@param side Of the volume's pixels, in pixels of the layer that the prediction is of.
 @param areMeans Whether the costs are means over trees; those that contradict then stay.
 @param volume The costs, changed. */
-CV_EXPORTS void preferLastFrame(const TemporalState& state, int side, bool areMeans, CostVolume& volume);
+CV_EXPORTS void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side, bool areMeans,
+                                CostVolume& volume);
 
 }}} // namespace cv::stereo::hdp
 

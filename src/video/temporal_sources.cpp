@@ -12,7 +12,8 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 typedef TemporalSources T;
-typedef VideoFollowing V;
+
+const int cell = FrameMemory::cell;
 
 HDP_DISPATCH(sumSquares)
 
@@ -76,66 +77,54 @@ void findContrast(const Mat& image, Mat& contrast)
 }
 
 //! The last frame as this one would show it if nothing moved but the camera: half a cell is the mean of two.
-void warpLastFrame(TemporalState& s)
+void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
 {
-    const Mat& before = s.last.grey[0];
-    const Point last(2 * before.cols - 2, 2 * before.rows - 2); // in half cells
-    const int side = V::block / V::cell;                        // of the squares that move together, in cells
-    static_assert(V::cell == 2, "Shifts are in half cells.");
-    s.warped.create(before.size(), CV_8U);
+    static_assert(cell == 2, "Pixels are half cells.");
+    const int endX = cell * before.cols, lastX = endX - cell, lastY = cell * before.rows - cell;
+    warped.create(before.size(), CV_8U);
     parallel_for_(Range(0, before.rows), [&](const Range& range) {
         for (int y = range.start; y < range.end; ++y)
         {
-            const Vec2s* shifts = s.shifts.ptr<Vec2s>(y * V::cell / V::block);
-            uchar* warped = s.warped.ptr(y);
-            for (int begin = 0; begin < before.cols; begin += side)
-            {
-                const Vec2s& shift = shifts[begin / side];
-                const int end = std::min(begin + side, before.cols), fromX = 2 * begin + shift[0];
-                const int fromY = std::min(std::max(2 * y + shift[1], 0), last.y);
-                const uchar *above = before.ptr(fromY / 2), *below = before.ptr((fromY + 1) / 2);
-                const bool isInside = fromX >= 0 && fromX + 2 * (end - begin - 1) <= last.x;
-                for (int x = begin; x < end; ++x)
+            uchar* const row = warped.ptr(y);
+            warp.forEachRun(cell * y, [&](int x, const Point& from, int count) {
+                const int fromY = std::min(from.y, lastY);
+                const uchar *above = before.ptr(fromY / cell), *below = before.ptr((fromY + 1) / cell);
+                for (int k = x % cell; k < count && x + k < endX; k += cell)
                 {
-                    const int from = fromX + 2 * (x - begin);
-                    const int at = isInside ? from : std::min(std::max(from, 0), last.x);
-                    const int left = at >> 1, right = (at + 1) >> 1;
-                    warped[x] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) >> 2);
+                    const int fromX = std::min(from.x + k, lastX), left = fromX / cell, right = (fromX + 1) / cell;
+                    row[(x + k) / cell] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) >> 2);
                 }
-            }
+            });
         }
     });
 }
 
 } // namespace
 
-void findSources(TemporalState& s)
+void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch, Mat& sources)
 {
-    const Mat &before = s.last.grey[0], &now = s.next.grey[0];
-    const bool isStill = s.motion.isStill;
-    if (!isStill)
-        warpLastFrame(s);
-    absdiff(now, isStill ? before : s.warped, s.change);
-    findContrast(now, s.contrast);
-    const int noise = T::leastNoise + T::noiseFactor * medianLevel(s.change);
-    s.sources.create(now.size(), CV_8U);
+    if (warp)
+        warpGrey(before, *warp, scratch.warped);
+    absdiff(now, warp ? scratch.warped : before, scratch.change);
+    findContrast(now, scratch.contrast);
+    const int noise = T::minNoise + T::noiseFactor * medianLevel(scratch.change);
+    sources.create(now.size(), CV_8U);
     parallel_for_(Range(0, now.rows), [&](const Range& range) {
         SquareSums changesOf(now.cols), contrastsOf(now.cols), sumsBefore(now.cols), sumsNow(now.cols);
         for (int y = range.start; y < range.end; ++y)
         {
-            const ushort *changes = changesOf(s.change, y, 1), *contrasts = contrastsOf(s.contrast, y, 2);
-            uchar* sources = s.sources.ptr(y);
+            const ushort *changes = changesOf(scratch.change, y, 1), *contrasts = contrastsOf(scratch.contrast, y, 2);
+            uchar* ofRow = sources.ptr(y);
             for (int x = 0; x < now.cols; ++x)
-                sources[x] = changes[x] <= 9 * noise || 100 * 25 * changes[x] <= T::contrastShare * 9 * contrasts[x];
-            if (isStill)
+                ofRow[x] = changes[x] <= 9 * noise || 100 * 25 * changes[x] <= T::contrastShare * 9 * contrasts[x];
+            if (!warp)
                 continue; // 1 is SAME_PLACE
             const ushort *there = sumsBefore(before, y, 1), *here = sumsNow(now, y, 1);
-            const Vec2s* shifts = s.shifts.ptr<Vec2s>(y * V::cell / V::block);
             for (int x = 0; x < now.cols; ++x)
             {
                 const bool isSame = std::abs(here[x] - there[x]) <= 9 * T::stillness / 2;
-                const bool isMoved = sources[x] && shifts[x * V::cell / V::block][0] != TemporalState::noShift;
-                sources[x] = (uchar)((isSame ? SAME_PLACE : 0) | (isMoved ? MOVED_PLACE : 0));
+                const bool isMoved = ofRow[x] && warp->isKnown(cell * x, cell * y);
+                ofRow[x] = (uchar)((isSame ? SAME_PLACE : 0) | (isMoved ? MOVED_PLACE : 0));
             }
         }
     });

@@ -4,7 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_TEMPORAL_SOURCES_HPP
 #define OPENCV_HDPSTEREO_TEMPORAL_SOURCES_HPP
 
-#include "temporal_prediction.hpp"
+#include "frame_memory.hpp"
+#include "frame_warp.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -13,12 +14,12 @@ struct TemporalSources
 {
     enum
     {
-        stillness = 5,      // halves of a grey level by which a cell that stands still changes at most
-        leastNoise = 3,     // grey levels, and
-        noiseFactor = 4,    // times the median of all changes: what is the same, and no more than moved as the camera
-        contrastShare = 70, // does, changes by no more, or by less than this percentage of the contrast around
-        farthest =
-            3 // pixels of the image from one source's disparity to the other's: beyond, one of them must be wrong
+        stillness = 5,      // halves of a grey level by which the mean of a cell that stands still changes at most
+        minNoise = 3,       // grey levels by which what is the same changes at most if the images have no noise
+        noiseFactor = 4,    // how much more that is with noise, in medians of the changes of all cells
+        contrastShare = 70, // percent of the contrast around by which what is the same changes at most if that is more
+        maxDistance = 3 // from the disparity of one source to that of the other, in pixels of the image: beyond, one of
+                        // them must be wrong
     };
 };
 
@@ -30,10 +31,14 @@ enum TemporalSource
 };
 
 /** Finds what each cell may take from the last frame: what looks different where the motion leads, by more than noise
-and by about the contrast, is something else.
-@param state What followVideo() found of a frame that is not the first; receives TemporalState::sources, of
-TemporalSource. */
-CV_EXPORTS void findSources(TemporalState& state);
+and by about the contrast, is something else. Changes and contrasts are means over the squares around a cell.
+@param before FrameMemory::grey[0] of the last frame.
+@param now That of this frame.
+@param warp Where its pixels were; none if the camera stands still: then a cell that looks the same is at the same place.
+@param scratch Memory to work in.
+@param sources CV_8UC1, receives TemporalSource of each cell. */
+CV_EXPORTS void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch,
+                            Mat& sources);
 
 }}} // namespace cv::stereo::hdp
 

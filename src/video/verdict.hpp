@@ -6,20 +6,20 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! What a frame has to do with the one before
+//! What a frame is to the one before
 enum Verdict
 {
-    FIRST,       //!< nothing: there is none, or it shows another scene
-    CONTINUED,   //!< it shows the same scene
-    CONTRADICTED //!< it seemed to, but its disparities are others
+    FIRST,       // a video begins: no last frame is known, or it shows another scene
+    CONTINUED,   // it shows the scene of the last frame
+    CONTRADICTED // its disparities contradict those of the last frame: one of the two pairs was a wrong one
 };
 
-//! What the matching of a frame depends on
+//! What of a video the matching of a frame depends on
 struct VideoFindings
 {
     Verdict verdict;
-    bool isStill;       // the camera has not moved since the frame before
-    bool isEstablished; // that frame has agreed with the one before it
+    bool isStill;  // the camera stands still
+    bool hasPrior; // the last frame predicts disparities, see hasPrior()
 };
 
 }}} // namespace cv::stereo::hdp

@@ -3,13 +3,14 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
-#include "temporal_prediction.hpp"
+#include "../base/disparity_units.hpp"
 #include "../base/vectorized.hpp"
+#include "frame_warp.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** A step of findShifts(): from the disparities of a row of blocks to where they were.
+/** A step of findWarp(): from the disparities of a row of blocks to where they were.
 @param motion The motion.
 @param size Of the layer.
 @param isFirst Whether there was no step before.

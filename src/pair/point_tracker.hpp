@@ -1,0 +1,97 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_POINT_TRACKER_HPP
+#define OPENCV_HDPSTEREO_POINT_TRACKER_HPP
+
+#include "opencv2/core.hpp"
+
+#include <vector>
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! The constants of choosePoints(), trackPoints() and trackNearby()
+struct PointTracking
+{
+    enum
+    {
+        coarsestWidth = 160,  // of the level that the search begins at, at most, in pixels
+        spacing = 4,          // of the points, in pixels of that level
+        side = 8,             // of the squares that are compared, in pixels of any level
+        searchRadius = 8,     // of trackPoints() on the coarsest level, in its pixels
+        refinementRadius = 2, // of all other searches, in pixels of their level
+        minTexture = 3        // grey levels from a pixel to the next, in both directions, on average over a square
+    };
+};
+
+//! No point of an image
+const Point nowhere(-1, -1);
+
+//! A point of the scene in two frames, in pixels
+struct TrackedPoint
+{
+    Point2d before, now;
+    double disparity; // in the frame before
+};
+
+/** Finds the best pixel of each cell of a grid, the first one of several.
+@param grid Number of cells.
+@param cell Side of a cell, in pixels.
+@param step From a candidate to the next, in pixels.
+@param minScore A pixel has to have more.
+@param score A copy of it for each thread tells what a pixel is worth: enterRow(y), then score(x) for some x.
+@param best Receives a pixel of each cell, row by row, or nowhere. */
+template <typename Score>
+void bestOfCells(Size grid, int cell, int step, double minScore, const Score& score, std::vector<Point>& best)
+{
+    best.assign(grid.area(), nowhere);
+    parallel_for_(Range(0, grid.height), [&](const Range& range) {
+        Score scoreOf(score);
+        std::vector<double> highest(grid.width);
+        for (int i = range.start; i < range.end; ++i)
+        {
+            std::fill(highest.begin(), highest.end(), minScore);
+            for (int y = i * cell; y < (i + 1) * cell; y += step)
+            {
+                scoreOf.enterRow(y);
+                for (int j = 0; j < grid.width; ++j)
+                    for (int x = j * cell; x < (j + 1) * cell; x += step)
+                    {
+                        const double value = scoreOf(x);
+                        if (value > highest[j])
+                        {
+                            highest[j] = value;
+                            best[i * grid.width + j] = Point(x, y);
+                        }
+                    }
+            }
+        }
+    });
+}
+
+//! Number of levels that trackPoints() needs if the finest one has this width
+CV_EXPORTS int trackingLevels(int width);
+
+/** Chooses points to be tracked: on a grid, where the image has texture in both directions.
+@param before Pyramid of the frame before, CV_8UC1, the finest level first, each of half the size of the one before.
+@param points Receives TrackedPoint::before of each, in pixels of the finest level. */
+CV_EXPORTS void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points);
+
+/** Finds points again, from the coarsest level to the finest: where the sum of absolute differences over a square has
+its minimum, with the fraction of a parabola.
+@param before Pyramid of the frame before.
+@param now That of this frame, of the same sizes.
+@param points Receives TrackedPoint::now of each; those that leave the image stay where they were. */
+CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now,
+                            std::vector<TrackedPoint>& points);
+
+/** Finds points again near the places where they are thought to be. See trackPoints().
+@param before Pyramid of the frame before.
+@param now That of this frame, of the same sizes.
+@param points TrackedPoint::now is a guess, or nowhere for a point that stays where it was; receives the place. */
+CV_EXPORTS void trackNearby(const std::vector<Mat>& before, const std::vector<Mat>& now,
+                            std::vector<TrackedPoint>& points);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,65 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_FRAME_MEMORY_HPP
+#define OPENCV_HDPSTEREO_FRAME_MEMORY_HPP
+
+#include "../base/disparity_units.hpp"
+#include "camera_motion.hpp"
+#include "verdict.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! What the disparities of a map stand for; only maps of the same key are compared.
+struct FrameKey
+{
+    int scale;           // pixels of the image in a side of a pixel
+    double minDisparity; // that the map counts from, in pixels of its layer
+    int largest;         // disparity of the map, in its units
+    int brightening;     // of the pair, see PairPyramids
+
+    bool operator==(const FrameKey& other) const
+    {
+        return scale == other.scale && minDisparity == other.minDisparity && largest == other.largest &&
+               brightening == other.brightening;
+    }
+};
+
+//! What a frame leaves to the next one
+struct FrameMemory
+{
+    int frames = 0; // from the one that the video began with up to this one; 0: there is none
+    FrameKey key = FrameKey();
+    CameraMotion motion;   // to this frame, in pixels of the layer
+    Mat disparity;         // CV_16UC1, a disparity map
+    Mat detail;            // CV_8UC1: four more bits of each disparity, and the number of frames it stands for
+    std::vector<Mat> grey; // CV_8UC1: the pyramid of the left image, from cells on
+
+    bool isEmpty() const { return frames == 0; }
+    void clear() { frames = 0; } // keeps the memory
+
+    enum
+    {
+        cell = 2, // side of the pixels of grey's finest level, in pixels of the layer
+        detailBits = 4,
+        countMask = (1 << detailBits) - 1,
+        scale = subpixelScale << detailBits // of disparities with all their bits: means over frames need them
+    };
+    static CV_ALWAYS_INLINE int finer(int disparity, int detail)
+    {
+        return (disparity << detailBits) + (detail >> detailBits) - (1 << (detailBits - 1)); // they were rounded
+    }
+};
+
+//! Memory to work in, kept from frame to frame
+struct VideoScratch
+{
+    std::vector<TrackedPoint> points;
+    Mat halved;                     // of predictFrame(): the left image
+    Mat warped, change, contrast;   // of findSources(), per cell
+    Mat sources, evidence, choices; // of joinLastFrame(), per cell
+};
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,79 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_FRAME_WARP_HPP
+#define OPENCV_HDPSTEREO_FRAME_WARP_HPP
+
+#include "camera_motion.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! Where the pixels of this frame were in the last one: square blocks of them moved together.
+struct FrameWarp
+{
+    enum
+    {
+        block = 4,          // side of a block, in pixels
+        unknown = SHRT_MIN, // in place of the x of a shift: the block was not in the last frame
+        steps = 4,          // of the search for a block, see findWarp()
+        maxLastStep = 2     // sum of both coordinates' changes in the last step of a block that was found, in pixels
+    };
+    Size size;  // of both frames
+    Mat shifts; // CV_16SC2, per block: from a pixel to where it was
+
+    bool isKnown(int x, int y) const { return shift(x, y)[0] != unknown; }
+
+    //! Where a pixel was, or the nearest pixel of the image
+    Point operator()(int x, int y) const
+    {
+        const Vec2s& s = shift(x, y);
+        return Point(std::min(std::max(x + s[0], 0), size.width - 1), std::min(std::max(y + s[1], 0), size.height - 1));
+    }
+
+    //! Calls take(x, from, count) for all pixels of a row: count pixels from x on were beside each other from a place on.
+    template <typename Take> void forEachRun(int y, const Take& take) const
+    {
+        for (int x = 0; x < size.width; x += block)
+        {
+            const int fromX = x + shift(x, y)[0];
+            if (fromX >= 0 && fromX + block <= size.width && x + block <= size.width)
+                take(x, Point(fromX, (*this)(x, y).y), +block);
+            else
+                for (int i = x; i < std::min(x + block, size.width); ++i)
+                    take(i, (*this)(i, y), 1);
+        }
+    }
+
+private:
+    const Vec2s& shift(int x, int y) const { return shifts.ptr<Vec2s>(y / block)[x / block]; }
+};
+
+/** Follows blocks back. Where one was depends on its disparity, and that on where it was: from the disparity that the last
+frame has at the same place, some steps lead to both.
+@param motion The camera's.
+@param disparity The map of the last frame.
+@param warp Receives where all blocks were: known are those whose centre stays in the image and comes to rest. */
+CV_EXPORTS void findWarp(const BackwardMotion& motion, const Mat& disparity, FrameWarp& warp);
+
+//! A row of blocks that findWarp() follows to where they were
+struct BlockRow
+{
+    enum State
+    {
+        MOVING,
+        ARRIVED,
+        OUTSIDE // of the last frame
+    };
+    int y, width, count;               // of the blocks' centres, of the layer, number of blocks
+    float* disparity;                  // of the centres now, if they were at (atX, atY)
+    int *atX, *atY, *lastStep, *state; // lastStep: sum of both coordinates' changes
+
+    CV_ALWAYS_INLINE int centre(int j) const
+    {
+        return std::min(j * FrameWarp::block + FrameWarp::block / 2, width - 1);
+    }
+};
+
+}}} // namespace cv::stereo::hdp
+
+#endif
