@@ -6,7 +6,8 @@
 #include "oracles.hpp"
 #include "../src/video/temporal_prior.hpp"
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 using namespace hdp;
 
@@ -211,4 +212,5 @@ TEST(HDPStereo_CostVolume, fill)
         }
 }
 
-}} // namespace opencv_test
+} // namespace
+} // namespace opencv_test

@@ -11,8 +11,8 @@ namespace cv { namespace stereo { namespace hdp {
 /** How the cameras moved from one frame to the next, as a scene at rest shows it in the left image: a point that was at
 (x, y) with disparity d is now at (X / W, Y / W) with disparity d / W, where (X, Y, d, W) = forward * (x, y, d, 1).
 
-Every rigid motion is such a matrix, whatever focal length and baseline are: the columns of x, y and 1 are the homography
-of points at infinity, the column of d is the epipole. */
+Every rigid motion is such a matrix, whatever focal length and baseline are: the columns of x, y and 1 are the
+homography of points at infinity, the column of d is the epipole. */
 struct CameraMotion
 {
     Matx44d forward = Matx44d::eye();
