@@ -268,7 +268,7 @@ TEST(HDPStereo_FramePrediction, first)
     FrameKey others[] = { usualKey(), usualKey(), usualKey(), usualKey() };
     others[0].scale = 2;
     others[1].minDisparity = -1;
-    others[2].largest += subpixelScale;
+    others[2].maxDisparity += subpixelScale;
     others[3].brightening = 1;
     for (const FrameKey& other : others)
     {

@@ -29,7 +29,7 @@ struct RandomFrames
         last.detail.create(size, CV_8U);
         prediction.verdict = CONTINUED;
         prediction.key.scale = scale;
-        prediction.key.largest = maxDisparity;
+        prediction.key.maxDisparity = maxDisparity;
         prediction.motion.isStill = isStill;
         if (!isStill)
         {
