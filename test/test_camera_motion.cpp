@@ -6,7 +6,8 @@
 #include "synthetic_video.hpp"
 #include "../src/video/camera_motion.hpp"
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 using namespace cv::stereo::hdp;
 
@@ -205,4 +206,5 @@ TEST(HDPStereo_CameraMotion, tracks_nothing_without_texture)
     EXPECT_TRUE(points.empty());
 }
 
-}} // namespace opencv_test
+} // namespace
+} // namespace opencv_test

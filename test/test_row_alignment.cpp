@@ -169,7 +169,7 @@ TEST(HDPStereo_RowAlignment, matches_correlate_best)
     hdp::greyLevels(misalign(pair.right, makeModel(1)), 8, right);
     hdp::SearchWindows windows;
     std::vector<hdp::CornerMatch> matches;
-    hdp::findCornerMatches(left, right, 25, hdp::CornerMatching::leastSpacing, windows, matches);
+    hdp::findCornerMatches(left, right, 25, hdp::CornerMatching::minSpacing, windows, matches);
     int valid = 0, oneRow = 0;
     for (const hdp::CornerMatch& match : matches)
     {
@@ -197,14 +197,14 @@ TEST(HDPStereo_RowAlignment, matches_within_few_disparities)
     hdp::greyLevels(pair.right, 8, right);
     hdp::SearchWindows windows;
     std::vector<hdp::CornerMatch> matches;
-    hdp::findCornerMatches(left, right, 4, hdp::CornerMatching::leastSpacing, windows, matches);
+    hdp::findCornerMatches(left, right, 4, hdp::CornerMatching::minSpacing, windows, matches);
     int valid = 0, atBorder = 0;
     for (const hdp::CornerMatch& match : matches)
     {
         if (!match.isValid)
             continue;
         ++valid;
-        atBorder += match.left.x < hdp::SearchArea::leastColumns + hdp::CornerMatching::searchSide / 2;
+        atBorder += match.left.x < hdp::SearchArea::minColumns + hdp::CornerMatching::searchSide / 2;
         EXPECT_GE(match.left.x, match.x);
         EXPECT_LE(match.left.x - match.x, 3);
     }

@@ -6,7 +6,8 @@
 #include "oracles.hpp"
 #include "../src/video/temporal_prior.hpp"
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 using namespace hdp;
 
@@ -45,7 +46,7 @@ struct MovedVideo
         last.disparity = Mat(layerSize, CV_16U, Scalar(disparity));
         next.verdict = CONTINUED;
         next.key.scale = 1;
-        next.key.largest = side * candidates * subpixelScale;
+        next.key.maxDisparity = side * candidates * subpixelScale;
         next.motion.isStill = false;
         next.motion.forward(0, 3) = -FrameMemory::cell;
         next.backward = BackwardMotion(next.motion, 0, side * candidates);
@@ -211,4 +212,5 @@ TEST(HDPStereo_CostVolume, fill)
         }
 }
 
-}} // namespace opencv_test
+} // namespace
+} // namespace opencv_test

@@ -110,9 +110,9 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     match.isValid = false;
     const int side = CornerMatching::searchSide, pixels = side * side, rows = 2 * CornerMatching::searchRadius + 1;
     const Point first = match.left - Point(side / 2, side / 2);
-    const int least = SearchArea::leastColumns;
-    const int x0 = std::max(first.x + 1 - std::max(numDisparities, least), 0), count = first.x + 1 - x0;
-    const int y0 = first.y - CornerMatching::searchRadius, columns = std::max(count, least);
+    const int minColumns = SearchArea::minColumns;
+    const int x0 = std::max(first.x + 1 - std::max(numDisparities, minColumns), 0), count = first.x + 1 - x0;
+    const int y0 = first.y - CornerMatching::searchRadius, columns = std::max(count, minColumns);
     const ushort* const window = left.ptr<ushort>(first.y) + first.x;
     int memory[2 * CornerMatching::searchSide], sum;
     float scale;
@@ -246,9 +246,9 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
     buildPyramid(left, coarse.layer + 1, coarse.left);
     buildPyramid(right, coarse.layer + 1, coarse.right);
     const Mat &coarseLeft = coarse.left[coarse.layer], &coarseRight = coarse.right[coarse.layer];
-    if (std::min(coarseLeft.rows, coarseLeft.cols) < CornerMatching::leastSide)
+    if (std::min(coarseLeft.rows, coarseLeft.cols) < CornerMatching::minSide)
         return;
-    const int spacing = std::max(CornerMatching::spacing >> coarse.layer, (int)CornerMatching::leastSpacing);
+    const int spacing = std::max(CornerMatching::spacing >> coarse.layer, (int)CornerMatching::minSpacing);
     findCornerMatches(coarseLeft, coarseRight, layerDisparities(numDisparities, coarse.layer, true), spacing,
                       coarse.windows, coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);

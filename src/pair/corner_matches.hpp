@@ -13,17 +13,17 @@ struct CornerMatching
 {
     enum
     {
-        points = 500,     // at most so many, one per cell of a grid
-        spacing = 10,     // side of a cell, in pixels of the image, at least: windows of nearer corners see the same
-        leastSpacing = 4, // the same in pixels of the coarse layer
+        points = 500,     // maximum number of corners, one per cell of a grid
+        spacing = 10,     // minimum side of a cell, in pixels of the image: windows of nearer corners see the same
+        minSpacing = 4,   // minimum side of a cell, in pixels of the coarse layer
         tensorSide = 7,   // of the window that tells how much of a corner a pixel is
         searchRadius = 2, // rows above and below that are searched on the coarse layer
         searchSide = 9,   // of the window there
         trackWidth = 16,  // of the window on the finer layers
         trackHeight = 13,
         iterations = 3,
-        leastSide = 2 * (searchSide + searchRadius), // of the coarse layer
-        coarseArea = 45000                           // of that layer, at most, in pixels
+        minSide = 2 * (searchSide + searchRadius), // of the coarse layer
+        coarseArea = 45000                         // maximum of that layer, in pixels
     };
 };
 
@@ -50,10 +50,10 @@ struct SearchArea
     const int* sums;
     const float* scales;
     size_t step, sumStep; // from a row to the next
-    int rows, columns;    // at least leastColumns
+    int rows, columns;    // at least minColumns
     enum
     {
-        leastColumns = 8
+        minColumns = 8
     };
 };
 

@@ -135,7 +135,7 @@ void windowSums(const ushort* first, size_t step, int count, int* columns, int* 
 
 void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations)
 {
-    const int side = CornerMatching::searchSide, pixels = side * side, lanes = SearchArea::leastColumns;
+    const int side = CornerMatching::searchSide, pixels = side * side, lanes = SearchArea::minColumns;
     short window[CornerMatching::searchSide * CornerMatching::searchSide];
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x)

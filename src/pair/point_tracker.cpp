@@ -50,19 +50,19 @@ int texture(const Mat& image, Point at)
     return std::min(sumX, sumY);
 }
 
-//! The pixel with the least difference, among those at most radius pixels away from a guess
+//! The pixel with the minimum of the difference, among those up to radius pixels away from a guess
 Point search(const Mat& before, Point from, const Mat& now, Point guess, int radius)
 {
     Point best = nowhere;
-    int least = INT_MAX;
+    int minSum = INT_MAX;
     for (int y = guess.y - radius; y <= guess.y + radius; ++y)
         for (int x = guess.x - radius; x <= guess.x + radius; ++x)
         {
             const Point to(x, y);
             const int sum = isInside(now, to) ? difference(before, from, now, to) : INT_MAX;
-            if (sum < least)
+            if (sum < minSum)
             {
-                least = sum;
+                minSum = sum;
                 best = to;
             }
         }

@@ -15,7 +15,7 @@ struct PointTracking
 {
     enum
     {
-        coarsestWidth = 160,  // of the level that the search begins at, at most, in pixels
+        coarsestWidth = 160,  // maximum width of the level that the search begins at, in pixels
         spacing = 4,          // of the points, in pixels of that level
         side = 8,             // of the squares that are compared, in pixels of any level
         searchRadius = 8,     // of trackPoints() on the coarsest level, in its pixels

@@ -14,7 +14,7 @@ namespace {
 
 typedef MotionFit T;
 
-// Of a motion: the rows of X, Y and W, but for the 1 that is the last of W
+// What a motion has: the rows of X, Y and W, but for the 1 that is the last of W
 const int terms = 11;
 typedef Matx<double, terms, 1> Terms;
 typedef Matx<double, terms, terms> NormalMatrix;
@@ -162,7 +162,7 @@ DisparityChange correctedChange(const DisparityChange& change, const std::vector
     return corrected;
 }
 
-BackwardMotion::BackwardMotion(const CameraMotion& motion, double minDisparity, double largest)
+BackwardMotion::BackwardMotion(const CameraMotion& motion, double minDisparity, double maxDisparity)
 {
     const Matx44d inverse = motion.forward.inv();
     const Matx44d ofMap = inverse * Matx44d(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, minDisparity, 0, 0, 0, 1);
@@ -174,7 +174,7 @@ BackwardMotion::BackwardMotion(const CameraMotion& motion, double minDisparity, 
     }
     const DisparityChange change = {
         (float)inverse(3, 0), (float)inverse(3, 1), (float)inverse(3, 2), (float)inverse(3, 3), 0.f,
-        (float)minDisparity,  (float)largest
+        (float)minDisparity,  (float)maxDisparity
     };
     change_ = change;
 }

@@ -11,8 +11,8 @@ namespace cv { namespace stereo { namespace hdp {
 /** How the cameras moved from one frame to the next, as a scene at rest shows it in the left image: a point that was at
 (x, y) with disparity d is now at (X / W, Y / W) with disparity d / W, where (X, Y, d, W) = forward * (x, y, d, 1).
 
-Every rigid motion is such a matrix, whatever focal length and baseline are: the columns of x, y and 1 are the homography
-of points at infinity, the column of d is the epipole. */
+Every rigid motion is such a matrix, whatever focal length and baseline are: the columns of x, y and 1 are the
+homography of points at infinity, the column of d is the epipole. */
 struct CameraMotion
 {
     Matx44d forward = Matx44d::eye();
@@ -26,19 +26,19 @@ struct MotionFit
     enum
     {
         minPoints = 30,   // with fewer of them, there is no motion
-        fittingRounds = 3 // of reweighted least squares, after those with larger tolerances
+        fittingRounds = 3 // of reweighted least squares with the last tolerance, after those with larger ones
     };
 };
 
 /** Moves points to where a motion takes them.
 @param motion In pixels of the points, disparities as well.
-@param size Of the image; points that leave it are nowhere.
+@param size The image's; points that leave it are nowhere.
 @param points Receives TrackedPoint::now of each. */
 CV_EXPORTS void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>& points);
 
 /** Fits a motion to most of the points. Those that do not fit, as on things that move by themselves, lose their weight.
 @param points The points.
-@param size Of the image that their positions are in.
+@param size That of the image that their positions are in.
 @param tolerance How far from a first guess they may be, in pixels.
 @return The motion; none if most of the points are where they were. */
 CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance);
@@ -51,7 +51,7 @@ CV_EXPORTS CameraMotion scaled(const CameraMotion& motion, double scale);
 struct DisparityChange
 {
     float ofX, ofY, ofDisparity, constant, offset;
-    float minDisparity, largest; // of a map, which counts from minDisparity; the next two do as well
+    float minDisparity, maxDisparity; // of a map, which counts from the first one, as the next two disparities do
 
     CV_ALWAYS_INLINE float ofRow(int y) const { return ofY * y + constant; }
     //! place: ofX x + ofRow(y)
@@ -61,7 +61,7 @@ struct DisparityChange
         const float positive = w > 0.1f ? w : 0.1f; // less is at the camera or behind it
         const float disparity = old * place / positive + offset - minDisparity;
         const float notNegative = disparity > 0 ? disparity : 0;
-        return notNegative < largest ? notNegative : largest;
+        return notNegative < maxDisparity ? notNegative : maxDisparity;
     }
 };
 
@@ -74,21 +74,21 @@ factor d + offset, both fitted robustly.
 CV_EXPORTS DisparityChange correctedChange(const DisparityChange& change, const std::vector<float>& predicted,
                                            const std::vector<float>& measured);
 
-//! From a pixel of this frame to where it was; disparities count from minDisparity, up to largest, in pixels.
+//! From a pixel of this frame to where it was; disparities count from minDisparity, up to maxDisparity, in pixels.
 class CV_EXPORTS BackwardMotion
 {
 public:
     BackwardMotion() {}
-    BackwardMotion(const CameraMotion& motion, double minDisparity, double largest);
+    BackwardMotion(const CameraMotion& motion, double minDisparity, double maxDisparity);
 
     //! Where a pixel was if this is its disparity now; at negative coordinates if it is behind the camera
     CV_ALWAYS_INLINE Point2f place(int x, int y, float disparity) const
     {
-        const float least = 0.001f, w = w_[0] * x + w_[1] * y + w_[2] * disparity + w_[3];
-        const float factor = 1 / (w > least ? w : least);
+        const float minW = 0.001f, w = w_[0] * x + w_[1] * y + w_[2] * disparity + w_[3];
+        const float factor = 1 / (w > minW ? w : minW);
         const float placeX = (x_[0] * x + x_[1] * y + x_[2] * disparity + x_[3]) * factor;
         const float placeY = (y_[0] * x + y_[1] * y + y_[2] * disparity + y_[3]) * factor;
-        return Point2f(w > least ? placeX : -1, w > least ? placeY : -1);
+        return Point2f(w > minW ? placeX : -1, w > minW ? placeY : -1);
     }
 
     const DisparityChange& change() const { return change_; }

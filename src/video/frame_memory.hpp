@@ -15,12 +15,12 @@ struct FrameKey
 {
     int scale;           // pixels of the image in a side of a pixel
     double minDisparity; // that the map counts from, in pixels of its layer
-    int largest;         // disparity of the map, in its units
+    int maxDisparity;    // that the map may have, in its units
     int brightening;     // of the pair, see PairPyramids
 
     bool operator==(const FrameKey& other) const
     {
-        return scale == other.scale && minDisparity == other.minDisparity && largest == other.largest &&
+        return scale == other.scale && minDisparity == other.minDisparity && maxDisparity == other.maxDisparity &&
                brightening == other.brightening;
     }
 };

@@ -30,7 +30,8 @@ struct FrameWarp
         return Point(std::min(std::max(x + s[0], 0), size.width - 1), std::min(std::max(y + s[1], 0), size.height - 1));
     }
 
-    //! Calls take(x, from, count) for all pixels of a row: count pixels from x on were beside each other from a place on.
+    //! Calls take(x, from, count) for all pixels of a row, in runs: count pixels from x on were side by side, the first of
+    //! them at from.
     template <typename Take> void forEachRun(int y, const Take& take) const
     {
         for (int x = 0; x < size.width; x += block)
@@ -48,8 +49,8 @@ private:
     const Vec2s& shift(int x, int y) const { return shifts.ptr<Vec2s>(y / block)[x / block]; }
 };
 
-/** Follows blocks back. Where one was depends on its disparity, and that on where it was: from the disparity that the last
-frame has at the same place, some steps lead to both.
+/** Follows blocks back. Where one was depends on its disparity, and that on where it was: from the disparity that the
+last frame has at the same place, some steps lead to both.
 @param motion The camera's.
 @param disparity The map of the last frame.
 @param warp Receives where all blocks were: known are those whose centre stays in the image and comes to rest. */

@@ -12,7 +12,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** A step of findWarp(): from the disparities of a row of blocks to where they were.
 @param motion The motion.
-@param size Of the layer.
+@param size That of the layer.
 @param isFirst Whether there was no step before.
 @param row The blocks.
 @return Whether all of them have arrived. */

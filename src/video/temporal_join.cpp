@@ -119,6 +119,7 @@ bool choose(const LastFrame& frame, VideoScratch& scratch)
 {
     const Size cells = frame.cells();
     const int radius = T::window / 2, stripeHeight = 32, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
+    // No pair has agreed with a first frame yet: from there, nothing that contradicts is taken.
     const int movedShare = frame.memory.frames == 1 ? T::wrongShare : T::movedShare;
     std::vector<int> sourceCounts(cells.height), contradicted(cells.height);
     scratch.choices.create(cells, CV_8U);

@@ -14,13 +14,12 @@ struct TemporalJoin
 {
     enum
     {
-        window = 7,        // side of the square that costs are compared over, in cells
-        sameDisparity = 1, // in pixels: costs of disparities no farther apart are not compared
-        costOffset = 6,    // what is added to the cost of the measured disparity for the shares below, in bits of 24
-        keptShare = 26, // percent of that sum by which a disparity of the last frame may cost more if the camera stands
-        movedShare = 60, // still, and if it moved
-        wrongShare =
-            33, // percent beyond which a cell contradicts the last frame; the second frame takes no more either
+        window = 7,             // side of the square that costs are compared over, in cells
+        sameDisparity = 1,      // in pixels: costs of disparities no farther apart are not compared
+        costOffset = 6,         // what the measured disparity's cost gets before shares are taken of it, in bits of 24
+        keptShare = 26,         // percent of that sum that another disparity may cost more if the camera stands still
+        movedShare = 60,        // percent of that sum that another disparity may cost more if the camera moved
+        wrongShare = 33,        // percent of that sum beyond which a cell contradicts the last frame
         contradictedShare = 30, // percent of the cells with a source: if more of them contradict, a pair was wrong
         fringe = 2,          // pixels beside one that agrees: what disagrees there, where the motion leads, is measured
         driftStep = 12,      // from a cell that corrects the predicted disparities to the next, in cells
@@ -32,7 +31,7 @@ struct TemporalJoin
     };
 };
 
-//! Of a cell, for the two disparities that the last frame may have for it
+//! What is known of a cell, for each of the two disparities that the last frame may have for it
 enum TemporalEvidence
 {
     COST_UNMOVED, // what it costs more than the measured one

@@ -11,9 +11,9 @@ namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** A row of the frame before as joinRow() takes it.
-@param disparity Of FrameMemory.
-@param detail Of FrameMemory.
-@param width Of the row.
+@param disparity FrameMemory's.
+@param detail FrameMemory's.
+@param width Number of pixels.
 @param finer Receives the disparities in 1 / FrameMemory::scale pixel.
 @param counts Receives how many frames each stands for. */
 void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts);
@@ -42,7 +42,7 @@ are far apart.
 @param moved Those where the motion leads, of each cell, as of changeDisparities().
 @param count Number of cells.
 @param maxDistance TemporalSources::maxDistance, in units of a map.
-@param sources Of each cell.
+@param sources What each cell may take.
 @param used Receives those of them that count.
 @param different Receives which of the sources have another disparity than the measured one. */
 void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int maxDistance,
@@ -60,8 +60,8 @@ void compareCells(const ComparedRow* rows, const int* moved, const uchar* differ
                   int offset, short* evidence);
 
 /** Chooses for the cells of a row.
-@param sums Of the evidence over the window of each.
-@param sources Of each.
+@param sums Sums of the evidence over the window of each.
+@param sources What each may take.
 @param count Number of cells.
 @param isStill Whether the camera is at rest.
 @param movedShare TemporalJoin's, for the choices.
@@ -111,10 +111,10 @@ inline int choiceOf(const short* sums, int sources, int isStill, int movedShare)
     const int unmoved = sums[COST_UNMOVED], moved = sums[COST_MOVED];
     const int scaleUnmoved = sums[SCALE_UNMOVED], scaleMoved = sums[SCALE_MOVED];
     const int hasUnmoved = sources & 1, hasMoved = (sources >> 1) & (isStill ^ 1);
-    const int least = std::min(moved, 0) & -hasMoved;
+    const int best = std::min(moved, 0) & -hasMoved;
     const int scale = select(isStill, scaleUnmoved, std::max(scaleUnmoved, scaleMoved));
     const int share = select(isStill, T::keptShare, movedShare);
-    const int takesUnmoved = hasUnmoved & (100 * (unmoved - least) <= share * scale);
+    const int takesUnmoved = hasUnmoved & (100 * (unmoved - best) <= share * scale);
     const int takesMoved = hasMoved & (100 * moved <= movedShare * scaleMoved);
     return select(takesUnmoved, UNMOVED, takesMoved * MOVED);
 }

@@ -89,7 +89,7 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
     p.motion = findMotion(last, p.grey, scratch.points);
-    p.backward = BackwardMotion(p.motion, key.minDisparity, (double)key.largest / subpixelScale);
+    p.backward = BackwardMotion(p.motion, key.minDisparity, (double)key.maxDisparity / subpixelScale);
     if (!p.motion.isStill)
         findWarp(p.backward, last.disparity, p.warp);
     if (isCut(last.grey, p))

@@ -26,7 +26,7 @@ struct FramePrediction
     CameraMotion motion;     // from the last frame, in pixels of the layer; none for a first frame
     std::vector<Mat> grey;   // of this frame, see FrameMemory
 
-    // Of a frame that continues
+    // Only if the frame continues
     BackwardMotion backward; // the same motion
     FrameWarp warp;          // the same for all pixels; unknown if the camera stands still
     Mat sources;             // CV_8UC1, of TemporalSource per cell, see findSources()
@@ -35,10 +35,11 @@ struct FramePrediction
     bool isMoving() const { return verdict == CONTINUED && !motion.isStill; }
 };
 
-/** Finds how the camera moved since the last frame, where everything was then, and what may be taken from there. A frame is
-the first one if nothing is remembered, at another size, with disparities of another key, and if it shows another scene.
+/** Finds how the camera moved since the last frame, where everything was then, and what may be taken from there. A frame
+is the first one if nothing is remembered, at another size, with disparities of another key, and if it shows another
+scene.
 @param left The left image of the finest layer that is matched, see greyLevels().
-@param key Of the disparities that this layer will have.
+@param key What this layer's disparities will stand for.
 @param last What the last frame left.
 @param scratch Memory to work in.
 @param prediction Receives all that is known. */

@@ -28,7 +28,7 @@ CostVolume::prefer(). Where the image stands still and looks moved as well, with
 none.
 @param last The last frame.
 @param prediction What predictFrame() found; see hasPrior().
-@param side Of the volume's pixels, in pixels of the layer that the prediction is of.
+@param side That of the volume's pixels, in pixels of the layer that the prediction is of.
 @param areMeans Whether the costs are means over trees; those that contradict then stay.
 @param volume The costs, changed. */
 CV_EXPORTS void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side, bool areMeans,

@@ -34,7 +34,7 @@ enum TemporalSource
 and by about the contrast, is something else. Changes and contrasts are means over the squares around a cell.
 @param before FrameMemory::grey[0] of the last frame.
 @param now That of this frame.
-@param warp Where its pixels were; none if the camera stands still: then a cell that looks the same is at the same place.
+@param warp Where its pixels were; none if the camera stands still: what looks the same is at the same place then.
 @param scratch Memory to work in.
 @param sources CV_8UC1, receives TemporalSource of each cell. */
 CV_EXPORTS void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch,

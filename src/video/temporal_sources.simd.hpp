@@ -10,8 +10,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** Sums over the squares around the pixels of a row; beside it are the nearest ones.
 @param rows The rows of the squares.
-@param radius Of the squares.
-@param width Of the rows.
+@param radius 1 or 2, from a square's centre to its side.
+@param width Number of pixels.
 @param columns Memory for a row, and radius elements on both sides.
 @param sums Receives the sums. */
 void sumSquares(const uchar* const* rows, int radius, int width, ushort* columns, ushort* sums);
