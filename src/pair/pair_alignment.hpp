@@ -51,8 +51,8 @@ smooths the grey levels of noisy pairs. The guides stay.
 @param buffers Memory to work in.
 @param images Those of buildPairPyramids(); they may change.
 @param findings Receives what was found. */
-void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
-               PairFindings& findings);
+CV_EXPORTS void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
+                          PairFindings& findings);
 
 }}} // namespace cv::stereo::hdp
 

@@ -52,8 +52,8 @@ see countUnusedBits(): what counts in levels, as edges, noise and thresholds do,
 changes it.
 @param pyramids Memory to work in.
 @param images Receives the images of each layer. */
-void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan, const int* lastBrightening,
-                       PairPyramids& pyramids, std::vector<LayerImages>& images);
+CV_EXPORTS void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan,
+                                  const int* lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images);
 
 //! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:
 //! shifted(x + extension) = right(x - minDisparity), the nearest column where there is none.

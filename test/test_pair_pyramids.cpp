@@ -1,0 +1,124 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "oracles.hpp"
+#include "../src/pair/image_levels.hpp"
+#include "../src/pair/pair_pyramids.hpp"
+
+namespace opencv_test { namespace {
+
+//! The image with more columns on the left, moved: extended(x) = image(x - extension - shift), the nearest column where
+//! there is none.
+Mat moved(const Mat& image, int extension, int shift)
+{
+    Mat result(image.rows, image.cols + extension, image.type());
+    for (int x = 0; x < result.cols; ++x)
+        image.col(oracle::clamped(x - extension - shift, image.cols)).copyTo(result.col(x));
+    return result;
+}
+
+//! How often the levels of a pair can be doubled, up to twice, with all of its pixels but one in 128 below white
+int expectedBrightening(const Mat& left, const Mat& right)
+{
+    for (int doubled = 2; doubled > 0; --doubled)
+        if ((countNonZero(left >= (1024 >> doubled)) + countNonZero(right >= (1024 >> doubled))) * 64 <=
+            (int)left.total())
+            return doubled;
+    return 0;
+}
+
+//! A picture whose levels are below a limit
+Mat darkImage(RNG& rng, Size size, int type, int levels)
+{
+    if (CV_MAT_DEPTH(type) == CV_16U)
+        return randomImage(rng, size, type, levels * 256);
+    return randomImage(rng, size, type, levels);
+}
+
+TEST(HDPStereo_PairPyramids, layers_of_both_images)
+{
+    RNG rng(52);
+    for (int round = 0; round < 48; ++round)
+    {
+        const int types[] = { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 }, type = types[round % 4];
+        const int levels = round % 3 == 0 ? 256 : round % 3 == 1 ? 110 : 50;
+        const Size size(rng.uniform(9, 40), rng.uniform(9, 40));
+        const int minDisparity = rng.uniform(-8, 9), extension = minDisparity < 0 ? rng.uniform(0, 3) * 4 : 0;
+        const hdp::PyramidPlan plan = { minDisparity, extension, 3, round % 5 != 0, false };
+        SCOPED_TRACE(testing::Message() << "round " << round << ", type " << type << ", " << size);
+        const Mat left = darkImage(rng, size, type, levels), right = darkImage(rng, size, type, levels);
+        const Mat extendedLeft = moved(left, plan.extension, 0);
+        const Mat extendedRight = moved(right, plan.extension, plan.minDisparity);
+
+        int bits = hdp::countBits(left, right), brightening = 0;
+        Mat grey[2], buffer[2];
+        hdp::greyLevels(extendedLeft, bits, grey[0]);
+        hdp::greyLevels(extendedRight, bits, grey[1]);
+        if (plan.isCensus)
+            brightening = hdp::countUnusedBits(grey[0], grey[1]);
+        bits -= brightening;
+        hdp::greyLevels(extendedLeft, bits, grey[0]);
+        hdp::greyLevels(extendedRight, bits, grey[1]);
+        Mat guide = hdp::byteLevels(extendedLeft, bits, buffer[0]).clone();
+        Mat costs[2] = { plan.isCensus ? grey[0] : guide,
+                         plan.isCensus ? grey[1] : hdp::byteLevels(extendedRight, bits, buffer[1]).clone() };
+
+        hdp::PairPyramids pyramids;
+        std::vector<hdp::LayerImages> images;
+        hdp::buildPairPyramids(left, right, plan, nullptr, pyramids, images);
+        EXPECT_EQ(brightening, pyramids.brightening);
+        EXPECT_FALSE(pyramids.isDimmed);
+        ASSERT_EQ((size_t)plan.layers, images.size());
+        for (const hdp::LayerImages& layer : images)
+        {
+            expectIdentical(guide, layer.guide);
+            expectIdentical(costs[0], layer.left);
+            expectIdentical(costs[1], layer.right);
+            guide = oracle::halve(guide);
+            costs[0] = oracle::halve(costs[0]);
+            costs[1] = oracle::halve(costs[1]);
+        }
+    }
+}
+
+TEST(HDPStereo_PairPyramids, unused_bits)
+{
+    RNG rng(53);
+    int seen[3] = { 0, 0, 0 };
+    for (int round = 0; round < 60; ++round)
+    {
+        const Size size(rng.uniform(10, 60), rng.uniform(10, 60));
+        const int levels = rng.uniform(1, 5) * 255;
+        Mat grey[2];
+        for (Mat& image : grey)
+        {
+            image = randomImage(rng, size, CV_16UC1, levels);
+            for (int lamps = rng.uniform(0, 20); lamps > 0; --lamps)
+                image.at<ushort>(rng.uniform(0, size.height), rng.uniform(0, size.width)) = 1023;
+        }
+        const int expected = expectedBrightening(grey[0], grey[1]);
+        EXPECT_EQ(expected, hdp::countUnusedBits(grey[0], grey[1])) << "round " << round;
+        ++seen[expected];
+    }
+    EXPECT_TRUE(seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
+}
+
+//! A frame is as bright as the last one if it could be brighter by one step.
+TEST(HDPStereo_PairPyramids, keeps_the_brightening_of_the_last_frame)
+{
+    RNG rng(54);
+    const Mat left = randomImage(rng, Size(64, 48), CV_8UC1, 60), right = randomImage(rng, Size(64, 48), CV_8UC1, 60);
+    const hdp::PyramidPlan plan = { 0, 0, 2, true, false };
+    std::vector<hdp::LayerImages> images;
+    for (int last = 0; last <= 2; ++last)
+    {
+        hdp::PairPyramids pyramids;
+        hdp::buildPairPyramids(left, right, plan, &last, pyramids, images);
+        EXPECT_EQ(last == 1 ? 1 : 2, pyramids.brightening) << last;
+        EXPECT_EQ(last == 1, pyramids.isDimmed) << last;
+    }
+}
+
+}} // namespace opencv_test
