@@ -13,12 +13,8 @@ void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& str
     weighEdges(image, forest.weights);
     forest.links.create(image.size(), CV_8U);
     forest.links.setTo(Scalar::all(0));
-    buffers.trees.nodes.resize(image.total());
-    const bool links = link && strategy.linksTrees();
-    if (strategy.ordersByWeight())
-        joinByWeight(strategy, forest.weights, pixelIntv, beta, links, buffers.trees, buffers.stripes, forest.links);
-    else
-        joinInOrder(strategy, forest.weights, pixelIntv, beta, links, buffers.trees, buffers.edges, forest.links);
+    joinTrees(strategy, forest.weights, pixelIntv, beta, link && strategy.linksTrees(), buffers.trees, buffers.stripes,
+              forest.links);
     const std::vector<GrowingTrees::Node>& nodes = buffers.trees.nodes;
     for (size_t i = 0; i < nodes.size(); ++i)
         if (nodes[i].parent < 0)

@@ -4,7 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_DISPARITY_FOREST_HPP
 #define OPENCV_HDPSTEREO_DISPARITY_FOREST_HPP
 
-#include "striped_joiner.hpp"
+#include "forest_edges.hpp"
+#include "tree_joiner.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -27,7 +28,6 @@ struct DisparityForest
 struct ForestBuffers
 {
     GrowingTrees trees;
-    std::vector<int> edges;
     std::vector<JoinerStripe> stripes;
 };
 

@@ -36,11 +36,10 @@ v_uint8x16 differences(const uchar* a, const uchar* b, int channels)
 }
 #endif
 
-//! DT-Rule 1: the weight of an edge that is kept, or EdgeRow::none.
-ushort weightIfKept(int weight, const DisparityInterval& a, const DisparityInterval& b)
+//! DT-Rule 1, without a branch
+bool isKept(int weight, const DisparityInterval& a, const DisparityInterval& b)
 {
-    const bool isKept = (weight <= largestSparedWeight) | intersect(a, b); // without a branch
-    return isKept ? (ushort)weight : (ushort)EdgeRow::none;
+    return (weight <= largestSparedWeight) | (std::max(a.first, b.first) <= std::min(a.last, b.last));
 }
 
 } // namespace
@@ -73,68 +72,41 @@ void weighEdges(const Mat& image, Mat& weights)
     });
 }
 
-EdgeRow::EdgeRow(int width) : width_(width), buffer_(3 * (width + 2))
+void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges)
 {
-    right = &buffer_[1];
-    below = right + width + 2;
-    uniform = below + width + 2;
-}
-
-void EdgeRow::load(const Mat& weights, const Mat& pixelIntv, int y)
-{
-    const int width = width_, padded = width + 2;
-    std::fill(buffer_.begin(), buffer_.begin() + 2 * padded, none + 0);
-    std::fill(buffer_.begin() + 2 * padded, buffer_.end(), (ushort)0);
-    if (y < 0 || y >= weights.rows)
-        return;
-    const uchar* weight = weights.ptr(y);
-    const DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
-    for (int x = 0; x + 1 < width; ++x)
-        right[x] = weightIfKept(weight[2 * x], interval[x], interval[x + 1]);
-    if (y + 1 == weights.rows)
-        return;
-    const DisparityInterval* next = pixelIntv.ptr<DisparityInterval>(y + 1);
-    for (int x = 0; x < width; ++x)
-        below[x] = weightIfKept(weight[2 * x + 1], interval[x], next[x]);
-    for (int x = 0; x + 1 < width; ++x)
-        uniform[x] = isUniform(interval + x, next + x);
-}
-
-void selectEdges(const Mat& weights, const Mat& pixelIntv, std::vector<int>& edges)
-{
-    const int width = weights.cols;
-    EdgeRow row(width);
-    edges.clear();
-    for (int y = 0; y < weights.rows; ++y)
+    const int width = weights.cols, begin = std::max(rows.start - 1, 0);
+    edges.resize((size_t)(rows.end - begin) * width * 2);
+    size_t count = 0;
+    for (int y = begin; y < rows.end; ++y)
     {
-        row.load(weights, pixelIntv, y);
-        for (int x = 0; x < width; ++x)
+        const uchar* weight = weights.ptr(y);
+        const DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
+        const DisparityInterval* next = pixelIntv.ptr<DisparityInterval>(std::min(y + 1, weights.rows - 1));
+        const bool hasRight = y >= rows.start, hasBelow = y + 1 < weights.rows;
+        for (int x = 0; x < width; ++x) // without branches, which would often be mispredicted
         {
-            const int edge = 2 * (y * width + x);
-            if (row.right[x] != EdgeRow::none)
-                edges.push_back(edge);
-            if (row.below[x] != EdgeRow::none)
-                edges.push_back(edge + 1);
+            const int edge = 2 * (y * width + x), right = std::min(x + 1, width - 1);
+            edges[count] = edge;
+            count += hasRight & (x < right) & isKept(weight[2 * x], interval[x], interval[right]);
+            edges[count] = edge + 1;
+            count += hasBelow & isKept(weight[2 * x + 1], interval[x], next[x]);
         }
     }
+    edges.resize(count);
 }
 
-void sortByWeight(const Mat& weights, const std::vector<int>& edges, SortedEdges& sorted)
+void sortByWeight(const Mat& weights, std::vector<int>& edges, std::vector<int>& sorted)
 {
     const uchar* weight = weights.ptr();
-    int places[256] = { 0 }, sum = 0; // the number of edges of each weight, then the place of the next one
+    int places[257] = { 0 }; // the number of edges of each weight before, then the place of the next one
     for (int edge : edges)
-        ++places[weight[edge]];
+        ++places[weight[edge] + 1];
     for (int w = 0; w < 256; ++w)
-    {
-        const int count = places[w];
-        places[w] = sum;
-        sum += count;
-        sorted.ends[w] = sum;
-    }
-    sorted.edges.resize(sum);
+        places[w + 1] += places[w];
+    sorted.resize(edges.size());
     for (int edge : edges)
-        sorted.edges[places[weight[edge]]++] = edge;
+        sorted[places[weight[edge]]++] = edge;
+    edges.swap(sorted);
 }
 
 }}} // namespace cv::stereo::hdp

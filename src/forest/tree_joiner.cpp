@@ -4,13 +4,189 @@
 #include "../precomp.hpp"
 #include "tree_joiner.hpp"
 
+#include "forest_edges.hpp"
+
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-//! Asks Rule 1 for the order of edges and refuses what is not a permutation.
-void orderEdges(const TreeStrategy& strategy, const Mat& weights, std::vector<int>& edges)
+const int maxStripes = 4, minStripeRows = 4;
+
+// A frozen tree is not joined with others for now. The parent of its root is smaller by frozenMark, which is more than
+// any image has pixels.
+const int frozenMark = 1 << 30;
+
+bool isFrozen(int parentOfRoot) { return parentOfRoot < -frozenMark; }
+
+/** Tries edges in a stripe of rows.
+
+An edge to another stripe is left undecided, and freezes its tree: from its turn on, what the tree would be joined with
+is not known. An edge to a frozen tree is left undecided, too, and freezes the other tree. So each decision sees the same
+trees as without stripes. */
+class StripeJoiner
 {
+public:
+    //! rule2: none if every edge may join; rows: of the stripe; links: continuous
+    StripeJoiner(const TreeStrategy* rule2, const Mat& weights, double beta, const Range& rows, GrowingTrees& trees,
+                 JoinerStripe& stripe, Mat& links)
+        : rule2_(rule2), unitesIntervals_(!rule2 || rule2->unitesIntervals()), weights_(weights.ptr()), beta_(beta),
+          width_(links.cols), begin_(rows.start * width_), end_(rows.end * width_), nodes_(trees.nodes.data()),
+          maxWeights_(trees.maxWeights.data()), links_(links.ptr()), stripe_(stripe)
+    {
+    }
+
+    void tryEdges(const std::vector<int>& edges)
+    {
+        const int ahead = 12; // edges to prefetch before the one whose turn it is
+        const size_t last = edges.size() - 1;
+        for (size_t i = 0; i < edges.size(); ++i)
+        {
+            prefetch(edges[std::min(i + ahead, last)]);
+            const int p = firstPixel(edges[i]), q = secondPixel(edges[i], width_);
+            if (p < begin_)
+                freezeTree(q); // the edge is undecided in the stripe above
+            else if (q >= end_)
+                leaveUndecided(edges[i], p, p);
+            else if (!decide(edges[i], p, q))
+                leaveUndecided(edges[i], p, q);
+        }
+    }
+
+private:
+    typedef GrowingTrees::Node Node;
+
+    //! Joins the trees at an edge's ends if the rules allow it; false if one of them is frozen.
+    bool decide(int edge, int p, int q)
+    {
+        const int a = findNearRoot(p), b = findNearRoot(q);
+        if (a == b)
+            return true;
+        const Node nodeA = nodes_[a], nodeB = nodes_[b];
+        if (isFrozen(std::min(nodeA.parent, nodeB.parent)))
+            return false;
+        const bool isEqual = (nodeA.interval.first == nodeB.interval.first) & // without a branch
+                             (nodeA.interval.last == nodeB.interval.last);
+        if (isEqual ? nodeA.interval.empty() : !overlap(nodeA.interval, nodeB.interval))
+            return true;
+        const TreeState stateA = { -nodeA.parent, maxWeights_[a] }, stateB = { -nodeB.parent, maxWeights_[b] };
+        const uchar weight = weights_[edge];
+        if (rule2_ && !rule2_->mayJoin(weight, stateA, stateB))
+            return true;
+
+        // The larger tree's root stays, p's if they are of one size. A branch would often be mispredicted.
+        const int change = (a ^ b) & -(int)(nodeA.parent > nodeB.parent), root = a ^ change, joined = b ^ change;
+        nodes_[root].parent = nodeA.parent + nodeB.parent;
+        nodes_[joined].parent = root;
+        maxWeights_[root] = std::max(weight, std::max(stateA.maxWeight, stateB.maxWeight));
+        // Otherwise TreeIntv stays that of the larger tree: the segment trees of the authors' program do not update it.
+        if (!isEqual && unitesIntervals_)
+            nodes_[root].interval = hull(nodeA.interval, nodeB.interval);
+        links_[p] |= (uchar)(edge & 1 ? TreeLink::BELOW : TreeLink::RIGHT);
+        links_[q] |= (uchar)(edge & 1 ? TreeLink::ABOVE : TreeLink::LEFT);
+        return true;
+    }
+
+    void leaveUndecided(int edge, int p, int q)
+    {
+        freezeTree(p);
+        freezeTree(q);
+        stripe_.undecidedEdges.push_back(edge);
+    }
+
+    void freezeTree(int pixel)
+    {
+        const int root = findRoot(pixel);
+        if (!isFrozen(nodes_[root].parent))
+        {
+            nodes_[root].parent -= frozenMark;
+            stripe_.frozenRoots.push_back(root);
+        }
+    }
+
+    int findRoot(int pixel)
+    {
+        while (nodes_[pixel].parent >= 0)
+        {
+            const int parent = nodes_[pixel].parent;
+            if (nodes_[parent].parent < 0)
+                return parent;
+            pixel = nodes_[pixel].parent = nodes_[parent].parent; // path halving
+        }
+        return pixel;
+    }
+
+    //! findRoot(), without branches for the most frequent case of a root that is at most two steps away
+    int findNearRoot(int pixel)
+    {
+        int node = pixel;
+        for (int step = 0; step < 2; ++step)
+        {
+            const int parent = nodes_[node].parent, isRoot = parent >> 31; // all bits or none
+            node = (node & isRoot) | (parent & ~isRoot);
+        }
+        return nodes_[node].parent < 0 ? node : nodes_[pixel].parent = findRoot(node);
+    }
+
+    //! Hints that an edge is going to be tried.
+    void prefetch(int edge) const
+    {
+#ifdef __GNUC__
+        __builtin_prefetch(nodes_ + firstPixel(edge));
+        __builtin_prefetch(nodes_ + firstPixel(edge) + width_);
+#else
+        (void)edge;
+#endif
+    }
+
+    static DisparityInterval hull(const DisparityInterval& a, const DisparityInterval& b)
+    {
+        const DisparityInterval interval = { std::min(a.first, b.first), std::max(a.last, b.last) };
+        return interval;
+    }
+
+    //! DT-Rule 2: |intersection| / |union| >= beta. For the union the authors' program takes the hull, so that TreeIntv
+    //! is always one interval.
+    bool overlap(const DisparityInterval& a, const DisparityInterval& b) const
+    {
+        if (a.empty() || b.empty())
+            return false;
+        const int both = std::max(std::min(a.last, b.last) - std::max(a.first, b.first) + 1, 0);
+        return (double)both / hull(a, b).size() >= beta_;
+    }
+
+    const TreeStrategy* const rule2_;
+    const bool unitesIntervals_;
+    const uchar* const weights_;
+    const double beta_;
+    const int width_, begin_, end_; // of a row; pixels of the stripe
+    Node* const nodes_;
+    uchar* const maxWeights_;
+    uchar* const links_;
+    JoinerStripe& stripe_;
+};
+
+//! Makes every pixel of some rows a tree.
+void startTrees(const Mat& pixelIntv, const Range& rows, GrowingTrees& trees)
+{
+    for (int y = rows.start; y < rows.end; ++y)
+    {
+        const DisparityInterval* intervals = pixelIntv.ptr<DisparityInterval>(y);
+        const size_t first = (size_t)y * pixelIntv.cols;
+        for (int x = 0; x < pixelIntv.cols; ++x)
+        {
+            const GrowingTrees::Node node = { -1, intervals[x] };
+            trees.nodes[first + x] = node;
+            trees.maxWeights[first + x] = 0;
+        }
+    }
+}
+
+//! Asks Rule 1 for the order of edges and refuses what is not a permutation.
+void orderEdges(const TreeStrategy& strategy, const Mat& weights, JoinerStripe& stripe)
+{
+    std::vector<int>& edges = stripe.edges;
+    if (strategy.ordersByWeight())
+        return sortByWeight(weights, edges, stripe.sorted);
     std::vector<bool> given(weights.total() * 2);
     for (size_t i = 0; i < edges.size(); ++i)
         given[edges[i]] = true;
@@ -27,52 +203,52 @@ void orderEdges(const TreeStrategy& strategy, const Mat& weights, std::vector<in
         CV_Error(Error::StsBadArg, "treeStrategy: orderEdges must leave a permutation of the edges");
 }
 
-template <class Strategy>
-void tryAll(const Strategy& strategy, const std::vector<int>& edges, const Mat& weights, double beta,
-            GrowingTrees& trees, Mat& links)
-{
-    TreeJoiner<Strategy> joiner(strategy, beta, trees, links);
-    for (size_t i = 0; i < edges.size(); ++i)
-    {
-        joiner.prefetch(edges[std::min(i + joiner.prefetchDistance, edges.size() - 1)]);
-        joiner.tryEdge(edges[i], weights.ptr()[edges[i]]);
-    }
-}
-
 } // namespace
 
-void startTrees(const Mat& pixelIntv, const Range& rows, GrowingTrees& trees)
+void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixelIntv, double beta, bool link,
+               GrowingTrees& trees, std::vector<JoinerStripe>& stripes, Mat& links)
 {
-    for (int y = rows.start; y < rows.end; ++y)
-    {
-        const DisparityInterval* intervals = pixelIntv.ptr<DisparityInterval>(y);
-        GrowingTrees::Node* nodes = &trees.nodes[(size_t)y * pixelIntv.cols];
-        for (int x = 0; x < pixelIntv.cols; ++x)
+    const int height = pixelIntv.rows;
+    trees.nodes.resize(pixelIntv.total());
+    trees.maxWeights.resize(pixelIntv.total());
+    // The number of threads decides how fast it goes, not what comes out. Other orders are not those of a stripe.
+    const int maxCount = strategy.ordersByWeight() ? std::min(getNumThreads(), +maxStripes) : 1;
+    const int count = std::max(std::min(maxCount, height / minStripeRows), 1);
+    stripes.resize(count + 1);
+    parallel_for_(Range(0, count), [&](const Range& range) {
+        for (int s = range.start; s < range.end; ++s)
         {
-            const GrowingTrees::Node node = { -1, intervals[x] };
-            nodes[x] = node;
+            JoinerStripe& stripe = stripes[s];
+            const Range rows((int)((int64)height * s / count), (int)((int64)height * (s + 1) / count));
+            stripe.undecidedEdges.clear();
+            stripe.frozenRoots.clear();
+            startTrees(pixelIntv, rows, trees);
+            selectEdges(weights, pixelIntv, rows, stripe.edges);
+            orderEdges(strategy, weights, stripe);
+            StripeJoiner(&strategy, weights, beta, rows, trees, stripe, links).tryEdges(stripe.edges);
         }
-    }
-}
+    });
 
-void joinInOrder(const TreeStrategy& strategy, const Mat& weights, const Mat& pixelIntv, double beta, bool link,
-                 GrowingTrees& trees, std::vector<int>& edges, Mat& links)
-{
-    startTrees(pixelIntv, Range(0, pixelIntv.rows), trees);
-    selectEdges(weights, pixelIntv, edges);
-    if (const RandomTree* randomTree = dynamic_cast<const RandomTree*>(&strategy)) // Rule 2 without a virtual call
+    const Range all(0, height);
+    JoinerStripe& whole = stripes[count];
+    whole.edges.clear();
+    for (int s = 0; s < count; ++s)
     {
-        randomTree->orderEdges(weights, edges);
-        tryAll(*randomTree, edges, weights, beta, trees, links);
+        const JoinerStripe& stripe = stripes[s];
+        whole.edges.insert(whole.edges.end(), stripe.undecidedEdges.begin(), stripe.undecidedEdges.end());
+        for (int root : stripe.frozenRoots)
+            trees.nodes[root].parent += frozenMark;
     }
-    else
+    sortByWeight(weights, whole.edges, whole.sorted); // those of one weight are by number already
+    StripeJoiner(&strategy, weights, beta, all, trees, whole, links).tryEdges(whole.edges);
+    if (!link)
+        return;
+    if (count > 1)
     {
-        trees.maxWeights.assign(pixelIntv.total(), 0);
-        orderEdges(strategy, weights, edges);
-        tryAll(strategy, edges, weights, beta, trees, links);
+        selectEdges(weights, pixelIntv, all, stripes[0].edges);
+        sortByWeight(weights, stripes[0].edges, whole.sorted);
     }
-    if (link)
-        tryAll(MinimumSpanningTree(), edges, weights, beta, trees, links); // its Rule 2: every edge may join
+    StripeJoiner(nullptr, weights, beta, all, trees, whole, links).tryEdges(stripes[0].edges);
 }
 
 }}} // namespace cv::stereo::hdp

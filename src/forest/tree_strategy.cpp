@@ -70,9 +70,8 @@ Ptr<TreeStrategy> createTreeStrategy(const String& name)
 
 void TreeStrategy::orderEdges(const Mat& weights, std::vector<int>& edges) const
 {
-    hdp::SortedEdges sorted;
+    std::vector<int> sorted;
     hdp::sortByWeight(weights, edges, sorted);
-    edges.swap(sorted.edges);
 }
 
 Ptr<TreeStrategy> createMinimumSpanningTree() { return makePtr<hdp::MinimumSpanningTree>(); }

@@ -8,7 +8,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-// The strategies of the library, final, so that the forest calls their Rule 2 without dispatch.
+// The strategies of the library
 
 class MinimumSpanningTree CV_FINAL : public TreeStrategy
 {
