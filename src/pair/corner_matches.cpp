@@ -31,47 +31,28 @@ HDP_DISPATCH(correlate)
 HDP_DISPATCH(cutWindow)
 HDP_DISPATCH(trackingSums)
 
-//! How much of a corner the pixels of an area are: the smaller eigenvalue of the structure tensor
-class Cornerness
-{
-public:
-    Cornerness(const Mat& image, Rect area)
-        : image_(image), area_(area), columns_(3 * (area.width + CornerMatching::tensorSide - 1)),
-          tensors_(3 * area.width)
-    {
-    }
-
-    void enterRow(int y)
-    {
-        const int radius = CornerMatching::tensorSide / 2, width = area_.width;
-        int* const xx = tensors_.data();
-        dispatched::structureTensors(image_.ptr<ushort>(area_.y + y - radius) + area_.x - radius, image_.step1(), width,
-                                     columns_.data(), xx, xx + width, xx + 2 * width);
-    }
-
-    double operator()(int x) const
-    {
-        const double xx = tensors_[x], xy = tensors_[area_.width + x], yy = tensors_[2 * area_.width + x];
-        const double mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy);
-        return mean - std::sqrt(half * half + xy * xy);
-    }
-
-private:
-    const Mat& image_;
-    const Rect area_;
-    std::vector<int> columns_, tensors_;
-};
-
-//! The best corner of every cell
+//! The best corner of every cell, by the smaller eigenvalue of the structure tensor
 void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matches)
 {
     const int margin = CornerMatching::searchSide / 2 + CornerMatching::searchRadius;
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
     const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / CornerMatching::points)), spacing);
     const Size grid(inside.width / cell, inside.height / cell);
-    const int step = 2; // from a pixel that is looked at to the next: neighbours are about as good
+    const int count = grid.width * cell, radius = CornerMatching::tensorSide / 2;
+    const auto scoreRow = [&](int y, const std::vector<int>& columns, double* scores) {
+        std::vector<int> memory(3 * (count + 2 * radius)), tensors(3 * count);
+        int *const xx = tensors.data(), *const xy = xx + count, *const yy = xy + count;
+        dispatched::structureTensors(image.ptr<ushort>(inside.y + y - radius) + inside.x - radius, image.step1(), count,
+                                     memory.data(), xx, xy, yy);
+        for (int x : columns)
+        {
+            const double mean = 0.5 * (xx[x] + yy[x]), half = 0.5 * (xx[x] - yy[x]);
+            *scores++ = mean - std::sqrt(half * half + (double)xy[x] * xy[x]);
+        }
+    };
+    const int step = 2; // from a pixel that is looked at to the next, as neighbours are about as good
     std::vector<Point> corners;
-    bestOfCells(grid, cell, step, -1, Cornerness(image, Rect(inside.tl(), grid * cell)), corners);
+    bestOfCells(grid, cell, step, -1, scoreRow, corners);
     matches.assign(corners.size(), CornerMatch());
     for (size_t i = 0; i < corners.size(); ++i)
         matches[i].left = inside.tl() + corners[i];

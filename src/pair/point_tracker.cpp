@@ -50,16 +50,21 @@ int texture(const Mat& image, Point at)
     return std::min(sumX, sumY);
 }
 
-//! The pixel with the minimum of the difference, among those up to radius pixels away from a guess
-Point search(const Mat& before, Point from, const Mat& now, Point guess, int radius)
+//! The place on a level of the pyramid
+Point onLevel(Point place, int level) { return Point(place.x >> level, place.y >> level); }
+
+//! The pixel of a level with the minimum of the difference, among those up to radius pixels away from a guess
+Point search(const std::vector<Mat>& before, const std::vector<Mat>& now, int level, Point place, Point guess,
+             int radius)
 {
+    const Point from = onLevel(place, level);
     Point best = nowhere;
     int minSum = INT_MAX;
     for (int y = guess.y - radius; y <= guess.y + radius; ++y)
         for (int x = guess.x - radius; x <= guess.x + radius; ++x)
         {
             const Point to(x, y);
-            const int sum = isInside(now, to) ? difference(before, from, now, to) : INT_MAX;
+            const int sum = isInside(now[level], to) ? difference(before[level], from, now[level], to) : INT_MAX;
             if (sum < minSum)
             {
                 minSum = sum;
@@ -81,22 +86,44 @@ Point2d refine(const Mat& before, Point from, const Mat& now, Point match)
                    match.y + parabolaOffset<double>(sum(0, -1), middle, sum(0, 1)));
 }
 
-//! The texture of pixels of the finest level that can be tracked from the coarsest one on, of others none
-struct Texture
+//! Calls track(point) for all points.
+template <typename Track> void forEachPoint(std::vector<TrackedPoint>& points, const Track& track)
 {
-    explicit Texture(const std::vector<Mat>& pyramid) : image(pyramid) {}
-    void enterRow(int row) { y = row; }
-    double operator()(int x) const
-    {
-        const int top = (int)image.size() - 1;
-        const bool isTracked = isInside(image[top], Point(x >> top, y >> top)) && isInside(image[0], Point(x, y));
-        return isTracked ? texture(image[0], Point(x, y)) : 0;
-    }
-    const std::vector<Mat>& image;
-    int y = 0;
-};
+    parallel_for_(Range(0, (int)points.size()), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+            track(points[i]);
+    });
+}
 
 } // namespace
+
+void bestOfCells(Size grid, int cell, int step, double minScore, const RowScores& scoreRow, std::vector<Point>& best)
+{
+    std::vector<int> columns;
+    for (int x = 0; x < grid.width * cell; ++x)
+        if (x % cell % step == 0)
+            columns.push_back(x);
+    best.assign(grid.area(), nowhere);
+    parallel_for_(Range(0, grid.height), [&](const Range& range) {
+        std::vector<double> scores(columns.size()), highest(grid.width);
+        for (int i = range.start; i < range.end; ++i)
+        {
+            std::fill(highest.begin(), highest.end(), minScore);
+            for (int y = i * cell; y < (i + 1) * cell; y += step)
+            {
+                scoreRow(y, columns, scores.data());
+                for (size_t k = 0; k < columns.size(); ++k)
+                {
+                    const int j = columns[k] / cell;
+                    if (scores[k] <= highest[j])
+                        continue;
+                    highest[j] = scores[k];
+                    best[i * grid.width + j] = Point(columns[k], y);
+                }
+            }
+        }
+    });
+}
 
 int trackingLevels(int width)
 {
@@ -111,53 +138,43 @@ void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& poi
     const int top = (int)before.size() - 1, cell = T::spacing << top, minTexture = T::minTexture * T::side * T::side;
     const Size grid(before[top].cols / T::spacing, before[top].rows / T::spacing);
     std::vector<Point> places;
-    bestOfCells(grid, cell, cell / 2, minTexture - 1, Texture(before), places);
+    const auto scoreRow = [&](int y, const std::vector<int>& columns, double* scores) {
+        for (int x : columns)
+        {
+            const Point place(x, y);
+            const bool isTracked = isInside(before[top], onLevel(place, top)) && isInside(before[0], place);
+            *scores++ = isTracked ? texture(before[0], place) : 0;
+        }
+    };
+    bestOfCells(grid, cell, cell / 2, minTexture - 1, scoreRow, places);
     points.clear();
     for (const Point& place : places)
         if (place != nowhere)
-        {
-            TrackedPoint point;
-            point.before = point.now = place;
-            point.disparity = 0;
-            points.push_back(point);
-        }
+            points.push_back({ place, place, 0 });
 }
 
 void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
 {
     const int top = (int)before.size() - 1;
-    parallel_for_(Range(0, (int)points.size()), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-        {
-            const Point from = points[i].before, coarse(from.x >> top, from.y >> top);
-            Point match = search(before[top], coarse, now[top], coarse, T::searchRadius);
-            for (int level = top - 1; level >= 0 && match != nowhere; --level)
-                match = search(before[level], Point(from.x >> level, from.y >> level), now[level], 2 * match,
-                               T::refinementRadius);
-            points[i].now = match != nowhere ? refine(before[0], from, now[0], match) : points[i].before;
-        }
+    forEachPoint(points, [&](TrackedPoint& point) {
+        const Point from = point.before;
+        Point match = search(before, now, top, from, onLevel(from, top), T::searchRadius);
+        for (int level = top - 1; level >= 0 && match != nowhere; --level)
+            match = search(before, now, level, from, 2 * match, T::refinementRadius);
+        point.now = match != nowhere ? refine(before[0], from, now[0], match) : point.before;
     });
 }
 
 void trackNearby(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
 {
     const int coarse = std::min(1, (int)before.size() - 1);
-    parallel_for_(Range(0, (int)points.size()), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-        {
-            TrackedPoint& point = points[i];
-            const Point from = point.before, half(from.x >> coarse, from.y >> coarse);
-            Point match(cvFloor(point.now.x + 0.5), cvFloor(point.now.y + 0.5));
-            point.now = point.before;
-            if (match == nowhere)
-                continue;
-            if (isInside(before[coarse], half))
-                match = (1 << coarse) * search(before[coarse], half, now[coarse],
-                                               Point(match.x >> coarse, match.y >> coarse), T::refinementRadius);
-            match = search(before[0], from, now[0], match, T::refinementRadius);
-            if (match != nowhere)
-                point.now = refine(before[0], from, now[0], match);
-        }
+    forEachPoint(points, [&](TrackedPoint& point) {
+        const Point from = point.before;
+        Point match(cvFloor(point.now.x + 0.5), cvFloor(point.now.y + 0.5));
+        for (int level : { coarse, 0 })
+            if (match != nowhere && isInside(before[level], onLevel(from, level)))
+                match = (1 << level) * search(before, now, level, from, onLevel(match, level), T::refinementRadius);
+        point.now = match.x >= 0 ? refine(before[0], from, now[0], match) : point.before;
     });
 }
 

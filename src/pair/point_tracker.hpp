@@ -6,6 +6,7 @@
 
 #include "opencv2/core.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -34,40 +35,17 @@ struct TrackedPoint
     double disparity; // in the frame before
 };
 
+//! Tells what some pixels of row y are worth.
+typedef std::function<void(int y, const std::vector<int>& columns, double* scores)> RowScores;
+
 /** Finds the best pixel of each cell of a grid, the first one of several.
 @param grid Number of cells.
 @param cell Side of a cell, in pixels.
 @param step From a candidate to the next, in pixels.
 @param minScore A pixel has to have more.
-@param score A copy of it for each thread tells what a pixel is worth: enterRow(y), then score(x) for some x.
+@param scoreRow The score; called by several threads.
 @param best Receives a pixel of each cell, row by row, or nowhere. */
-template <typename Score>
-void bestOfCells(Size grid, int cell, int step, double minScore, const Score& score, std::vector<Point>& best)
-{
-    best.assign(grid.area(), nowhere);
-    parallel_for_(Range(0, grid.height), [&](const Range& range) {
-        Score scoreOf(score);
-        std::vector<double> highest(grid.width);
-        for (int i = range.start; i < range.end; ++i)
-        {
-            std::fill(highest.begin(), highest.end(), minScore);
-            for (int y = i * cell; y < (i + 1) * cell; y += step)
-            {
-                scoreOf.enterRow(y);
-                for (int j = 0; j < grid.width; ++j)
-                    for (int x = j * cell; x < (j + 1) * cell; x += step)
-                    {
-                        const double value = scoreOf(x);
-                        if (value > highest[j])
-                        {
-                            highest[j] = value;
-                            best[i * grid.width + j] = Point(x, y);
-                        }
-                    }
-            }
-        }
-    });
-}
+void bestOfCells(Size grid, int cell, int step, double minScore, const RowScores& scoreRow, std::vector<Point>& best);
 
 //! Number of levels that trackPoints() needs if the finest one has this width
 CV_EXPORTS int trackingLevels(int width);
