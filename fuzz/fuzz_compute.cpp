@@ -419,6 +419,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
     const auto upTo = [&](int last) {
         return input.ConsumeBool() && input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-1, last + 1);
     };
+    HDPTreeMatcher::Params params = m.getParams();
     change(m, [&] {
         switch (input.ConsumeIntegralInRange(0, 41))
         {
@@ -445,53 +446,76 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         case 11:
             return m.setTreeStrategy(Ptr<TreeStrategy>(new FuzzedTree(input)));
         case 12:
-            return m.setUsePrediction(input.ConsumeBool());
+            params.usePrediction = input.ConsumeBool();
+            break;
         case 13:
-            return m.setUseMedianPrefilter(input.ConsumeBool());
+            params.useMedianPrefilter = input.ConsumeBool();
+            break;
         case 14:
-            return m.setNumLayers(input.ConsumeBool() ? upTo(16) : anyInt(input));
+            params.numLayers = input.ConsumeBool() ? upTo(16) : anyInt(input);
+            break;
         case 15:
-            return m.setDelta0(anyDouble(input));
+            params.delta0 = anyDouble(input);
+            break;
         case 16:
-            return m.setBeta(anyDouble(input));
+            params.beta = anyDouble(input);
+            break;
         case 17:
-            return m.setGamma(anyDouble(input));
+            params.gamma = anyDouble(input);
+            break;
         case 18:
-            return m.setColorTruncation(anyDouble(input));
+            params.colorTruncation = anyDouble(input);
+            break;
         case 19:
-            return m.setGradientTruncation(anyDouble(input));
+            params.gradientTruncation = anyDouble(input);
+            break;
         case 20:
-            return m.setColorWeight(anyDouble(input));
+            params.colorWeight = anyDouble(input);
+            break;
         case 21:
-            return m.setDisparityMedianSize(input.ConsumeBool() ? oddUpTo(7) : upTo(5));
+            params.disparityMedianSize = input.ConsumeBool() ? oddUpTo(7) : upTo(5);
+            break;
         case 22:
-            return m.setDisparityMedianPasses(upTo(8));
+            params.disparityMedianPasses = upTo(8);
+            break;
         case 23:
-            return m.setMatchingCost(upTo(1));
+            params.matchingCost = upTo(1);
+            break;
         case 24:
-            return m.setDisparityPrior(upTo(1));
+            params.disparityPrior = upTo(1);
+            break;
         case 25:
-            return m.setIntervalMargin(upTo(64));
+            params.intervalMargin = upTo(64);
+            break;
         case 26:
-            return m.setUseSubpixel(input.ConsumeBool());
+            params.useSubpixel = input.ConsumeBool();
+            break;
         case 27:
-            return m.setAggregation(upTo(2));
+            params.aggregation = upTo(2);
+            break;
         case 28:
-            return m.setP1(upTo(100));
+            params.P1 = upTo(100);
+            break;
         case 29:
-            return m.setFinestLayer(upTo(15));
+            params.finestLayer = upTo(15);
+            break;
         case 30:
-            return m.setScanlinePasses(upTo(4));
+            params.scanlinePasses = upTo(4);
+            break;
         case 31:
             return m.setDisparityDepth(input.ConsumeBool() ? CV_32F : anyInt(input));
         case 32:
-            return m.setFillOcclusions(input.ConsumeBool());
+            params.fillOcclusions = input.ConsumeBool();
+            break;
         case 33:
-            return m.setP2(upTo(100));
+            params.P2 = upTo(100);
+            break;
         case 34:
-            return m.setMaxTopDisparities(upTo(100));
+            params.maxTopDisparities = upTo(100);
+            break;
         case 35:
-            return m.setTopAggregation(2 * upTo(1));
+            params.topAggregation = 2 * upTo(1);
+            break;
         case 36:
             return m.setMaxRowOffset(upTo(100));
         case 37:
@@ -502,8 +526,9 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         case 40:
             return m.setUseTemporalPrediction(input.ConsumeBool());
         default:
-            return m.setUseNonLocalRefinement(input.ConsumeBool());
+            params.useNonLocalRefinement = input.ConsumeBool();
         }
+        m.setParams(params);
     });
 }
 
@@ -549,7 +574,8 @@ void query(const HDPTreeMatcher& matcher, Size size, bool hasPair)
     matcher.getConfidence(confidence);
     require(confidence.size() == (hasPair ? size : Size()), "confidence of another size");
     matcher.getForest(trees, intervals);
-    require(trees.size() == intervals.size() && (!hasPair || !trees.empty() || matcher.getUseTemporalPrediction()), "no forest");
+    require(trees.size() == intervals.size() && (!hasPair || !trees.empty() || matcher.getUseTemporalPrediction()),
+            "no forest");
     std::vector<double> values;
     for (int layer = 0; layer < 17; ++layer)
     {
@@ -558,9 +584,10 @@ void query(const HDPTreeMatcher& matcher, Size size, bool hasPair)
         matcher.getLayerDisparity(layer, disparity);
         require(hasPair || (values.empty() && disparity.empty()), "a layer without a pair");
     }
-    matcher.getSearchRatios(values);
-    std::vector<String> names;
-    matcher.getStageTimes(names, values);
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    require(findings.searchRatios.empty() != hasPair && findings.stages.empty() != hasPair &&
+                findings.stages.size() == findings.stageTimes.size(),
+            "findings of another pair");
 }
 
 bool areEqual(const Mat& a, const Mat& b)
@@ -601,7 +628,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
         for (int changes = input.ConsumeIntegralInRange(0, 8); changes > 0; --changes)
             setParameter(input, *matcher);
         if (input.ConsumeIntegralInRange(0, 3) == 0)
-            matcher->setPredictionModel(makeModel(input));
+        {
+            HDPTreeMatcher::Params params = matcher->getParams();
+            params.predictionModel = makeModel(input);
+            matcher->setParams(params);
+        }
         if (input.ConsumeIntegralInRange(0, 3) == 0)
             readFile(input, *matcher);
         setNumThreads(input.ConsumeIntegralInRange(1, 3));
@@ -613,7 +644,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
         if (!hasPair)
             continue;
         checkOutput(*matcher, left.size(), disparity);
-        if (!matcher->getPredictionModel().empty() && matcher->getPredictionModel()->empty())
+        const Ptr<DisparityPredictionModel> model = matcher->getParams().predictionModel;
+        if (model && model->empty())
             continue; // it cannot be told from none in a file
         setNumThreads(input.ConsumeIntegralInRange(1, 3));
         const Ptr<HDPTreeMatcher> fresh = freshCopy(*matcher);

@@ -142,8 +142,10 @@ PERF_TEST_P(Perf_HDPTreeMatcher, compute, Combine(ValuesIn(sizes), Tree::all(), 
     Mat left, right, disparity(size, CV_16SC1);
     makePair(size, numDisparities, left, right);
     Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities, HDPTreeMatcher::PRESET_PAPER);
-    matcher->setTreeStrategy(createTree(get<1>(GetParam())));
-    matcher->setUsePrediction(usePrediction);
+    HDPTreeMatcher::Params params(HDPTreeMatcher::PRESET_PAPER);
+    params.treeStrategy = createTree(get<1>(GetParam()));
+    params.usePrediction = usePrediction;
+    matcher->setParams(params);
 
     declare.in(left, right).out(disparity);
     if (!usePrediction) // many seconds at full size

@@ -153,11 +153,10 @@ static std::vector<uchar> encodeDisparity(const String& extension, const Mat& di
 
 static void printTimes(const HDPTreeMatcher& matcher)
 {
-    std::vector<String> stages;
-    std::vector<double> milliseconds;
-    matcher.getStageTimes(stages, milliseconds);
-    for (size_t i = 0; i < stages.size(); i++)
-        std::cout << format("%-11s%-24s%10.1f ms\n", i == 0 ? "time" : "", stages[i].c_str(), milliseconds[i]);
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    for (size_t i = 0; i < findings.stages.size(); i++)
+        std::cout << format("%-11s%-24s%10.1f ms\n", i == 0 ? "time" : "", findings.stages[i].c_str(),
+                            findings.stageTimes[i]);
 }
 
 //! Of all pixels with known truth, also the occluded ones. Pixels without a disparity are wrong.

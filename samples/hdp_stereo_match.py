@@ -191,7 +191,8 @@ def main():
     print('images %d x %d, disparities %d to %d' % (left.shape[1], left.shape[0], args.min_disparity,
                                                   args.min_disparity + num_disparities - 1))
     times = time_in_turns(matchers, pairs, args.runs) if args.compare else {}
-    for stage, milliseconds in zip(*matcher.getStageTimes()):
+    findings = matcher.getFindings()
+    for stage, milliseconds in zip(findings.stages, findings.stageTimes):
         print('%-24s%10.1f ms' % (stage, milliseconds))
     for name, disparity in disparities.items():
         line = '%-12s' % name

@@ -13,6 +13,8 @@ using namespace hdp;
 
 namespace {
 
+const char* const nameInFiles = "StereoMatcher.HDPTree"; // as OpenCV's StereoMatcher.SGBM
+
 //! The setter and the getter of a parameter
 #define HDP_PARAMETER(type, Name, member)                                                                              \
     void set##Name(type value) CV_OVERRIDE                                                                             \
@@ -164,19 +166,20 @@ public:
     // cv::Algorithm
     void clear() CV_OVERRIDE { lastFrame_.clear(); }
 
-    String getDefaultName() const CV_OVERRIDE { return "StereoMatcher.HDPTree"; }
+    //! The key that save() gives the matcher: XML has no dots in it.
+    String getDefaultName() const CV_OVERRIDE { return "hdpstereo_HDPTreeMatcher"; }
 
     void write(FileStorage& fs) const CV_OVERRIDE
     {
-        fs << "name" << getDefaultName();
+        fs << "name" << nameInFiles;
         writeParameters(p_, fs);
     }
 
     void read(const FileNode& fn) CV_OVERRIDE
     {
         const String name = fn.isMap() && fn["name"].isString() ? (String)fn["name"] : String();
-        if (name != getDefaultName() && name != "hdpstereo_HDPTreeMatcher") // of version 1.0
-            CV_Error(Error::StsParseError, "name must be " + getDefaultName());
+        if (name != nameInFiles && name != getDefaultName()) // which is that of version 1.0
+            CV_Error(Error::StsParseError, String("name must be ") + nameInFiles);
         p_ = readParameters(fn, p_.treeStrategy);
         lastFrame_.clear();
     }

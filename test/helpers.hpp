@@ -6,6 +6,8 @@
 
 #include "test_precomp.hpp"
 
+#include <functional>
+
 namespace opencv_test {
 
 //! Image of random values 0 .. levels - 1.
@@ -55,6 +57,22 @@ inline Mat match(StereoMatcher& matcher, InputArray left, InputArray right)
     Mat disparity;
     matcher.compute(left, right, disparity);
     return disparity;
+}
+
+typedef HDPTreeMatcher::Params Params;
+
+//! Changes some of a matcher's parameters: change(Params&).
+template <typename Change> void change(HDPTreeMatcher& matcher, const Change& change)
+{
+    Params params = matcher.getParams();
+    change(params);
+    matcher.setParams(params);
+}
+
+//! The same as a function, for tables
+inline std::function<void(HDPTreeMatcher&)> inParams(const std::function<void(Params&)>& changeParams)
+{
+    return [changeParams](HDPTreeMatcher& matcher) { change(matcher, changeParams); };
 }
 
 //! Expects the action to throw a cv::Exception whose message names the argument.

@@ -58,59 +58,19 @@ inline std::vector<System> allSystems()
     return systems;
 }
 
-inline void setSystem(HDPTreeMatcher& matcher, const System& system)
+inline HDPTreeMatcher::Params paramsOf(const System& system)
 {
-    matcher.setTreeStrategy(system.createTree());
-    matcher.setUsePrediction(system.usePrediction);
-    matcher.setUseMedianPrefilter(system.useMedianPrefilter);
-}
-
-//! The values of a preset, whatever was set before
-inline void setPreset(HDPTreeMatcher& matcher, int preset)
-{
-    const bool isPaper = preset == HDPTreeMatcher::PRESET_PAPER, isTree = preset == HDPTreeMatcher::PRESET_TREE;
-    const bool hasScanlines = !isPaper && !isTree;
-    matcher.setMatchingCost(isPaper ? HDPTreeMatcher::COST_COLOR_GRADIENT : HDPTreeMatcher::COST_CENSUS);
-    matcher.setBlockSize(isPaper ? 1 : 7);
-    matcher.setGamma(isPaper ? 25.5 : 20);
-    matcher.setUseSubpixel(!isPaper);
-    const bool isQuality = preset == HDPTreeMatcher::PRESET_QUALITY;
-    matcher.setDisparityMedianSize(isPaper ? (int)HDPTreeMatcher::AUTO : isQuality ? 7 : 5);
-    matcher.setDisparityMedianPasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
-    matcher.setAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_SCANLINES
-                           : isTree     ? HDPTreeMatcher::AGGREGATION_TREE_SCANLINES
-                                        : HDPTreeMatcher::AGGREGATION_TREES);
-    matcher.setTopAggregation(hasScanlines ? HDPTreeMatcher::AGGREGATION_TREE_SCANLINES
-                                           : HDPTreeMatcher::AGGREGATION_TREES);
-    matcher.setNumLayers(isQuality || isTree ? 2 : 3);
-    matcher.setMaxTopDisparities(isPaper ? 0 : isTree ? 64 : isQuality ? 48 : 32);
-    matcher.setMaxRowOffset(isPaper ? 0 : 64);
-    matcher.setUseLightAlignment(!isPaper);
-    matcher.setNoiseThreshold(isPaper ? 0 : 3);
-    matcher.setFinestLayer(preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 1 : 0);
-    matcher.setDisparityPrior(isTree ? HDPTreeMatcher::PRIOR_UPPER_LAYER : HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
-    matcher.setIntervalMargin(isTree ? 2 : 0);
-    matcher.setDelta0(isTree ? 0.02 : (double)HDPTreeMatcher::AUTO);
-    matcher.setBeta(isTree ? 0.9 : (double)HDPTreeMatcher::AUTO);
-    matcher.setP1(16);
-    matcher.setP2(65);
-    matcher.setScanlinePasses(preset == HDPTreeMatcher::PRESET_QUALITY ? 2 : 1);
-    matcher.setUseNonLocalRefinement(false);
-    matcher.setUseTemporalPrediction(false);
-    matcher.setFillOcclusions(!isPaper);
-}
-
-//! By setters alone, whatever was set before
-inline void configure(HDPTreeMatcher& matcher, const System& system)
-{
-    setPreset(matcher, system.preset);
-    setSystem(matcher, system);
+    HDPTreeMatcher::Params params(system.preset);
+    params.treeStrategy = system.createTree();
+    params.usePrediction = system.usePrediction;
+    params.useMedianPrefilter = system.useMedianPrefilter;
+    return params;
 }
 
 inline Ptr<HDPTreeMatcher> createSystem(const System& system, int numDisparities, int minDisparity = 0)
 {
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, numDisparities, system.preset);
-    setSystem(*matcher, system);
+    matcher->setParams(paramsOf(system));
     return matcher;
 }
 

@@ -5,8 +5,7 @@
 #include "helpers.hpp"
 #include "systems.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const double infinity = std::numeric_limits<double>::infinity();
 const double notANumber = std::numeric_limits<double>::quiet_NaN();
@@ -110,7 +109,7 @@ TEST(HDPStereo_BadInput, output_of_a_fixed_other_type)
 template <typename Setter> void expectBadValue(const Setter& set, const std::string& argument)
 {
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-3, 40);
-    matcher->setGamma(17);
+    change(*matcher, [&](Params& p) { p.gamma = 17; });
     matcher->setBlockSize(3);
     const std::string before = serialized(*matcher);
     expectRejected([&] { set(*matcher); }, argument);
@@ -124,52 +123,54 @@ TEST(HDPStereo_BadInput, setters)
     for (int bad : { -1, INT_MIN })
     {
         expectBadValue([bad](HDPTreeMatcher& m) { m.setSpeckleRange(bad); }, "speckleRange");
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setMaxTopDisparities(bad); }, "maxTopDisparities");
+        expectBadValue(inParams([bad](Params& p) { p.maxTopDisparities = bad; }), "maxTopDisparities");
         expectBadValue([bad](HDPTreeMatcher& m) { m.setMaxRowOffset(bad); }, "maxRowOffset");
     }
     for (int bad : { 0, -1, 17, INT_MAX, INT_MIN })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setNumLayers(bad); }, "numLayers");
+        expectBadValue(inParams([bad](Params& p) { p.numLayers = bad; }), "numLayers");
     for (int bad : { 0, -1, 5, INT_MAX, INT_MIN })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setScanlinePasses(bad); }, "scanlinePasses");
+        expectBadValue(inParams([bad](Params& p) { p.scanlinePasses = bad; }), "scanlinePasses");
     for (int bad : { -1, 16, INT_MAX, INT_MIN })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setFinestLayer(bad); }, "finestLayer");
+        expectBadValue(inParams([bad](Params& p) { p.finestLayer = bad; }), "finestLayer");
     for (int bad : { -1, 101, INT_MAX, INT_MIN })
     {
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setP1(bad); }, "P1");
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setP2(bad); }, "P2");
+        expectBadValue(inParams([bad](Params& p) { p.P1 = bad; }), "P1");
+        expectBadValue(inParams([bad](Params& p) { p.P2 = bad; }), "P2");
     }
     for (int bad : { 1, 2, 4, 6, 8, 9, 31, -2, -3, INT_MAX, INT_MIN })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityMedianSize(bad); }, "disparityMedianSize");
+        expectBadValue(inParams([bad](Params& p) { p.disparityMedianSize = bad; }), "disparityMedianSize");
     for (int bad : { 0, -1, 9, INT_MAX, INT_MIN })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityMedianPasses(bad); }, "disparityMedianPasses");
+        expectBadValue(inParams([bad](Params& p) { p.disparityMedianPasses = bad; }), "disparityMedianPasses");
     for (int bad : { -1, 2, INT_MAX, INT_MIN })
     {
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setMatchingCost(bad); }, "matchingCost");
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setDisparityPrior(bad); }, "disparityPrior");
+        expectBadValue(inParams([bad](Params& p) { p.matchingCost = bad; }), "matchingCost");
+        expectBadValue(inParams([bad](Params& p) { p.disparityPrior = bad; }), "disparityPrior");
     }
     for (int bad : { -1, 3, INT_MAX, INT_MIN })
     {
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setAggregation(bad); }, "aggregation");
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setTopAggregation(bad); }, "topAggregation");
+        expectBadValue(inParams([bad](Params& p) { p.aggregation = bad; }), "aggregation");
+        expectBadValue(inParams([bad](Params& p) { p.topAggregation = bad; }), "topAggregation");
     }
-    expectBadValue([](HDPTreeMatcher& m) { m.setTopAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES); },
+    expectBadValue(inParams([](Params& p) { p.topAggregation = HDPTreeMatcher::AGGREGATION_SCANLINES; }),
                    "topAggregation");
     for (int bad : { -1, 65, INT_MAX, INT_MIN })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setIntervalMargin(bad); }, "intervalMargin");
+        expectBadValue(inParams([bad](Params& p) { p.intervalMargin = bad; }), "intervalMargin");
     for (double bad : { -0.5, 1., 2., infinity, -infinity, notANumber })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setDelta0(bad); }, "delta0");
+        expectBadValue(inParams([bad](Params& p) { p.delta0 = bad; }), "delta0");
     for (double bad : { -0.5, 1.0001, 2., infinity, -infinity, notANumber })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setBeta(bad); }, "beta");
+        expectBadValue(inParams([bad](Params& p) { p.beta = bad; }), "beta");
     for (double bad : { 0., -1., infinity, -infinity, notANumber })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setGamma(bad); }, "gamma");
+        expectBadValue(inParams([bad](Params& p) { p.gamma = bad; }), "gamma");
     for (double bad : { -1., infinity, -infinity, notANumber })
     {
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setColorTruncation(bad); }, "colorTruncation");
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setGradientTruncation(bad); }, "gradientTruncation");
+        expectBadValue(inParams([bad](Params& p) { p.colorTruncation = bad; }), "colorTruncation");
+        expectBadValue(inParams([bad](Params& p) { p.gradientTruncation = bad; }), "gradientTruncation");
     }
     for (double bad : { -0.1, 1.1, infinity, -infinity, notANumber })
-        expectBadValue([bad](HDPTreeMatcher& m) { m.setColorWeight(bad); }, "colorWeight");
+        expectBadValue(inParams([bad](Params& p) { p.colorWeight = bad; }), "colorWeight");
     expectBadValue([](HDPTreeMatcher& m) { m.setTreeStrategy(Ptr<TreeStrategy>()); }, "treeStrategy");
+    expectBadValue(inParams([](Params& p) { p.treeStrategy.release(); }), "treeStrategy");
+    expectBadValue(inParams([](Params& p) { p.finestLayer = 1, p.P2 = 101; }), "P2 must be in 0..100, not 101");
 }
 
 TEST(HDPStereo_BadInput, create)
@@ -177,7 +178,12 @@ TEST(HDPStereo_BadInput, create)
     for (int bad : { 0, -1, INT_MIN })
         expectRejected([bad] { HDPTreeMatcher::create(0, bad); }, "numDisparities");
     for (int bad : { -1, 5, 1000, INT_MAX, INT_MIN })
+    {
         expectRejected([bad] { HDPTreeMatcher::create(0, 64, bad); }, "preset");
+        expectRejected([bad] { Params params(bad); }, "preset");
+        expectRejected([bad] { HDPTreeMatcher::createLike(StereoSGBM::create(), bad); }, "preset");
+    }
+    expectRejected([] { HDPTreeMatcher::createLike(Ptr<StereoSGBM>()); }, "sgbm");
 }
 
 TEST(HDPStereo_BadInput, disparities_that_do_not_fit_into_16_bit)
@@ -205,14 +211,14 @@ TEST(HDPStereo_BadInput, scanlines_without_census)
 {
     const Mat image(12, 16, CV_8UC1, Scalar(7));
     const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, 8);
-    matcher->setMatchingCost(HDPTreeMatcher::COST_COLOR_GRADIENT);
+    change(*matcher, [&](Params& p) { p.matchingCost = HDPTreeMatcher::COST_COLOR_GRADIENT; });
     expectRejected([&] { match(*matcher, image, image); },
                    "matchingCost must be COST_CENSUS for AGGREGATION_SCANLINES");
-    matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREE_SCANLINES);
+    change(*matcher, [&](Params& p) { p.aggregation = HDPTreeMatcher::AGGREGATION_TREE_SCANLINES; });
     expectRejected([&] { match(*matcher, image, image); }, "for AGGREGATION_TREE_SCANLINES");
-    matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREES);
+    change(*matcher, [&](Params& p) { p.aggregation = HDPTreeMatcher::AGGREGATION_TREES; });
     expectRejected([&] { match(*matcher, image, image); }, "fillOcclusions");
-    matcher->setFillOcclusions(false);
+    change(*matcher, [&](Params& p) { p.fillOcclusions = false; });
     EXPECT_NO_THROW(match(*matcher, image, image));
 }
 
@@ -220,22 +226,27 @@ TEST(HDPStereo_BadInput, model_with_too_few_layers)
 {
     const Mat image(24, 32, CV_8UC3, Scalar::all(7));
     const Ptr<HDPTreeMatcher> matcher = createSystem(presetPaper, 8);
-    matcher->setPredictionModel(DisparityPredictionModel::create());
+    change(*matcher, [&](Params& p) { p.predictionModel = DisparityPredictionModel::create(); });
     expectRejected([&] { match(*matcher, image, image); }, "predictionModel");
-    matcher->setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL));
+    change(*matcher, [&](Params& p) {
+        p.predictionModel = DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL);
+    });
     EXPECT_NO_THROW(match(*matcher, image, image));
-    matcher->setNumLayers(4);
+    change(*matcher, [&](Params& p) { p.numLayers = 4; });
     expectRejected([&] { match(*matcher, image, image); }, "predictionModel");
-    matcher->setPredictionModel(Ptr<DisparityPredictionModel>()); // of the published ones only the large has 3 layers
+    change(*matcher, [&](Params& p) {
+        p.predictionModel = Ptr<DisparityPredictionModel>(); // of the published ones only the large has 3 layers
+    });
     expectRejected([&] { match(*matcher, image, image); }, "predictionModel");
-    matcher->setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE));
+    change(*matcher, [&](Params& p) {
+        p.predictionModel = DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE);
+    });
     EXPECT_NO_THROW(match(*matcher, image, image));
 
-    matcher->setPredictionModel(DisparityPredictionModel::create());
+    change(*matcher, [&](Params& p) { p.predictionModel = DisparityPredictionModel::create(); });
     EXPECT_NO_THROW(match(*matcher, image.row(0), image.row(0))) << "one layer only";
-    matcher->setUsePrediction(false);
+    change(*matcher, [&](Params& p) { p.usePrediction = false; });
     EXPECT_NO_THROW(match(*matcher, image, image));
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

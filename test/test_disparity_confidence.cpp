@@ -13,8 +13,7 @@
 #include "../src/pair/image_levels.hpp"
 #include "../src/pair/pair_pyramids.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 ////////////////////////////////////////////// the stage //////////////////////////////////////////////
 
@@ -332,7 +331,7 @@ TEST(HDPStereo_DisparityConfidence, of_the_last_pair)
         expectIdentical(confidence, confidenceOf(*matcher));
         matcher->setNumDisparities(3); // for the next pair
         matcher->setMinDisparity(5);
-        matcher->setUseSubpixel(!matcher->getUseSubpixel());
+        change(*matcher, [&](Params& p) { p.useSubpixel = !p.useSubpixel; });
         matcher->setDisp12MaxDiff(1);
         expectIdentical(confidence, confidenceOf(*matcher));
         const Mat smaller = match(*matcher, left.rowRange(0, 90).clone(), right.rowRange(0, 90).clone());
@@ -340,7 +339,7 @@ TEST(HDPStereo_DisparityConfidence, of_the_last_pair)
 
         matcher->setNumDisparities(48);
         matcher->setMinDisparity(0);
-        matcher->setUseSubpixel(!matcher->getUseSubpixel());
+        change(*matcher, [&](Params& p) { p.useSubpixel = !p.useSubpixel; });
         matcher->setDisp12MaxDiff(-1);
         expectIdentical(disparity, match(*matcher, left, right)); // asking for the confidence has changed nothing
         expectIdentical(confidence, confidenceOf(*matcher));
@@ -422,5 +421,4 @@ TEST(HDPStereo_DisparityConfidence, images_of_any_size)
         }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

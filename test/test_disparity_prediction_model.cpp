@@ -13,8 +13,7 @@
 
 #include "opencv2/opencv_modules.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 typedef std::vector<double> Numbers;
 
@@ -349,7 +348,7 @@ TEST(HDPStereo_ModelTraining, appends_layers_that_a_matcher_takes)
 
     const SyntheticPair pair = makeSyntheticPair(Size(80, 60), 16, 6);
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_PAPER);
-    matcher->setPredictionModel(DisparityPredictionModel::load(file.name));
+    change(*matcher, [&](Params& p) { p.predictionModel = DisparityPredictionModel::load(file.name); });
     EXPECT_EQ(pair.left.size(), match(*matcher, pair.left, pair.right).size());
 }
 
@@ -402,11 +401,11 @@ void expectHostile(const std::string& text)
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_PAPER);
     const Ptr<DisparityPredictionModel> model =
         DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_SMALL);
-    matcher->setPredictionModel(model);
+    change(*matcher, [&](Params& p) { p.predictionModel = model; });
     const std::string before = serialized(*matcher);
     EXPECT_THROW(deserialize(text, *model), cv::Exception);
     EXPECT_EQ(before, serialized(*matcher));
-    EXPECT_EQ(model.get(), matcher->getPredictionModel().get());
+    EXPECT_EQ(model.get(), matcher->getParams().predictionModel.get());
 }
 
 std::string modelText(int version, const std::string& layers, int layerCount = 1)
@@ -480,13 +479,12 @@ TEST(HDPStereo_ModelFiles, model_without_enough_layers)
     deserialize(modelText(1, "[ { means: [ 0. ], sigmas: [ 1. ], weights: [ 1. ] } ]"), *model);
     const SyntheticPair pair = makeSyntheticPair(Size(80, 60), 16, 6);
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_PAPER);
-    matcher->setPredictionModel(model);
+    change(*matcher, [&](Params& p) { p.predictionModel = model; });
     Mat disparity(3, 3, CV_8U, Scalar(9));
     expectRejected([&] { matcher->compute(pair.left, pair.right, disparity); }, "predictionModel");
     EXPECT_EQ(9 * 9, sum(disparity)[0]);
-    matcher->setNumLayers(2);
+    change(*matcher, [&](Params& p) { p.numLayers = 2; });
     EXPECT_NO_THROW(matcher->compute(pair.left, pair.right, disparity));
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -16,8 +16,7 @@
 #include "opencv2/ximgproc/disparity_filter.hpp"
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int minDisparity = 2, numDisparities = 32;
 const double focal = 250, baseline = 0.5;
@@ -65,7 +64,7 @@ TEST(HDPStereo_DropIn, block_sizes)
             matcher->setBlockSize(blockSize);
             return match(*matcher, pair.left, pair.right).clone();
         };
-        const bool isCensus = matcher->getMatchingCost() == HDPTreeMatcher::COST_CENSUS;
+        const bool isCensus = matcher->getParams().matchingCost == HDPTreeMatcher::COST_CENSUS;
         std::map<int, Mat> maps;
         for (int side : { 1, 3, 5, 7, 9, 31 })
             maps[side] = mapOf(side);
@@ -86,6 +85,25 @@ TEST(HDPStereo_DropIn, block_sizes)
         EXPECT_GT(cv::norm(maps[3], maps[5], NORM_L1), 0) << system.name;
         EXPECT_GT(cv::norm(maps[5], maps[7], NORM_L1), 0) << system.name;
     }
+}
+
+//! What a cv::StereoSGBM is set to where both have a parameter; the rest is the preset's.
+TEST(HDPStereo_DropIn, matcher_like_a_cv_StereoSGBM)
+{
+    const Ptr<StereoSGBM> sgbm = StereoSGBM::create(-7, 48, 5, 8 * 3 * 25, 32 * 3 * 25, 2, 63, 10, 100, 3);
+    for (const System& system : presets)
+    {
+        const Ptr<HDPTreeMatcher> expected = HDPTreeMatcher::create(-7, 48, system.preset);
+        expected->setDisp12MaxDiff(2);
+        expected->setSpeckleWindowSize(100);
+        expected->setSpeckleRange(3);
+        EXPECT_EQ(serialized(*expected), serialized(*HDPTreeMatcher::createLike(sgbm, system.preset)));
+    }
+    sgbm->setSpeckleRange(-1);
+    EXPECT_EQ(0, HDPTreeMatcher::createLike(sgbm)->getSpeckleRange());
+    EXPECT_EQ(7, HDPTreeMatcher::createLike(sgbm)->getBlockSize());
+    sgbm->setNumDisparities(0);
+    expectRejected([&] { HDPTreeMatcher::createLike(sgbm); }, "numDisparities");
 }
 
 TEST(HDPStereo_DropIn, from_a_rectified_pair_to_points)
@@ -215,5 +233,4 @@ TEST(HDPStereo_DropIn, weighted_least_squares_filter_of_ximgproc)
 }
 #endif
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

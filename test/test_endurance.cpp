@@ -14,8 +14,7 @@
 extern "C" size_t __sanitizer_get_current_allocated_bytes() __attribute__((weak));
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! Bytes that are allocated and not freed; throws SkipTestException if the C library does not tell.
 size_t allocatedBytes()
@@ -44,13 +43,13 @@ int countCalls()
 void configureAnew(HDPTreeMatcher& matcher, RNG& rng)
 {
     const std::vector<System> systems = allSystems();
-    configure(matcher, systems[rng.uniform(0, (int)systems.size())]);
+    matcher.setParams(paramsOf(systems[rng.uniform(0, (int)systems.size())]));
     matcher.setMinDisparity(rng.uniform(-20, 20));
     matcher.setNumDisparities(rng.uniform(1, 65));
     matcher.setDisp12MaxDiff(rng.uniform(-1, 3));
     matcher.setSpeckleWindowSize(rng.uniform(0, 2) * 30);
     matcher.setSpeckleRange(1);
-    matcher.setUseNonLocalRefinement(rng.uniform(0, 6) == 0);
+    change(matcher, [&](Params& p) { p.useNonLocalRefinement = rng.uniform(0, 6) == 0; });
     matcher.setDisparityDepth(rng.uniform(0, 2) ? CV_32F : CV_16S);
 }
 
@@ -102,5 +101,4 @@ TEST(HDPStereo_Endurance, memory_does_not_grow)
               << std::endl;
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -6,8 +6,7 @@
 #include "synthetic_pair.hpp"
 #include "systems.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int minDisparity = -3;
 
@@ -37,7 +36,7 @@ TEST(HDPStereo_FloatOutput, pixels_instead_of_sixteenths)
             {
                 SCOPED_TRACE(testing::Message() << system.name << ", subpixel " << subpixel << ", filters " << filters);
                 const Ptr<HDPTreeMatcher> matcher = createMatcher(system.preset);
-                matcher->setUseSubpixel(subpixel);
+                change(*matcher, [&](Params& p) { p.useSubpixel = subpixel; });
                 matcher->setDisp12MaxDiff(filters ? 1 : -1);
                 matcher->setSpeckleWindowSize(filters ? 60 : 0);
                 matcher->setSpeckleRange(1);
@@ -129,5 +128,4 @@ TEST(HDPStereo_FloatOutput, parameter)
     EXPECT_EQ(CV_32F, read->getDisparityDepth());
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -11,8 +11,7 @@
 #include "systems.hpp"
 #include "../src/pair/image_levels.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 ////////////////////////////////////////////// the stage //////////////////////////////////////////////
 
@@ -309,18 +308,17 @@ TEST(HDPStereo_ImageTypes, dark_pairs_are_brightened)
         SCOPED_TRACE(preset.name);
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, numDisparities);
         const std::vector<Mat> expected = results(*matcher, left * darkness, right * darkness);
-        std::vector<double> expectedLight, light;
-        const bool isAligned = matcher->getLightAlignment(expectedLight);
-        const double noise = matcher->getNoiseLevel();
+        const HDPTreeMatcher::Findings bright = matcher->getFindings();
         expectSameResults(*matcher, expected, left, right);
-        EXPECT_EQ(isAligned, matcher->getLightAlignment(light));
-        EXPECT_NEAR(noise / darkness, matcher->getNoiseLevel(), 1e-9);
+        const HDPTreeMatcher::Findings dark = matcher->getFindings();
+        EXPECT_EQ(bright.isLightChanged, dark.isLightChanged);
+        EXPECT_NEAR(bright.noise / darkness, dark.noise, 1e-9);
         for (double level : { 0.01, 0.03 }) // 1 is white
         {
             const auto aligned = [](const std::vector<double>& m, double r) {
                 return ((m[9] * r + m[8]) * r + m[0]) * r + m[7];
             };
-            EXPECT_NEAR(aligned(expectedLight, darkness * level) / darkness, aligned(light, level), 1e-9);
+            EXPECT_NEAR(aligned(bright.light, darkness * level) / darkness, aligned(dark.light, level), 1e-9);
         }
     }
 }
@@ -443,5 +441,4 @@ TEST(HDPStereo_ImageTypes, any_number_of_threads)
     }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -8,8 +8,7 @@
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using hdp::LightModel;
 
@@ -43,8 +42,9 @@ Mat relight(const Mat& image, Light light)
 
 LightModel foundBy(const HDPTreeMatcher& matcher, bool isExpected)
 {
-    std::vector<double> found;
-    EXPECT_EQ(isExpected, matcher.getLightAlignment(found));
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    const std::vector<double>& found = findings.light;
+    EXPECT_EQ(isExpected, findings.isLightChanged);
     LightModel model;
     EXPECT_EQ((size_t)LightModel::terms, found.size());
     std::copy(found.begin(), found.end(), model.coefficients.val);
@@ -159,9 +159,9 @@ TEST(HDPStereo_LightAlignment, with_rows)
         const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32, preset);
         const Mat good = match(*matcher, pair.left, pair.right), changed = match(*matcher, pair.left, right);
         const LightModel model = foundBy(*matcher, true);
-        std::vector<double> rows;
-        EXPECT_TRUE(matcher->getRowAlignment(rows));
-        EXPECT_NEAR(2, rows[0], 0.1);
+        const HDPTreeMatcher::Findings findings = matcher->getFindings();
+        EXPECT_TRUE(findings.areRowsMoved);
+        EXPECT_NEAR(2, findings.rows[0], 0.1);
         const double clean = badPixels(good, pair.truth, pair.visible, 1);
         EXPECT_LE(badPixels(changed, pair.truth, pair.visible, 1), 1.1 * clean + 1.5);
         setNumThreads(3);
@@ -172,5 +172,4 @@ TEST(HDPStereo_LightAlignment, with_rows)
     }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

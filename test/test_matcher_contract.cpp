@@ -11,8 +11,7 @@
 #include <functional>
 #include <thread>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int disparities = 24;
 
@@ -26,7 +25,7 @@ Ptr<HDPTreeMatcher> createMatcher(bool usePrediction = true, int minDisparity = 
 {
     const Ptr<HDPTreeMatcher> matcher =
         HDPTreeMatcher::create(minDisparity, numDisparities, HDPTreeMatcher::PRESET_PAPER);
-    matcher->setUsePrediction(usePrediction);
+    change(*matcher, [&](Params& p) { p.usePrediction = usePrediction; });
     return matcher;
 }
 
@@ -40,7 +39,7 @@ void expectDisparities(const Mat& disparity, const HDPTreeMatcher& matcher)
     const int first = matcher.getMinDisparity(), last = first + matcher.getNumDisparities() - 1;
     for (const short d : Mat_<short>(disparity))
     {
-        ASSERT_TRUE(matcher.getUseSubpixel() || d % 16 == 0) << d / 16.;
+        ASSERT_TRUE(matcher.getParams().useSubpixel || d % 16 == 0) << d / 16.;
         ASSERT_TRUE(d >= 16 * first && d <= 16 * last) << d / 16.;
     }
 }
@@ -50,41 +49,42 @@ void expectDisparities(const Mat& disparity, const HDPTreeMatcher& matcher)
 TEST(HDPStereo_MatcherContract, defaults)
 {
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, HDPTreeMatcher::PRESET_PAPER);
+    const Params params = matcher->getParams();
     EXPECT_EQ(0, matcher->getMinDisparity());
     EXPECT_EQ(64, matcher->getNumDisparities());
     EXPECT_EQ(1, matcher->getBlockSize());
     EXPECT_EQ(0, matcher->getSpeckleWindowSize());
     EXPECT_LE(matcher->getDisp12MaxDiff(), 0);
     EXPECT_EQ(createMinimumSpanningTree()->getDefaultName(), matcher->getTreeStrategy()->getDefaultName());
-    EXPECT_TRUE(matcher->getUsePrediction());
-    EXPECT_FALSE(matcher->getUseMedianPrefilter());
-    EXPECT_EQ(3, matcher->getNumLayers());
-    EXPECT_EQ(0, matcher->getMaxTopDisparities());
+    EXPECT_TRUE(params.usePrediction);
+    EXPECT_FALSE(params.useMedianPrefilter);
+    EXPECT_EQ(3, params.numLayers);
+    EXPECT_EQ(0, params.maxTopDisparities);
     EXPECT_EQ(0, matcher->getMaxRowOffset());
     EXPECT_FALSE(matcher->getUseLightAlignment());
     EXPECT_EQ(0, matcher->getNoiseThreshold());
-    EXPECT_TRUE(matcher->getPredictionModel().empty());
-    EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getDelta0());
-    EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getBeta());
-    EXPECT_EQ(25.5, matcher->getGamma());
-    EXPECT_EQ(10, matcher->getColorTruncation());
-    EXPECT_EQ(2, matcher->getGradientTruncation());
-    EXPECT_EQ(0.11, matcher->getColorWeight());
-    EXPECT_EQ(HDPTreeMatcher::AUTO, matcher->getDisparityMedianSize());
-    EXPECT_EQ(1, matcher->getDisparityMedianPasses());
-    EXPECT_EQ((int)HDPTreeMatcher::COST_COLOR_GRADIENT, matcher->getMatchingCost());
-    EXPECT_EQ((int)HDPTreeMatcher::PRIOR_SUPPORT_POINTS, matcher->getDisparityPrior());
-    EXPECT_EQ(0, matcher->getIntervalMargin());
-    EXPECT_FALSE(matcher->getUseSubpixel());
-    EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, matcher->getAggregation());
-    EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, matcher->getTopAggregation());
-    EXPECT_EQ(16, matcher->getP1());
-    EXPECT_EQ(65, matcher->getP2());
-    EXPECT_EQ(1, matcher->getScanlinePasses());
-    EXPECT_EQ(0, matcher->getFinestLayer());
-    EXPECT_FALSE(matcher->getUseNonLocalRefinement());
+    EXPECT_TRUE(params.predictionModel.empty());
+    EXPECT_EQ(HDPTreeMatcher::AUTO, params.delta0);
+    EXPECT_EQ(HDPTreeMatcher::AUTO, params.beta);
+    EXPECT_EQ(25.5, params.gamma);
+    EXPECT_EQ(10, params.colorTruncation);
+    EXPECT_EQ(2, params.gradientTruncation);
+    EXPECT_EQ(0.11, params.colorWeight);
+    EXPECT_EQ(HDPTreeMatcher::AUTO, params.disparityMedianSize);
+    EXPECT_EQ(1, params.disparityMedianPasses);
+    EXPECT_EQ((int)HDPTreeMatcher::COST_COLOR_GRADIENT, params.matchingCost);
+    EXPECT_EQ((int)HDPTreeMatcher::PRIOR_SUPPORT_POINTS, params.disparityPrior);
+    EXPECT_EQ(0, params.intervalMargin);
+    EXPECT_FALSE(params.useSubpixel);
+    EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, params.aggregation);
+    EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREES, params.topAggregation);
+    EXPECT_EQ(16, params.P1);
+    EXPECT_EQ(65, params.P2);
+    EXPECT_EQ(1, params.scanlinePasses);
+    EXPECT_EQ(0, params.finestLayer);
+    EXPECT_FALSE(params.useNonLocalRefinement);
     EXPECT_FALSE(matcher->getUseTemporalPrediction());
-    EXPECT_FALSE(matcher->getFillOcclusions());
+    EXPECT_FALSE(params.fillOcclusions);
 
     EXPECT_EQ(serialized(*HDPTreeMatcher::create(0, 64, HDPTreeMatcher::PRESET_FAST)),
               serialized(*HDPTreeMatcher::create()));
@@ -95,13 +95,13 @@ TEST(HDPStereo_MatcherContract, defaults)
 }
 
 //! What a preset sets is all that it sets.
-TEST(HDPStereo_MatcherContract, presets_by_setters)
+TEST(HDPStereo_MatcherContract, presets_are_params)
 {
     for (const System& system : presets)
         for (const System& other : presets)
         {
             const Ptr<HDPTreeMatcher> configured = createSystem(other, 33, -5);
-            configure(*configured, system);
+            configured->setParams(paramsOf(system));
             EXPECT_EQ(serialized(*HDPTreeMatcher::create(-5, 33, system.preset)), serialized(*configured))
                 << system.name << " after " << other.name;
         }
@@ -114,6 +114,13 @@ TEST(HDPStereo_MatcherContract, presets_by_setters)
         EXPECT_EQ(value, matcher->get##Name());                                                                        \
     }
 
+#define EXPECT_KEEPS_FIELD(matcher, field, ...)                                                                        \
+    for (const auto value : { __VA_ARGS__ })                                                                           \
+    {                                                                                                                  \
+        change(*matcher, [&](Params& p) { p.field = value; });                                                         \
+        EXPECT_EQ(value, matcher->getParams().field);                                                                  \
+    }
+
 TEST(HDPStereo_MatcherContract, setters_and_getters)
 {
     const Ptr<HDPTreeMatcher> matcher = createMatcher();
@@ -123,38 +130,72 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS(matcher, SpeckleWindowSize, 100, INT_MAX, -1, INT_MIN, 0);
     EXPECT_KEEPS(matcher, SpeckleRange, 2, 4000, INT_MAX, 0);
     EXPECT_KEEPS(matcher, Disp12MaxDiff, 1, 0, -1, INT_MAX);
-    EXPECT_KEEPS(matcher, UsePrediction, false, true);
-    EXPECT_KEEPS(matcher, UseMedianPrefilter, true, false);
-    EXPECT_KEEPS(matcher, NumLayers, 1, 2, 16);
-    EXPECT_KEEPS(matcher, MaxTopDisparities, 1, 64, INT_MAX, 0);
+    EXPECT_KEEPS_FIELD(matcher, usePrediction, false, true);
+    EXPECT_KEEPS_FIELD(matcher, useMedianPrefilter, true, false);
+    EXPECT_KEEPS_FIELD(matcher, numLayers, 1, 2, 16);
+    EXPECT_KEEPS_FIELD(matcher, maxTopDisparities, 1, 64, INT_MAX, 0);
     EXPECT_KEEPS(matcher, MaxRowOffset, 1, 64, INT_MAX, 0);
     EXPECT_KEEPS(matcher, UseLightAlignment, true, false);
     EXPECT_KEEPS(matcher, NoiseThreshold, 0., 1e-3, 2.5, 300.);
-    EXPECT_KEEPS(matcher, Delta0, 0., 0.064, 0.999, (double)HDPTreeMatcher::AUTO);
-    EXPECT_KEEPS(matcher, Beta, 0., 0.6, 1., (double)HDPTreeMatcher::AUTO);
-    EXPECT_KEEPS(matcher, Gamma, 1e-3, 25.5, 1e6);
-    EXPECT_KEEPS(matcher, ColorTruncation, 0., 7.5, 255.);
-    EXPECT_KEEPS(matcher, GradientTruncation, 0., 7.5, 255.);
-    EXPECT_KEEPS(matcher, ColorWeight, 0., 0.5, 1.);
-    EXPECT_KEEPS(matcher, DisparityMedianSize, 0, 3, 5, 7, (int)HDPTreeMatcher::AUTO);
-    EXPECT_KEEPS(matcher, DisparityMedianPasses, 8, 2, 1);
-    EXPECT_KEEPS(matcher, MatchingCost, (int)HDPTreeMatcher::COST_CENSUS, (int)HDPTreeMatcher::COST_COLOR_GRADIENT);
-    EXPECT_KEEPS(matcher, DisparityPrior, (int)HDPTreeMatcher::PRIOR_UPPER_LAYER,
-                 (int)HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
-    EXPECT_KEEPS(matcher, IntervalMargin, 64, 1, 0);
-    EXPECT_KEEPS(matcher, UseSubpixel, true, false);
-    EXPECT_KEEPS(matcher, Aggregation, (int)HDPTreeMatcher::AGGREGATION_SCANLINES,
-                 (int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES, (int)HDPTreeMatcher::AGGREGATION_TREES);
-    EXPECT_KEEPS(matcher, TopAggregation, (int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES,
-                 (int)HDPTreeMatcher::AGGREGATION_TREES);
-    EXPECT_KEEPS(matcher, P1, 0, 100, 16);
-    EXPECT_KEEPS(matcher, P2, 0, 100, 65);
-    EXPECT_KEEPS(matcher, ScanlinePasses, 4, 2, 1);
-    EXPECT_KEEPS(matcher, FinestLayer, 15, 1, 0);
-    EXPECT_KEEPS(matcher, UseNonLocalRefinement, true, false);
+    EXPECT_KEEPS_FIELD(matcher, delta0, 0., 0.064, 0.999, (double)HDPTreeMatcher::AUTO);
+    EXPECT_KEEPS_FIELD(matcher, beta, 0., 0.6, 1., (double)HDPTreeMatcher::AUTO);
+    EXPECT_KEEPS_FIELD(matcher, gamma, 1e-3, 25.5, 1e6);
+    EXPECT_KEEPS_FIELD(matcher, colorTruncation, 0., 7.5, 255.);
+    EXPECT_KEEPS_FIELD(matcher, gradientTruncation, 0., 7.5, 255.);
+    EXPECT_KEEPS_FIELD(matcher, colorWeight, 0., 0.5, 1.);
+    EXPECT_KEEPS_FIELD(matcher, disparityMedianSize, 0, 3, 5, 7, (int)HDPTreeMatcher::AUTO);
+    EXPECT_KEEPS_FIELD(matcher, disparityMedianPasses, 8, 2, 1);
+    EXPECT_KEEPS_FIELD(matcher, matchingCost, (int)HDPTreeMatcher::COST_CENSUS,
+                       (int)HDPTreeMatcher::COST_COLOR_GRADIENT);
+    EXPECT_KEEPS_FIELD(matcher, disparityPrior, (int)HDPTreeMatcher::PRIOR_UPPER_LAYER,
+                       (int)HDPTreeMatcher::PRIOR_SUPPORT_POINTS);
+    EXPECT_KEEPS_FIELD(matcher, intervalMargin, 64, 1, 0);
+    EXPECT_KEEPS_FIELD(matcher, useSubpixel, true, false);
+    EXPECT_KEEPS_FIELD(matcher, aggregation, (int)HDPTreeMatcher::AGGREGATION_SCANLINES,
+                       (int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES, (int)HDPTreeMatcher::AGGREGATION_TREES);
+    EXPECT_KEEPS_FIELD(matcher, topAggregation, (int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES,
+                       (int)HDPTreeMatcher::AGGREGATION_TREES);
+    EXPECT_KEEPS_FIELD(matcher, P1, 0, 100, 16);
+    EXPECT_KEEPS_FIELD(matcher, P2, 0, 100, 65);
+    EXPECT_KEEPS_FIELD(matcher, scanlinePasses, 4, 2, 1);
+    EXPECT_KEEPS_FIELD(matcher, finestLayer, 15, 1, 0);
+    EXPECT_KEEPS_FIELD(matcher, useNonLocalRefinement, true, false);
     EXPECT_KEEPS(matcher, UseTemporalPrediction, true, false);
     EXPECT_KEEPS(matcher, TreeStrategy, createSegmentTree(), createRandomTree());
-    EXPECT_KEEPS(matcher, PredictionModel, DisparityPredictionModel::create(), Ptr<DisparityPredictionModel>());
+    EXPECT_KEEPS_FIELD(matcher, predictionModel, DisparityPredictionModel::create(), Ptr<DisparityPredictionModel>());
+}
+
+//! The accessors that are left, and the fields of Params that they stand for
+TEST(HDPStereo_MatcherContract, setters_are_shortcuts_to_params)
+{
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create();
+    const Ptr<TreeStrategy> strategy = createRandomTree();
+    matcher->setBlockSize(3);
+    matcher->setDisparityDepth(CV_32F);
+    matcher->setUseTemporalPrediction(true);
+    matcher->setMaxRowOffset(5);
+    matcher->setUseLightAlignment(false);
+    matcher->setNoiseThreshold(1.5);
+    matcher->setTreeStrategy(strategy);
+    const Params params = matcher->getParams();
+    EXPECT_EQ(3, params.blockSize);
+    EXPECT_EQ(CV_32F, params.disparityDepth);
+    EXPECT_TRUE(params.useTemporalPrediction);
+    EXPECT_EQ(5, params.maxRowOffset);
+    EXPECT_FALSE(params.useLightAlignment);
+    EXPECT_EQ(1.5, params.noiseThreshold);
+    EXPECT_EQ(strategy.get(), params.treeStrategy.get());
+
+    matcher->setMinDisparity(-3);
+    matcher->setParams(Params());
+    EXPECT_EQ(7, matcher->getBlockSize());
+    EXPECT_EQ(CV_16S, matcher->getDisparityDepth());
+    EXPECT_FALSE(matcher->getUseTemporalPrediction());
+    EXPECT_EQ(64, matcher->getMaxRowOffset());
+    EXPECT_TRUE(matcher->getUseLightAlignment());
+    EXPECT_EQ(3, matcher->getNoiseThreshold());
+    EXPECT_NE(strategy.get(), matcher->getTreeStrategy().get());
+    EXPECT_EQ(-3, matcher->getMinDisparity()) << "no field of Params";
 }
 
 //! AUTO stands for the values that made the paper's tables, by the width of the image.
@@ -167,11 +208,13 @@ TEST(HDPStereo_MatcherContract, automatic_values)
             const Ptr<HDPTreeMatcher> automatic = createMatcher(usePrediction, 0, 40);
             const Ptr<HDPTreeMatcher> written = createMatcher(usePrediction, 0, 40);
             const bool isLarge = width >= 1000;
-            written->setDelta0(isLarge ? 0.064 : 0.004);
-            written->setBeta(isLarge ? 0.6 : 0.95);
-            written->setDisparityMedianSize(usePrediction ? 7 : 5);
-            written->setPredictionModel(DisparityPredictionModel::createPublished(
-                isLarge ? DisparityPredictionModel::PUBLISHED_LARGE : DisparityPredictionModel::PUBLISHED_SMALL));
+            change(*written, [&](Params& p) {
+                p.delta0 = isLarge ? 0.064 : 0.004;
+                p.beta = isLarge ? 0.6 : 0.95;
+                p.disparityMedianSize = usePrediction ? 7 : 5;
+                p.predictionModel = DisparityPredictionModel::createPublished(
+                    isLarge ? DisparityPredictionModel::PUBLISHED_LARGE : DisparityPredictionModel::PUBLISHED_SMALL);
+            });
             expectIdentical(match(*written, pair.left, pair.right), match(*automatic, pair.left, pair.right));
         }
 }
@@ -179,7 +222,7 @@ TEST(HDPStereo_MatcherContract, automatic_values)
 struct Change
 {
     const char* name;
-    void (*set)(HDPTreeMatcher&);
+    std::function<void(HDPTreeMatcher&)> set;
 };
 
 // clang-format off
@@ -191,51 +234,51 @@ const Change commonChanges[] = {
     { "speckles", [](HDPTreeMatcher& m) { m.setSpeckleWindowSize(100), m.setSpeckleRange(1); } },
     { "treeStrategy: ST", [](HDPTreeMatcher& m) { m.setTreeStrategy(createSegmentTree(1)); } },
     { "treeStrategy: RT", [](HDPTreeMatcher& m) { m.setTreeStrategy(createRandomTree()); } },
-    { "usePrediction", [](HDPTreeMatcher& m) { m.setUsePrediction(false); } },
-    { "useMedianPrefilter", [](HDPTreeMatcher& m) { m.setUseMedianPrefilter(true); } },
-    { "numLayers", [](HDPTreeMatcher& m) { m.setNumLayers(1); } },
-    { "gamma", [](HDPTreeMatcher& m) { m.setGamma(5); } },
-    { "disparityMedianSize", [](HDPTreeMatcher& m) { m.setDisparityMedianSize(0); } },
-    { "disparityMedianPasses", [](HDPTreeMatcher& m) { m.setDisparityMedianPasses(4); } },
-    { "useSubpixel", [](HDPTreeMatcher& m) { m.setUseSubpixel(!m.getUseSubpixel()); } },
-    { "finestLayer", [](HDPTreeMatcher& m) { m.setFinestLayer(1 - m.getFinestLayer()); } },
-    { "maxTopDisparities", [](HDPTreeMatcher& m) {
-        m.setNumLayers(3); // all have 3 layers without a limit, and 2 with one
-        m.setMaxTopDisparities(m.getMaxTopDisparities() ? 0 : 64);
-    } },
+    { "usePrediction", inParams([](Params& p) { p.usePrediction = false; }) },
+    { "useMedianPrefilter", inParams([](Params& p) { p.useMedianPrefilter = true; }) },
+    { "numLayers", inParams([](Params& p) { p.numLayers = 1; }) },
+    { "gamma", inParams([](Params& p) { p.gamma = 5; }) },
+    { "disparityMedianSize", inParams([](Params& p) { p.disparityMedianSize = 0; }) },
+    { "disparityMedianPasses", inParams([](Params& p) { p.disparityMedianPasses = 4; }) },
+    { "useSubpixel", inParams([](Params& p) { p.useSubpixel = !p.useSubpixel; }) },
+    { "finestLayer", inParams([](Params& p) { p.finestLayer = 1 - p.finestLayer; }) },
+    { "maxTopDisparities", inParams([](Params& p) {
+        p.numLayers = 3; // all have 3 layers without a limit, and 2 with one
+        p.maxTopDisparities = p.maxTopDisparities ? 0 : 64;
+    }) },
 };
 
 //! What has no effect with scanlines
 const Change treeChanges[] = {
-    { "delta0", [](HDPTreeMatcher& m) { m.setDelta0(0.3); } },
-    { "beta", [](HDPTreeMatcher& m) { m.setBeta(0.1); } },
-    { "intervalMargin", [](HDPTreeMatcher& m) { m.setIntervalMargin(5); } },
-    { "disparityPrior", [](HDPTreeMatcher& m) { m.setDisparityPrior(1 - m.getDisparityPrior()); } },
-    { "predictionModel", [](HDPTreeMatcher& m) {
-        m.setPredictionModel(DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE));
-    } },
-    { "useNonLocalRefinement", [](HDPTreeMatcher& m) { m.setUseNonLocalRefinement(true); } },
+    { "delta0", inParams([](Params& p) { p.delta0 = 0.3; }) },
+    { "beta", inParams([](Params& p) { p.beta = 0.1; }) },
+    { "intervalMargin", inParams([](Params& p) { p.intervalMargin = 5; }) },
+    { "disparityPrior", inParams([](Params& p) { p.disparityPrior = 1 - p.disparityPrior; }) },
+    { "predictionModel", inParams([](Params& p) {
+        p.predictionModel = DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE);
+    }) },
+    { "useNonLocalRefinement", inParams([](Params& p) { p.useNonLocalRefinement = true; }) },
 };
 
 const Change topChanges[] = {
-    { "topAggregation", [](HDPTreeMatcher& m) { m.setTopAggregation(2 - m.getTopAggregation()); } },
+    { "topAggregation", inParams([](Params& p) { p.topAggregation = 2 - p.topAggregation; }) },
 };
 
 const Change colorAndGradientChanges[] = {
-    { "colorTruncation", [](HDPTreeMatcher& m) { m.setColorTruncation(3); } },
-    { "gradientTruncation", [](HDPTreeMatcher& m) { m.setGradientTruncation(8); } },
-    { "colorWeight", [](HDPTreeMatcher& m) { m.setColorWeight(0.9); } },
-    { "matchingCost", [](HDPTreeMatcher& m) { m.setMatchingCost(HDPTreeMatcher::COST_CENSUS), m.setBlockSize(5); } },
+    { "colorTruncation", inParams([](Params& p) { p.colorTruncation = 3; }) },
+    { "gradientTruncation", inParams([](Params& p) { p.gradientTruncation = 8; }) },
+    { "colorWeight", inParams([](Params& p) { p.colorWeight = 0.9; }) },
+    { "matchingCost", inParams([](Params& p) { p.matchingCost = HDPTreeMatcher::COST_CENSUS, p.blockSize = 5; }) },
 };
 
 const Change scanlineChanges[] = {
-    { "P1", [](HDPTreeMatcher& m) { m.setP1(3); } },
-    { "P2", [](HDPTreeMatcher& m) { m.setP2(90); } },
-    { "aggregation", [](HDPTreeMatcher& m) { m.setAggregation(HDPTreeMatcher::AGGREGATION_TREES); } },
+    { "P1", inParams([](Params& p) { p.P1 = 3; }) },
+    { "P2", inParams([](Params& p) { p.P2 = 90; }) },
+    { "aggregation", inParams([](Params& p) { p.aggregation = HDPTreeMatcher::AGGREGATION_TREES; }) },
 };
 
 const Change passesChanges[] = {
-    { "scanlinePasses", [](HDPTreeMatcher& m) { m.setScanlinePasses(3); } },
+    { "scanlinePasses", inParams([](Params& p) { p.scanlinePasses = 3; }) },
 };
 // clang-format on
 
@@ -243,12 +286,12 @@ template <size_t count> void expectEffects(const System& system, const Change (&
 {
     const SyntheticPair& pair = testPair();
     const Mat unchanged = match(*createSystem(system, disparities), pair.left, pair.right);
-    for (const Change& change : changes)
+    for (const Change& each : changes)
     {
         const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
-        change.set(*matcher);
+        each.set(*matcher);
         EXPECT_EQ(expected, countDifferent(unchanged, match(*matcher, pair.left, pair.right)) > 0)
-            << system.name << ", " << change.name;
+            << system.name << ", " << each.name;
     }
 }
 
@@ -258,15 +301,15 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
     for (const System& preset : presets)
     {
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, disparities);
-        const bool hasScanlines = matcher->getAggregation() == HDPTreeMatcher::AGGREGATION_SCANLINES;
+        const bool hasScanlines = matcher->getParams().aggregation == HDPTreeMatcher::AGGREGATION_SCANLINES;
         expectEffects(preset, commonChanges, true);
         expectEffects(preset, treeChanges, !hasScanlines);
         expectEffects(preset, topChanges, hasScanlines);
-        if (matcher->getMatchingCost() == HDPTreeMatcher::COST_COLOR_GRADIENT)
+        if (matcher->getParams().matchingCost == HDPTreeMatcher::COST_COLOR_GRADIENT)
             expectEffects(preset, colorAndGradientChanges, true);
         // Otherwise the top layer alone is matched.
-        const bool hasLayers = matcher->getFinestLayer() == 0;
-        if (matcher->getAggregation() != HDPTreeMatcher::AGGREGATION_TREES && hasLayers)
+        const bool hasLayers = matcher->getParams().finestLayer == 0;
+        if (matcher->getParams().aggregation != HDPTreeMatcher::AGGREGATION_TREES && hasLayers)
             expectEffects(preset, scanlineChanges, true);
         expectEffects(preset, passesChanges, hasScanlines && hasLayers);
     }
@@ -281,22 +324,24 @@ TEST(HDPStereo_MatcherContract, median_passes_are_medians_of_medians)
         {
             SCOPED_TRACE(testing::Message() << "size " << size << (useSubpixel ? ", sub-pixel" : ""));
             const Ptr<HDPTreeMatcher> matcher = createMatcher(false);
-            matcher->setUseSubpixel(useSubpixel);
-            matcher->setDisparityMedianSize(0);
-            matcher->setDisparityMedianPasses(3); // of nothing
+            change(*matcher, [&](Params& p) {
+                p.useSubpixel = useSubpixel;
+                p.disparityMedianSize = 0;
+                p.disparityMedianPasses = 3; // of nothing
+            });
             const Mat unfiltered = match(*matcher, pair.left, pair.right);
-            matcher->setDisparityMedianPasses(1);
+            change(*matcher, [&](Params& p) { p.disparityMedianPasses = 1; });
             expectIdentical(unfiltered, match(*matcher, pair.left, pair.right));
 
             Mat expected;
             unfiltered.convertTo(expected, CV_16U);
-            matcher->setDisparityMedianSize(size);
+            change(*matcher, [&](Params& p) { p.disparityMedianSize = size; });
             for (int passes = 1; passes <= 8; ++passes)
             {
                 expected = oracle::median(expected, size);
                 Mat expectedDisparity;
                 expected.convertTo(expectedDisparity, CV_16S);
-                matcher->setDisparityMedianPasses(passes);
+                change(*matcher, [&](Params& p) { p.disparityMedianPasses = passes; });
                 expectIdentical(expectedDisparity, match(*matcher, pair.left, pair.right));
             }
         }
@@ -465,14 +510,16 @@ TEST(HDPStereo_MatcherContract, any_number_of_layers)
     {
         SCOPED_TRACE(preset.name);
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, disparities);
-        matcher->setPredictionModel(model);
-        matcher->setMaxTopDisparities(0);
+        change(*matcher, [&](Params& p) {
+            p.predictionModel = model;
+            p.maxTopDisparities = 0;
+        });
         for (int layers = 1; layers <= 16; ++layers)
         {
-            matcher->setNumLayers(layers);
+            change(*matcher, [&](Params& p) { p.numLayers = layers; });
             expectDisparities(match(*matcher, pair.left, pair.right), *matcher);
             std::vector<double> ratios;
-            matcher->getSearchRatios(ratios);
+            ratios = matcher->getFindings().searchRatios;
             EXPECT_EQ((size_t)std::min(layers, 7), ratios.size()) << "121 x 90 pixels halved 6 times are 1 x 1";
         }
     }
@@ -503,10 +550,10 @@ TEST(HDPStereo_MatcherContract, more_than_256_disparities)
         const Ptr<HDPTreeMatcher> matcher = createSystem(system, 400);
         const Mat inside = match(*matcher, left, right).colRange(shift + 20, 640);
         // Sub-pixel: the winner may lean to the side whose costs are lower, by half a pixel of the finest layer.
-        const Mat wrong =
-            cv::abs(inside - 16 * shift) > (matcher->getUseSubpixel() ? 8 << matcher->getFinestLayer() : 0);
+        const Mat wrong = cv::abs(inside - 16 * shift) >
+                          (matcher->getParams().useSubpixel ? 8 << matcher->getParams().finestLayer : 0);
         // Where the finest layer has half the rows, a mistake of the layers above it takes more of them.
-        const int share = matcher->getFinestLayer() > 0 ? 30 : 100;
+        const int share = matcher->getParams().finestLayer > 0 ? 30 : 100;
         EXPECT_LE(cv::countNonZero(wrong), (int)inside.total() / share) << system.name;
     }
 }
@@ -532,9 +579,9 @@ TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
             // The columns that only one of the pairs has, or that are added, count in P(D_l), and so reach every pixel.
             // The squares of the sparse matches begin with the added columns.
             // Half a pixel of the finest layer
-            const bool hasScanlines = matcher->getAggregation() != HDPTreeMatcher::AGGREGATION_TREES;
-            const int tolerance = hasScanlines ? 8 << matcher->getFinestLayer() : 0;
-            const int share = !system.usePrediction ? 200 : matcher->getUseSubpixel() ? 25 : 33;
+            const bool hasScanlines = matcher->getParams().aggregation != HDPTreeMatcher::AGGREGATION_TREES;
+            const int tolerance = hasScanlines ? 8 << matcher->getParams().finestLayer : 0;
+            const int share = !system.usePrediction ? 200 : matcher->getParams().useSubpixel ? 25 : 33;
             EXPECT_LE(cv::countNonZero(cv::abs(difference - 16 * k) > tolerance), (int)difference.total() / share);
         }
     }
@@ -622,7 +669,9 @@ TEST_P(HDPStereo_MatcherPreset, speckles_as_filterSpeckles_removes_them)
         for (int maxDiff : { -1, 1 })
         {
             const Ptr<HDPTreeMatcher> matcher = createSystem(GetParam(), disparities - minDisparity, minDisparity);
-            matcher->setDisparityMedianSize(0); // leaves speckles
+            change(*matcher, [&](Params& p) {
+                p.disparityMedianSize = 0; // leaves speckles
+            });
             matcher->setDisp12MaxDiff(maxDiff);
             Mat expected = match(*matcher, pair.left, pair.right);
             const Mat unfiltered = expected.clone();
@@ -709,7 +758,7 @@ TEST(HDPStereo_MatcherContract, reused_equals_fresh)
                     cv::cvtColor(right, right, COLOR_BGR2GRAY);
                 }
                 const int numDisparities = 10 + ++i % 13;
-                configure(*reused, system);
+                reused->setParams(paramsOf(system));
                 reused->setNumDisparities(numDisparities);
                 const Mat disparity = match(*reused, left, right);
                 expectIdentical(match(*createSystem(system, numDisparities), left, right), disparity);
@@ -751,19 +800,19 @@ TEST(HDPStereo_MatcherContract, search_ratios)
     const SyntheticPair& pair = testPair();
     const Ptr<HDPTreeMatcher> matcher = createMatcher();
     std::vector<double> ratios(3, 7.);
-    matcher->getSearchRatios(ratios);
+    ratios = matcher->getFindings().searchRatios;
     EXPECT_TRUE(ratios.empty());
 
     match(*matcher, pair.left, pair.right);
-    matcher->getSearchRatios(ratios);
+    ratios = matcher->getFindings().searchRatios;
     ASSERT_EQ(3u, ratios.size());
     EXPECT_EQ(1, ratios[2]) << "the top layer searches the full range";
     for (int layer = 0; layer < 2; ++layer)
         EXPECT_TRUE(ratios[layer] > 0 && ratios[layer] < 1) << ratios[layer];
 
-    matcher->setUsePrediction(false);
+    change(*matcher, [&](Params& p) { p.usePrediction = false; });
     match(*matcher, pair.left, pair.right);
-    matcher->getSearchRatios(ratios);
+    ratios = matcher->getFindings().searchRatios;
     EXPECT_EQ(std::vector<double>(1, 1.), ratios);
 }
 
@@ -787,7 +836,7 @@ TEST(HDPStereo_MatcherContract, number_of_layers)
                      numDisparities > limit; limit *= 2)
                     ++expected;
             }
-            const int numLayers = matcher->getNumLayers(), limit = matcher->getMaxTopDisparities();
+            const int numLayers = matcher->getParams().numLayers, limit = matcher->getParams().maxTopDisparities;
             ASSERT_EQ(expected, hdp::chooseLayers(numDisparities, numLayers, limit, 16))
                 << preset.name << ", " << numDisparities << " disparities";
             ASSERT_EQ(std::min(expected, 4), hdp::chooseLayers(numDisparities, numLayers, limit, 4));
@@ -811,23 +860,23 @@ TEST(HDPStereo_MatcherContract, layers_of_an_image)
         {
             SCOPED_TRACE(testing::Message() << system.name << ", " << numDisparities << " disparities");
             const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
-            const int layers =
-                hdp::chooseLayers(numDisparities, matcher->getNumLayers(), matcher->getMaxTopDisparities(), 16);
+            const int layers = hdp::chooseLayers(numDisparities, matcher->getParams().numLayers,
+                                                 matcher->getParams().maxTopDisparities, 16);
             std::vector<double> ratios, ofLayers(layers, 1.);
             for (int layer = 0; layer < layers - 1; ++layer) // 16 candidates
-                ofLayers[layer] = layer < matcher->getFinestLayer()
+                ofLayers[layer] = layer < matcher->getParams().finestLayer
                                       ? 0
                                       : std::min(1., 16. / (cvCeil((numDisparities - 1) / std::pow(2., layer)) + 1));
             match(*matcher, image, image);
-            matcher->getSearchRatios(ratios);
+            ratios = matcher->getFindings().searchRatios;
             EXPECT_EQ(ofLayers, ratios);
 
             match(*matcher, small, small);
-            matcher->getSearchRatios(ratios);
+            ratios = matcher->getFindings().searchRatios;
             EXPECT_EQ((size_t)std::min(layers, 4), ratios.size()) << "9 x 8 pixels halved 3 times are 1 x 1";
-            matcher->setUsePrediction(false);
+            change(*matcher, [&](Params& p) { p.usePrediction = false; });
             match(*matcher, image, image);
-            matcher->getSearchRatios(ratios);
+            ratios = matcher->getFindings().searchRatios;
             EXPECT_EQ(std::vector<double>(1, 1.), ratios);
         }
 }
@@ -847,9 +896,9 @@ TEST(HDPStereo_MatcherContract, disparities_of_layers)
             matcher->setDisparityDepth(CV_32F);
             const Mat disparity = match(*matcher, pair.left, pair.right);
             std::vector<double> ratios;
-            matcher->getSearchRatios(ratios);
+            ratios = matcher->getFindings().searchRatios;
             Mat upper;
-            for (int layer = (int)ratios.size() - 1; layer >= matcher->getFinestLayer(); --layer)
+            for (int layer = (int)ratios.size() - 1; layer >= matcher->getParams().finestLayer; --layer)
             {
                 matcher->getLayerDisparity(layer, ofLayer);
                 ASSERT_EQ(CV_32FC1, ofLayer.type());
@@ -865,7 +914,7 @@ TEST(HDPStereo_MatcherContract, disparities_of_layers)
                 }
                 upper = ofLayer.clone();
             }
-            if (matcher->getFinestLayer() == 0)
+            if (matcher->getParams().finestLayer == 0)
             {
                 expectIdentical(disparity, Mat(ofLayer + minDisparity));
             }
@@ -892,8 +941,9 @@ struct Reports
     {
         matcher.getConfidence(confidence);
         matcher.getForest(trees, intervals);
-        matcher.getSearchRatios(ratios);
-        matcher.getStageTimes(stages, times);
+        ratios = matcher.getFindings().searchRatios;
+        stages = matcher.getFindings().stages;
+        times = matcher.getFindings().stageTimes;
         for (int layer = 0; layer < 3; ++layer)
         {
             matcher.getLayerDisparity(layer, layers[layer]);
@@ -931,16 +981,18 @@ TEST_P(HDPStereo_MatcherPreset, no_reports_after_an_exception)
         matcher->compute(pair.left, pair.right, disparity);
         },
         [&] {
-        matcher->setAggregation(HDPTreeMatcher::AGGREGATION_TREES);
-        matcher->setPredictionModel(noLayers);
+        change(*matcher, [&](Params& p) {
+            p.aggregation = HDPTreeMatcher::AGGREGATION_TREES;
+            p.predictionModel = noLayers;
+        });
         matcher->compute(pair.left, pair.right, disparity);
     },
                                 };
     for (const std::function<void()>& compute : bad)
     {
-        configure(*matcher, system);
+        matcher->setParams(paramsOf(system));
         matcher->setMinDisparity(0);
-        matcher->setPredictionModel(Ptr<DisparityPredictionModel>());
+        change(*matcher, [&](Params& p) { p.predictionModel = Ptr<DisparityPredictionModel>(); });
         match(*matcher, pair.left, pair.right);
         EXPECT_LE(Reports(*matcher).empty(), 5u);
         EXPECT_THROW(compute(), cv::Exception);
@@ -978,7 +1030,8 @@ TEST_P(HDPStereo_MatcherPreset, stage_times)
     const Ptr<HDPTreeMatcher> matcher = createSystem(GetParam(), disparities);
     std::vector<String> stages(2, "none"), again;
     std::vector<double> times(3, 7.);
-    matcher->getStageTimes(stages, times);
+    stages = matcher->getFindings().stages;
+    times = matcher->getFindings().stageTimes;
     EXPECT_TRUE(stages.empty() && times.empty());
     for (int repetition = 0; repetition < 2; ++repetition)
     {
@@ -986,7 +1039,8 @@ TEST_P(HDPStereo_MatcherPreset, stage_times)
         match(*matcher, pair.left, pair.right);
         const double all = (double)(cv::getTickCount() - start) * 1000 / cv::getTickFrequency();
         again = stages;
-        matcher->getStageTimes(stages, times);
+        stages = matcher->getFindings().stages;
+        times = matcher->getFindings().stageTimes;
         ASSERT_EQ(stages.size(), times.size());
         EXPECT_GE(stages.size(), 5u);
         double sum = 0;
@@ -1004,5 +1058,4 @@ TEST_P(HDPStereo_MatcherPreset, stage_times)
 
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_MatcherPreset, testing::ValuesIn(presets));
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -6,8 +6,7 @@
 #include "systems.hpp"
 #include "synthetic_pair.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! A matcher without a single value of any preset or a default one
 Ptr<HDPTreeMatcher> createUnusualMatcher()
@@ -17,38 +16,40 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
     matcher->setSpeckleWindowSize(9);
     matcher->setSpeckleRange(2);
     matcher->setDisp12MaxDiff(4);
-    matcher->setTreeStrategy(createSegmentTree(333.5));
-    matcher->setUsePrediction(false);
-    matcher->setUseMedianPrefilter(true);
-    matcher->setNumLayers(2);
-    matcher->setMaxTopDisparities(48);
-    matcher->setMaxRowOffset(7);
-    matcher->setUseLightAlignment(true);
-    matcher->setNoiseThreshold(4.5);
     const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
     model->addLayer(std::vector<double>(1, 0.375), std::vector<double>(1, 1.25), std::vector<double>(1, 1.));
-    matcher->setPredictionModel(model);
-    matcher->setDelta0(0.03125);
-    matcher->setBeta(0.75);
-    matcher->setGamma(19.5);
-    matcher->setColorTruncation(7.5);
-    matcher->setGradientTruncation(3.25);
-    matcher->setColorWeight(0.25);
-    matcher->setDisparityMedianSize(3);
-    matcher->setDisparityMedianPasses(4);
-    matcher->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
-    matcher->setDisparityPrior(HDPTreeMatcher::PRIOR_UPPER_LAYER);
-    matcher->setIntervalMargin(2);
-    matcher->setUseSubpixel(true);
-    matcher->setAggregation(HDPTreeMatcher::AGGREGATION_SCANLINES);
-    matcher->setTopAggregation(HDPTreeMatcher::AGGREGATION_TREE_SCANLINES);
-    matcher->setP1(9);
-    matcher->setP2(44);
-    matcher->setScanlinePasses(3);
-    matcher->setFinestLayer(2);
-    matcher->setUseNonLocalRefinement(true);
-    matcher->setUseTemporalPrediction(true);
-    matcher->setFillOcclusions(true);
+    change(*matcher, [&](Params& p) {
+        p.treeStrategy = createSegmentTree(333.5);
+        p.maxRowOffset = 7;
+        p.useLightAlignment = true;
+        p.noiseThreshold = 4.5;
+        p.useTemporalPrediction = true;
+        p.usePrediction = false;
+        p.useMedianPrefilter = true;
+        p.numLayers = 2;
+        p.maxTopDisparities = 48;
+        p.predictionModel = model;
+        p.delta0 = 0.03125;
+        p.beta = 0.75;
+        p.gamma = 19.5;
+        p.colorTruncation = 7.5;
+        p.gradientTruncation = 3.25;
+        p.colorWeight = 0.25;
+        p.disparityMedianSize = 3;
+        p.disparityMedianPasses = 4;
+        p.matchingCost = HDPTreeMatcher::COST_CENSUS;
+        p.disparityPrior = HDPTreeMatcher::PRIOR_UPPER_LAYER;
+        p.intervalMargin = 2;
+        p.useSubpixel = true;
+        p.aggregation = HDPTreeMatcher::AGGREGATION_SCANLINES;
+        p.topAggregation = HDPTreeMatcher::AGGREGATION_TREE_SCANLINES;
+        p.P1 = 9;
+        p.P2 = 44;
+        p.scanlinePasses = 3;
+        p.finestLayer = 2;
+        p.useNonLocalRefinement = true;
+        p.fillOcclusions = true;
+    });
     return matcher;
 }
 
@@ -65,10 +66,11 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
         {
             SCOPED_TRACE(testing::Message() << extension << ", prediction " << usePrediction);
             const Ptr<HDPTreeMatcher> written = createUnusualMatcher(), read = HDPTreeMatcher::create();
-            written->setUsePrediction(usePrediction);
+            change(*written, [&](Params& p) { p.usePrediction = usePrediction; });
             deserialize(serialized(*written, extension), *read);
             EXPECT_EQ(serialized(*written), serialized(*read));
 
+            const Params params = read->getParams();
             EXPECT_EQ(-3, read->getMinDisparity());
             EXPECT_EQ(21, read->getNumDisparities());
             EXPECT_EQ(3, read->getBlockSize());
@@ -76,36 +78,36 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(2, read->getSpeckleRange());
             EXPECT_EQ(4, read->getDisp12MaxDiff());
             EXPECT_EQ(createSegmentTree()->getDefaultName(), read->getTreeStrategy()->getDefaultName());
-            EXPECT_EQ(usePrediction, read->getUsePrediction());
-            EXPECT_TRUE(read->getUseMedianPrefilter());
-            EXPECT_EQ(2, read->getNumLayers());
-            EXPECT_EQ(48, read->getMaxTopDisparities());
+            EXPECT_EQ(usePrediction, params.usePrediction);
+            EXPECT_TRUE(params.useMedianPrefilter);
+            EXPECT_EQ(2, params.numLayers);
+            EXPECT_EQ(48, params.maxTopDisparities);
             EXPECT_EQ(7, read->getMaxRowOffset());
             EXPECT_TRUE(read->getUseLightAlignment());
             EXPECT_EQ(4.5, read->getNoiseThreshold());
-            ASSERT_FALSE(read->getPredictionModel().empty());
-            EXPECT_EQ(1, read->getPredictionModel()->getNumLayers());
-            EXPECT_EQ(0.03125, read->getDelta0());
-            EXPECT_EQ(0.75, read->getBeta());
-            EXPECT_EQ(19.5, read->getGamma());
-            EXPECT_EQ(7.5, read->getColorTruncation());
-            EXPECT_EQ(3.25, read->getGradientTruncation());
-            EXPECT_EQ(0.25, read->getColorWeight());
-            EXPECT_EQ(3, read->getDisparityMedianSize());
-            EXPECT_EQ(4, read->getDisparityMedianPasses());
-            EXPECT_EQ((int)HDPTreeMatcher::COST_CENSUS, read->getMatchingCost());
-            EXPECT_EQ((int)HDPTreeMatcher::PRIOR_UPPER_LAYER, read->getDisparityPrior());
-            EXPECT_EQ(2, read->getIntervalMargin());
-            EXPECT_TRUE(read->getUseSubpixel());
-            EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_SCANLINES, read->getAggregation());
-            EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES, read->getTopAggregation());
-            EXPECT_EQ(9, read->getP1());
-            EXPECT_EQ(44, read->getP2());
-            EXPECT_EQ(3, read->getScanlinePasses());
-            EXPECT_EQ(2, read->getFinestLayer());
-            EXPECT_TRUE(read->getUseNonLocalRefinement());
+            ASSERT_FALSE(params.predictionModel.empty());
+            EXPECT_EQ(1, params.predictionModel->getNumLayers());
+            EXPECT_EQ(0.03125, params.delta0);
+            EXPECT_EQ(0.75, params.beta);
+            EXPECT_EQ(19.5, params.gamma);
+            EXPECT_EQ(7.5, params.colorTruncation);
+            EXPECT_EQ(3.25, params.gradientTruncation);
+            EXPECT_EQ(0.25, params.colorWeight);
+            EXPECT_EQ(3, params.disparityMedianSize);
+            EXPECT_EQ(4, params.disparityMedianPasses);
+            EXPECT_EQ((int)HDPTreeMatcher::COST_CENSUS, params.matchingCost);
+            EXPECT_EQ((int)HDPTreeMatcher::PRIOR_UPPER_LAYER, params.disparityPrior);
+            EXPECT_EQ(2, params.intervalMargin);
+            EXPECT_TRUE(params.useSubpixel);
+            EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_SCANLINES, params.aggregation);
+            EXPECT_EQ((int)HDPTreeMatcher::AGGREGATION_TREE_SCANLINES, params.topAggregation);
+            EXPECT_EQ(9, params.P1);
+            EXPECT_EQ(44, params.P2);
+            EXPECT_EQ(3, params.scanlinePasses);
+            EXPECT_EQ(2, params.finestLayer);
+            EXPECT_TRUE(params.useNonLocalRefinement);
             EXPECT_TRUE(read->getUseTemporalPrediction());
-            EXPECT_TRUE(read->getFillOcclusions());
+            EXPECT_TRUE(params.fillOcclusions);
             expectIdentical(matchTestPair(*written), matchTestPair(*read));
         }
 }
@@ -118,7 +120,7 @@ TEST(HDPStereo_MatcherStorage, presets_without_model)
         const Ptr<HDPTreeMatcher> written = createSystem(preset, 16), read = createUnusualMatcher();
         deserialize(serialized(*written), *read);
         EXPECT_EQ(serialized(*written), serialized(*read));
-        EXPECT_TRUE(read->getPredictionModel().empty());
+        EXPECT_TRUE(read->getParams().predictionModel.empty());
         expectIdentical(matchTestPair(*written), matchTestPair(*read));
     }
 }
@@ -180,12 +182,12 @@ void expectUnreadable(const std::string& text)
     SCOPED_TRACE(text);
     const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
     const Ptr<TreeStrategy> strategy = matcher->getTreeStrategy();
-    const Ptr<DisparityPredictionModel> model = matcher->getPredictionModel();
+    const Ptr<DisparityPredictionModel> model = matcher->getParams().predictionModel;
     const std::string before = serialized(*matcher);
     EXPECT_THROW(deserialize(text, *matcher), cv::Exception);
     EXPECT_EQ(before, serialized(*matcher));
     EXPECT_EQ(strategy.get(), matcher->getTreeStrategy().get());
-    EXPECT_EQ(model.get(), matcher->getPredictionModel().get());
+    EXPECT_EQ(model.get(), matcher->getParams().predictionModel.get());
 }
 
 //! A YAML text with the value of a key replaced; an empty value leaves the whole line out.
@@ -297,10 +299,10 @@ TEST(HDPStereo_MatcherStorage, missing_keys)
     const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
     const Ptr<HDPTreeMatcher> defaults = HDPTreeMatcher::create(0, 64, HDPTreeMatcher::PRESET_PAPER);
     deserialize(withValue(text, "gamma", ""), *matcher);
-    EXPECT_EQ(defaults->getGamma(), matcher->getGamma());
+    EXPECT_EQ(defaults->getParams().gamma, matcher->getParams().gamma);
     deserialize(withValue(text, "numDisparities", ""), *matcher);
     EXPECT_EQ(defaults->getNumDisparities(), matcher->getNumDisparities());
-    EXPECT_EQ(19.5, matcher->getGamma());
+    EXPECT_EQ(19.5, matcher->getParams().gamma);
 }
 
 //! A file that knows nothing of the parameters that later versions have means the paper's system.
@@ -336,6 +338,41 @@ TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
     }
 }
 
+//! The name in files was another one in version 1.0.
+TEST(HDPStereo_MatcherStorage, name_in_files)
+{
+    const std::string text = serialized(*createUnusualMatcher());
+    EXPECT_NE(std::string::npos, text.find("StereoMatcher.HDPTree"));
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create();
+    deserialize(withValue(text, "name", "\"hdpstereo_HDPTreeMatcher\""), *matcher);
+    EXPECT_EQ(text, serialized(*matcher));
+}
+
+TEST(HDPStereo_MatcherStorage, params_alone)
+{
+    const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
+    const auto written = [](const Params& params) {
+        FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+        params.write(fs);
+        return fs.releaseAndGetString();
+    };
+    const std::string text = written(matcher->getParams());
+    for (const std::string& source : { text, serialized(*matcher) }) // a file of the matcher has them, too
+    {
+        Params params;
+        params.read(FileStorage(source, FileStorage::READ | FileStorage::MEMORY).root());
+        EXPECT_EQ(text, written(params));
+    }
+
+    Params params;
+    const std::string before = written(params);
+    FileStorage bad(withValue(text, "gamma", "-1."), FileStorage::READ | FileStorage::MEMORY);
+    expectRejected([&] { params.read(bad.root()); }, "gamma must be finite and > 0, not -1");
+    EXPECT_EQ(before, written(params));
+    params.treeStrategy.release();
+    EXPECT_THROW(written(params), cv::Exception);
+}
+
 //! A key that is no parameter's name is no one's value.
 TEST(HDPStereo_MatcherStorage, unknown_keys)
 {
@@ -345,8 +382,8 @@ TEST(HDPStereo_MatcherStorage, unknown_keys)
     text.replace(key, 4, "\nsmallPenalty:");
     const Ptr<HDPTreeMatcher> matcher = createUnusualMatcher();
     deserialize(text, *matcher);
-    EXPECT_EQ(16, matcher->getP1());
-    EXPECT_EQ(44, matcher->getP2());
+    EXPECT_EQ(16, matcher->getParams().P1);
+    EXPECT_EQ(44, matcher->getParams().P2);
 }
 
 TEST(HDPStereo_MatcherStorage, unknown_strategy)
@@ -473,5 +510,4 @@ TEST(HDPStereo_MatcherStorage, spoilt_files_of_every_format)
     EXPECT_GT(refused, 500); // of 1800
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -7,8 +7,7 @@
 #include "systems.hpp"
 #include "synthetic_pair.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 typedef testing::TestWithParam<System> HDPStereo_PaperSystem;
 typedef testing::TestWithParam<System> HDPStereo_SlowPaperSystem;
@@ -70,7 +69,8 @@ Mat matchByOracles(const Mat& left, const Mat& right, int numDisparities, const 
         if (system.useMedianPrefilter)
             cv::medianBlur(lefts[l], guide, 3);
         const oracle::Forest forest = oracle::buildForest(guide, pixelIntv, *strategy, beta, !system.usePrediction);
-        const Mat_<double> costs = oracle::costTable(oracle::ColorGradientCost(lefts[l], rights[l], costParams), size, largest + 1);
+        const Mat_<double> costs =
+            oracle::costTable(oracle::ColorGradientCost(lefts[l], rights[l], costParams), size, largest + 1);
         disparity = oracle::median(winners(forest, costs, size), system.usePrediction ? 7 : 5);
     }
     return disparity;
@@ -132,14 +132,14 @@ TEST(HDPStereo_PaperForest, agrees_with_the_other_results)
     matcher->getLayerPrior(0, prior);
     EXPECT_TRUE(trees.empty() && intervals.empty() && prior.empty());
 
-    matcher->setDisparityMedianSize(0);
+    change(*matcher, [&](Params& p) { p.disparityMedianSize = 0; });
     for (bool usePrediction : { true, false })
     {
-        matcher->setUsePrediction(usePrediction);
+        change(*matcher, [&](Params& p) { p.usePrediction = usePrediction; });
         const Mat disparity = match(*matcher, pair.left, pair.right);
         matcher->getForest(trees, intervals);
         matcher->getLayerPrior(0, prior);
-        matcher->getSearchRatios(ratios);
+        ratios = matcher->getFindings().searchRatios;
         ASSERT_EQ(CV_32SC1, trees.type());
         ASSERT_EQ(CV_16UC2, intervals.type());
         ASSERT_EQ(pair.left.size(), trees.size());
@@ -191,5 +191,4 @@ TEST_P(HDPStereo_SlowAloe, error_like_the_authors_program)
 
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_SlowAloe, testing::ValuesIn(paperSystems));
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -6,8 +6,7 @@
 #include "systems.hpp"
 #include "synthetic_pair.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct Errors
 {
@@ -82,7 +81,7 @@ TEST_P(HDPStereo_Preset, sub_pixel_disparities_of_a_slanted_plane)
         const SyntheticPair pair = makeSlantedPlane(Size(320, 240), numDisparities, seed);
         const Ptr<HDPTreeMatcher> matcher = createSystem(GetParam().preset, numDisparities);
         const double subpixel = meanError(match(*matcher, pair.left, pair.right), pair.truth, pair.visible);
-        matcher->setUseSubpixel(false);
+        change(*matcher, [&](Params& p) { p.useSubpixel = false; });
         const double whole = meanError(match(*matcher, pair.left, pair.right), pair.truth, pair.visible);
         // The whole disparity nearest to the truth is off by 0.25.
         EXPECT_LE(subpixel, GetParam().slanted) << "seed " << seed;
@@ -118,12 +117,11 @@ TEST_P(HDPStereo_Preset, textured_surfaces_are_nearly_perfect)
     const Ptr<HDPTreeMatcher> matcher = createSystem(GetParam().preset, 64);
     const Mat disparity = match(*matcher, left, right);
     // At half the resolution nothing is left of the finest texture, and both disparities are between two candidates.
-    const bool isHalf = matcher->getFinestLayer() == 1;
+    const bool isHalf = matcher->getParams().finestLayer == 1;
     EXPECT_LE(badPixels(disparity, truth, mask, 1), isHalf ? 2.5 : 0.2); // 0.06, 1.56, 0.05, 0.10
     EXPECT_LE(meanError(disparity, truth, mask), isHalf ? 0.5 : 0.05);   // 0.031, 0.399, 0.021, 0.025
 }
 
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_Preset, testing::ValuesIn(limits));
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

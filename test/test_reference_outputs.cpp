@@ -27,15 +27,14 @@
 #include "synthetic_pair.hpp"
 #include "synthetic_video.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! Compares a matcher's map with its reference, or writes it.
 void checkReference(const std::string& name, HDPTreeMatcher& matcher, const Mat& left, const Mat& right)
 {
     const double tolerance = 0.005;
     Mat map;
-    if (matcher.getUseSubpixel())
+    if (matcher.getParams().useSubpixel)
         match(matcher, left, right).convertTo(map, CV_16U);
     else
         match(matcher, left, right).convertTo(map, CV_8U, 1. / StereoMatcher::DISP_SCALE);
@@ -135,5 +134,4 @@ INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutputVideo, testing::ValuesIn(
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutput, testing::ValuesIn(allSystems()));
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ReferenceOutputAloe, testing::ValuesIn(systemsOfAloe()));
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -9,8 +9,7 @@
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using hdp::RowModel;
 
@@ -65,8 +64,9 @@ double distance(const RowModel& a, const RowModel& b, Size size)
 
 RowModel foundBy(const HDPTreeMatcher& matcher, bool isExpected = true)
 {
-    std::vector<double> found;
-    EXPECT_EQ(isExpected, matcher.getRowAlignment(found));
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    const std::vector<double>& found = findings.rows;
+    EXPECT_EQ(isExpected, findings.areRowsMoved);
     RowModel model;
     EXPECT_EQ((size_t)RowModel::terms, found.size());
     std::copy(found.begin(), found.end(), model.coefficients.val);
@@ -253,8 +253,8 @@ TEST(HDPStereo_SlowRowAlignment, noise_level)
             match(*matcher, left, right);
             const double grey = noise * std::sqrt(0.299 * 0.299 + 0.587 * 0.587 + 0.114 * 0.114); // of three channels
             const double ofLayer = preset == HDPTreeMatcher::PRESET_ULTRAFAST ? grey / 2 : grey;
-            EXPECT_GE(matcher->getNoiseLevel(), 0.85 * ofLayer);
-            EXPECT_LE(matcher->getNoiseLevel(), 1.15 * ofLayer + 1.5); // the pair has noise and texture of its own
+            EXPECT_GE(matcher->getFindings().noise, 0.85 * ofLayer);
+            EXPECT_LE(matcher->getFindings().noise, 1.15 * ofLayer + 1.5); // the pair has noise and texture of its own
         }
 }
 
@@ -455,5 +455,4 @@ TEST(HDPStereo_RowAlignment, pair_by_pair)
     EXPECT_EQ(0, cv::norm(foundBy(*matcher, false).coefficients));
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -6,8 +6,7 @@
 #include "synthetic_video.hpp"
 #include "systems.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int disparities = 48;
 const Size frameSize(320, 200);
@@ -340,9 +339,9 @@ TEST(HDPStereo_TemporalPrediction, begins_anew)
         true);
     expectAnew(
         [&](HDPTreeMatcher& m) {
-        m.setFinestLayer(1);
+        change(m, [&](Params& p) { p.finestLayer = 1; });
         computes(m);
-        m.setFinestLayer(0);
+        change(m, [&](Params& p) { p.finestLayer = 0; });
         },
         true);
     // What fails changes nothing.
@@ -354,7 +353,7 @@ TEST(HDPStereo_TemporalPrediction, needs_the_census)
     const Ptr<HDPTreeMatcher> matcher = createTemporal(HDPTreeMatcher::PRESET_PAPER);
     const SyntheticFrame frame = SyntheticVideo(Size(60, 40), 5, 0).render(0);
     expectRejected([&] { matchFrame(*matcher, frame); }, "useTemporalPrediction");
-    matcher->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
+    change(*matcher, [&](Params& p) { p.matchingCost = HDPTreeMatcher::COST_CENSUS; });
     EXPECT_NO_THROW(matchFrame(*matcher, frame));
 }
 
@@ -371,7 +370,7 @@ TEST(HDPStereo_SlowTemporalPrediction, sizes_and_threads)
             for (int i = 0; i < 3; ++i)
             {
                 matchers.push_back(createTemporal(preset.preset));
-                matchers[i]->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
+                change(*matchers[i], [&](Params& p) { p.matchingCost = HDPTreeMatcher::COST_CENSUS; });
                 matchers[i]->setMinDisparity(-5);
                 matchers[i]->setBlockSize(preset.preset == HDPTreeMatcher::PRESET_TREE ? 5 : 7);
             }
@@ -395,5 +394,4 @@ TEST(HDPStereo_SlowTemporalPrediction, sizes_and_threads)
         }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

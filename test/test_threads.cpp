@@ -10,8 +10,7 @@
 #include <atomic>
 #include <thread>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int disparities = 24;
 
@@ -56,10 +55,12 @@ Ptr<HDPTreeMatcher> createMatcher(int i)
         DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE);
     const Ptr<HDPTreeMatcher> matcher = createSystem(presets[i % 5], disparities);
     matcher->setTreeStrategy(strategies[i % 3]);
-    matcher->setPredictionModel(model);
-    matcher->setUsePrediction(i != 5);
-    matcher->setUseNonLocalRefinement(i >= 4);
-    matcher->setUseMedianPrefilter(i % 2 == 1);
+    change(*matcher, [&](Params& p) {
+        p.predictionModel = model;
+        p.usePrediction = i != 5;
+        p.useNonLocalRefinement = i >= 4;
+        p.useMedianPrefilter = i % 2 == 1;
+    });
     matcher->setDisp12MaxDiff(i % 2);
     matcher->setSpeckleWindowSize(i % 4 == 3 ? 20 : 0);
     matcher->setSpeckleRange(1);
@@ -84,7 +85,7 @@ Result computeAll(HDPTreeMatcher& matcher, const SyntheticPair& pair)
         matcher.getLayerPrior(layer, result.priors[layer]);
         matcher.getLayerDisparity(layer, result.layers[layer]);
     }
-    matcher.getSearchRatios(result.ratios);
+    result.ratios = matcher.getFindings().searchRatios;
     return result;
 }
 
@@ -119,7 +120,7 @@ std::vector<Mat> computeVideo(int i)
     const Board board = { Rect2d(80, 30, 50, 60), 16, 3 };
     SyntheticVideo video(Size(200, 140), 8.3, 3);
     const Ptr<HDPTreeMatcher> matcher = createMatcher(i);
-    matcher->setMatchingCost(HDPTreeMatcher::COST_CENSUS);
+    change(*matcher, [&](Params& p) { p.matchingCost = HDPTreeMatcher::COST_CENSUS; });
     matcher->setBlockSize(5);
     matcher->setUseTemporalPrediction(true);
     std::vector<Mat> maps;
@@ -341,5 +342,4 @@ TEST(HDPStereo_Threads, strategy_that_throws_in_a_file)
     }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

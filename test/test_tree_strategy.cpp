@@ -8,8 +8,7 @@
 
 #include <atomic>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 /////////////////////////////////////////// the library's own ///////////////////////////////////////////
 
@@ -179,7 +178,7 @@ Mat matchWith(const Ptr<TreeStrategy>& strategy, bool usePrediction)
 {
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, disparities, HDPTreeMatcher::PRESET_PAPER);
     matcher->setTreeStrategy(strategy);
-    matcher->setUsePrediction(usePrediction);
+    change(*matcher, [&](Params& p) { p.usePrediction = usePrediction; });
     return match(*matcher, testPair().left, testPair().right);
 }
 
@@ -215,8 +214,10 @@ TEST(HDPStereo_UserTreeStrategy, without_any_tree_each_pixel_takes_its_own_best)
 {
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, disparities, HDPTreeMatcher::PRESET_PAPER);
     matcher->setTreeStrategy(makePtr<NoTree>());
-    matcher->setUsePrediction(false);
-    matcher->setDisparityMedianSize(0);
+    change(*matcher, [&](Params& p) {
+        p.usePrediction = false;
+        p.disparityMedianSize = 0;
+    });
     const Mat left = oracle::grey(testPair().left), right = oracle::grey(testPair().right);
     const Mat disparity = match(*matcher, left, right);
 
@@ -279,7 +280,7 @@ template <typename Create> void expectUsableAfter(const Create& create, const st
     for (bool usePrediction : { false, true })
     {
         const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, disparities, HDPTreeMatcher::PRESET_PAPER);
-        matcher->setUsePrediction(usePrediction);
+        change(*matcher, [&](Params& p) { p.usePrediction = usePrediction; });
         matcher->setTreeStrategy(create());
         expectRejected([&] { match(*matcher, pair.left, pair.right); }, message);
         matcher->setTreeStrategy(createMinimumSpanningTree());
@@ -318,5 +319,4 @@ TEST(HDPStereo_UserTreeStrategy, broken_permutations_are_rejected)
     }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -93,8 +93,9 @@ static void measureRun(Measurement& result, Ptr<cv::StereoMatcher>& matcher, con
     result.milliseconds.push_back(timer.getTimeMilli());
     if (method.isHdp)
     {
-        result.stageMilliseconds.push_back(std::vector<double>());
-        matcher.dynamicCast<HDPTreeMatcher>()->getStageTimes(result.stages, result.stageMilliseconds.back());
+        const HDPTreeMatcher::Findings findings = matcher.dynamicCast<HDPTreeMatcher>()->getFindings();
+        result.stages = findings.stages;
+        result.stageMilliseconds.push_back(findings.stageTimes);
     }
 }
 

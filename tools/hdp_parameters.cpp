@@ -35,38 +35,50 @@ struct Variant
     double error1, error2, relativeTime; // sums over the pairs
 };
 
+static void addChange(std::vector<Variant>& variants, const String& name,
+                      const std::function<void(HDPTreeMatcher::Params&)>& changeParams)
+{
+    const auto change = [=](HDPTreeMatcher& matcher) {
+        HDPTreeMatcher::Params params = matcher.getParams();
+        changeParams(params);
+        matcher.setParams(params);
+    };
+    variants.push_back({ name, change, 0, 0, 0 });
+}
+
 //! One for each value of a parameter
 template <typename Value>
-static void add(std::vector<Variant>& variants, const String& parameter, void (HDPTreeMatcher::*setter)(Value),
+static void add(std::vector<Variant>& variants, const String& parameter, Value HDPTreeMatcher::Params::*field,
                 const std::vector<Value>& values)
 {
     for (const Value value : values)
     {
         std::ostringstream name;
         name << std::boolalpha << parameter << " = " << value;
-        variants.push_back({ name.str(), [=](HDPTreeMatcher& m) { (m.*setter)(value); }, 0, 0, 0 });
+        addChange(variants, name.str(), [=](HDPTreeMatcher::Params& p) { p.*field = value; });
     }
 }
 
 static void addTree(std::vector<Variant>& variants, const String& name, const Ptr<stereo::TreeStrategy>& strategy)
 {
-    variants.push_back({ "treeStrategy = " + name, [=](HDPTreeMatcher& m) { m.setTreeStrategy(strategy); }, 0, 0, 0 });
+    addChange(variants, "treeStrategy = " + name, [=](HDPTreeMatcher::Params& p) { p.treeStrategy = strategy; });
 }
 
 //! What a preset is changed to; the first one is the preset itself.
 static std::vector<Variant> variantsOf(int preset)
 {
     typedef HDPTreeMatcher M;
+    typedef M::Params P;
     std::vector<Variant> variants(1, { "PRESET_FAST", [](M&) {}, 0, 0, 0 });
-    add<int>(variants, "blockSize", &M::setBlockSize, { 3, 5 });
-    add<int>(variants, "disparityMedianSize", &M::setDisparityMedianSize, { 0, 3, 7 });
-    add<int>(variants, "disparityMedianPasses", &M::setDisparityMedianPasses, { 2 });
-    add<double>(variants, "gamma", &M::setGamma, { 10, 40 });
-    add<bool>(variants, "fillOcclusions", &M::setFillOcclusions, { false });
-    add<bool>(variants, "useSubpixel", &M::setUseSubpixel, { false });
-    add<int>(variants, "maxRowOffset", &M::setMaxRowOffset, { 0 });
-    add<bool>(variants, "useLightAlignment", &M::setUseLightAlignment, { false });
-    add<double>(variants, "noiseThreshold", &M::setNoiseThreshold, { 0, 1 });
+    add<int>(variants, "blockSize", &P::blockSize, { 3, 5 });
+    add<int>(variants, "disparityMedianSize", &P::disparityMedianSize, { 0, 3, 7 });
+    add<int>(variants, "disparityMedianPasses", &P::disparityMedianPasses, { 2 });
+    add<double>(variants, "gamma", &P::gamma, { 10, 40 });
+    add<bool>(variants, "fillOcclusions", &P::fillOcclusions, { false });
+    add<bool>(variants, "useSubpixel", &P::useSubpixel, { false });
+    add<int>(variants, "maxRowOffset", &P::maxRowOffset, { 0 });
+    add<bool>(variants, "useLightAlignment", &P::useLightAlignment, { false });
+    add<double>(variants, "noiseThreshold", &P::noiseThreshold, { 0, 1 });
     variants.push_back(
         { "numDisparities twice as large", [](M& m) { m.setNumDisparities(2 * m.getNumDisparities()); }, 0, 0, 0 });
     if (preset == M::PRESET_FAST) // each has one of the two
@@ -76,35 +88,32 @@ static std::vector<Variant> variantsOf(int preset)
     addTree(variants, "createRandomTree()", stereo::createRandomTree());
     if (preset == M::PRESET_FAST)
     {
-        add<int>(variants, "finestLayer", &M::setFinestLayer, { 1, 2 });
-        add<int>(variants, "scanlinePasses", &M::setScanlinePasses, { 2, 3 });
-        variants.push_back(
-            { "topAggregation = AGGREGATION_TREES", [](M& m) { m.setTopAggregation(M::AGGREGATION_TREES); }, 0, 0, 0 });
-        add<int>(variants, "maxTopDisparities", &M::setMaxTopDisparities, { 16, 64 });
-        add<int>(variants, "P1", &M::setP1, { 8, 32 });
-        add<int>(variants, "P2", &M::setP2, { 35, 100 });
+        add<int>(variants, "finestLayer", &P::finestLayer, { 1, 2 });
+        add<int>(variants, "scanlinePasses", &P::scanlinePasses, { 2, 3 });
+        addChange(variants, "topAggregation = AGGREGATION_TREES",
+                  [](P& p) { p.topAggregation = M::AGGREGATION_TREES; });
+        add<int>(variants, "maxTopDisparities", &P::maxTopDisparities, { 16, 64 });
+        add<int>(variants, "P1", &P::P1, { 8, 32 });
+        add<int>(variants, "P2", &P::P2, { 35, 100 });
     }
     else
     {
         variants[0].name = "PRESET_TREE";
-        variants.push_back(
-            { "aggregation = AGGREGATION_TREES", [](M& m) { m.setAggregation(M::AGGREGATION_TREES); }, 0, 0, 0 });
-        add<bool>(variants, "useNonLocalRefinement", &M::setUseNonLocalRefinement, { true });
-        add<int>(variants, "maxTopDisparities", &M::setMaxTopDisparities, { 32, 128 });
-        add<double>(variants, "delta0", &M::setDelta0, { 0.005, 0.08 });
-        add<double>(variants, "beta", &M::setBeta, { 0.6, 0.98 });
-        add<int>(variants, "intervalMargin", &M::setIntervalMargin, { 0, 4 });
-        variants.push_back({ "disparityPrior = PRIOR_SUPPORT_POINTS",
-                             [](M& m) { m.setDisparityPrior(M::PRIOR_SUPPORT_POINTS); }, 0, 0, 0 });
-        add<bool>(variants, "usePrediction", &M::setUsePrediction, { false });
-        variants.push_back({ "matchingCost = COST_COLOR_GRADIENT, blockSize = 1",
-                             [](M& m) {
-            m.setMatchingCost(M::COST_COLOR_GRADIENT);
-            m.setBlockSize(1);
-            m.setAggregation(M::AGGREGATION_TREES); // the others need the census
-            m.setFillOcclusions(false);
-                            },
-                             0, 0, 0 });
+        addChange(variants, "aggregation = AGGREGATION_TREES", [](P& p) { p.aggregation = M::AGGREGATION_TREES; });
+        add<bool>(variants, "useNonLocalRefinement", &P::useNonLocalRefinement, { true });
+        add<int>(variants, "maxTopDisparities", &P::maxTopDisparities, { 32, 128 });
+        add<double>(variants, "delta0", &P::delta0, { 0.005, 0.08 });
+        add<double>(variants, "beta", &P::beta, { 0.6, 0.98 });
+        add<int>(variants, "intervalMargin", &P::intervalMargin, { 0, 4 });
+        addChange(variants, "disparityPrior = PRIOR_SUPPORT_POINTS",
+                  [](P& p) { p.disparityPrior = M::PRIOR_SUPPORT_POINTS; });
+        add<bool>(variants, "usePrediction", &P::usePrediction, { false });
+        addChange(variants, "matchingCost = COST_COLOR_GRADIENT, blockSize = 1", [](P& p) {
+            p.matchingCost = M::COST_COLOR_GRADIENT;
+            p.blockSize = 1;
+            p.aggregation = M::AGGREGATION_TREES; // the others need the census
+            p.fillOcclusions = false;
+        });
     }
     return variants;
 }

@@ -81,7 +81,9 @@ static int run(const CommandLineParser& parser)
         std::vector<Mat> maps;
         for (int layer = 2; layer >= 0; layer--) // both have at least 3 of them
         {
-            matcher->setFinestLayer(layer);
+            HDPTreeMatcher::Params params = matcher->getParams();
+            params.finestLayer = layer;
+            matcher->setParams(params);
             maps.push_back(colorPicture(match(*matcher), range));
         }
         save(matcher == paper ? "layers_paper.jpg" : "layers_fast.jpg", maps, INTER_AREA);
@@ -98,7 +100,9 @@ static int run(const CommandLineParser& parser)
     cvtColor(confidence, confidence, COLOR_GRAY2BGR);
     save("confidence.jpg", { colorPicture(ofFast, range), withErrors(ofFast, pair, range), confidence }, INTER_AREA);
 
-    fast->setFillOcclusions(false);
+    HDPTreeMatcher::Params params;
+    params.fillOcclusions = false;
+    fast->setParams(params);
     save("occlusions.jpg", { colorPicture(match(*fast), range), colorPicture(ofFast, range) }, INTER_AREA);
 
     // The pair as a video of a scene that stands still, with noise of its own in each frame

@@ -141,12 +141,15 @@ static String listNames(const std::vector<TrainingScene>& scenes, bool heldOut)
 
 //! The paper's system HDP+MST
 static Ptr<stereo::HDPTreeMatcher> createMatcher(const Pair& pair, int layers,
-                                                 const Ptr<DisparityPredictionModel>& model)
+                                                 const Ptr<DisparityPredictionModel>& model, int finestLayer = 0)
 {
     const Ptr<stereo::HDPTreeMatcher> matcher =
         stereo::HDPTreeMatcher::create(0, pair.disparities.size(), stereo::HDPTreeMatcher::PRESET_PAPER);
-    matcher->setNumLayers(layers);
-    matcher->setPredictionModel(model);
+    stereo::HDPTreeMatcher::Params params(stereo::HDPTreeMatcher::PRESET_PAPER);
+    params.numLayers = layers;
+    params.predictionModel = model;
+    params.finestLayer = finestLayer;
+    matcher->setParams(params);
     return matcher;
 }
 
@@ -173,8 +176,7 @@ static void matchAbove(TrainingScene& scene, int layer, int layers, const Ptr<Di
     for (int l = 0; l <= layer; l++) // mixtures of layers that are not matched
         model = putBelow(*publishedModel(0), *model);
     const Pair& pair = scene.pair;
-    const Ptr<stereo::HDPTreeMatcher> matcher = createMatcher(pair, layers, model);
-    matcher->setFinestLayer(layer + 1);
+    const Ptr<stereo::HDPTreeMatcher> matcher = createMatcher(pair, layers, model, layer + 1);
     Mat disparity;
     matcher->compute(pair.left, pair.right, disparity);
     matcher->getLayerDisparity(layer + 1, scene.upper);

@@ -44,7 +44,7 @@ static void evaluateMethod(const Method& method, const Pair& pair, const Evaluat
     const Ptr<HDPTreeMatcher> hdp = matcher.dynamicCast<HDPTreeMatcher>();
     if (hdp)
     {
-        hdp->getSearchRatios(result.ratios);
+        result.ratios = hdp->getFindings().searchRatios;
         Mat confidence;
         hdp->getConfidence(confidence);
         if (pair.protocol != Pair::NO_TRUTH)
@@ -61,7 +61,8 @@ static void evaluateMethod(const Method& method, const Pair& pair, const Evaluat
         scene.maps +=
             figure(resultPicture(disparity, pair), method.name + ": " + printScore(result.score, pair.protocol) +
                                                        cv::format(", %.3f s", result.seconds));
-        if (hdp && hdp->getUsePrediction() && hdp->getAggregation() != HDPTreeMatcher::AGGREGATION_SCANLINES)
+        if (hdp && hdp->getParams().usePrediction &&
+            hdp->getParams().aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES)
             scene.predictions += "<div class=\"figures\">\n" + predictionFigures(method.name, *hdp, pair) + "</div>\n";
     }
     result.done = true;

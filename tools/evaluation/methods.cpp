@@ -62,12 +62,14 @@ static Method systemMethod(const String& prefix, const String& tree, const Ptr<D
     method.create = [=](cv::Range disparities) -> Ptr<cv::StereoMatcher> {
         const Ptr<HDPTreeMatcher> matcher =
             HDPTreeMatcher::create(disparities.start, disparities.size(), HDPTreeMatcher::PRESET_PAPER);
-        matcher->setTreeStrategy(tree == "mst"  ? cv::stereo::createMinimumSpanningTree()
-                                 : tree == "st" ? cv::stereo::createSegmentTree()
-                                                : cv::stereo::createRandomTree());
-        matcher->setUsePrediction(prefix == "hdp+");
-        matcher->setUseMedianPrefilter(prefix == "m+");
-        matcher->setPredictionModel(model);
+        HDPTreeMatcher::Params params(HDPTreeMatcher::PRESET_PAPER);
+        params.treeStrategy = tree == "mst"  ? cv::stereo::createMinimumSpanningTree()
+                              : tree == "st" ? cv::stereo::createSegmentTree()
+                                             : cv::stereo::createRandomTree();
+        params.usePrediction = prefix == "hdp+";
+        params.useMedianPrefilter = prefix == "m+";
+        params.predictionModel = model;
+        matcher->setParams(params);
         return matcher;
     };
     return method;

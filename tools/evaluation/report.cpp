@@ -84,14 +84,14 @@ String predictionFigures(const String& name, const HDPTreeMatcher& matcher, cons
     matcher.getForest(trees, intervals);
     double last = 0;
     cv::minMaxLoc(trees, 0, &last);
-    std::vector<double> ratios, prior;
-    matcher.getSearchRatios(ratios);
+    const std::vector<double> ratios = matcher.getFindings().searchRatios;
+    std::vector<double> prior;
     out << figure(forestPicture(trees), cv::format("%s: %d disparity trees", name.c_str(), int(last) + 1), ".jpg",
                   cv::INTER_NEAREST);
     out << figure(widthPicture(intervals, matcher.getNumDisparities()),
                   cv::format("%s: candidates of each pixel, violet 1 to yellow %d (logarithmic), mean %.2f",
                              name.c_str(), matcher.getNumDisparities(), ratios[0] * matcher.getNumDisparities()));
-    Ptr<DisparityPredictionModel> model = matcher.getPredictionModel();
+    Ptr<DisparityPredictionModel> model = matcher.getParams().predictionModel;
     if (!model)
         model = publishedModel(pair.left.cols);
     for (int layer = 0; pair.protocol != Pair::NO_TRUTH && layer + 1 < int(ratios.size()); layer++)

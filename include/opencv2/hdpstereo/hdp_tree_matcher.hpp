@@ -47,14 +47,14 @@ getConfidence() tells how reliable each disparity is, getFindings() what the mat
 - the preset, see HDPTreeMatcher::Preset: what to spend on accuracy.
 - Params::useTemporalPrediction: on for videos.
 - Params::maxRowOffset, Params::useLightAlignment, Params::noiseThreshold: what is done about pairs that are not quite
-  rectified, differently lit or noisy. On but in PRESET_PAPER; turn them off for perfect pairs.
+  rectified, differently lit or noisy. On in all presets but PRESET_PAPER; turn them off for perfect pairs.
 - Params::disparityDepth: the type of the map.
 
 The filters are those of cv::StereoMatcher, and off by default:
 - disp12MaxDiff: the maximal valid difference, in pixels, between the disparity of a pixel and the maximal one of those
   that match the same pixel of the right image. <= 0: no check.
-- speckleWindowSize, speckleRange: see cv::filterSpeckles. The window size is a number of pixels, <= 0: no filter.
-  speckleRange is in pixels, >= 0; more than 2047 counts as 2047.
+- speckleWindowSize, speckleRange: the filter for speckles, see cv::filterSpeckles. The window size is a number of
+  pixels, <= 0: no filter. speckleRange is in pixels, >= 0; more than 2047 counts as 2047.
 - blockSize: the same as Params::blockSize.
 
 Params has everything else. @ref tutorial_hdpstereo_matching explains the algorithm, how to choose a preset, and what
@@ -89,7 +89,7 @@ names a custom strategy can be read if a strategy of this name is set; it is kep
 class CV_EXPORTS_W HDPTreeMatcher : public cv::StereoMatcher
 {
 public:
-    //! Values of Params
+    //! What to spend on accuracy: values of Params
     enum Preset
     {
         PRESET_PAPER = 0,     //!< the system behind the paper's tables, HDP+MST; see also Params::treeStrategy
@@ -253,7 +253,7 @@ public:
 
         /** @brief Weight \f$\alpha\f$ of the colour difference against the gradient, see colorTruncation.
 
-        0..1. All: 0.11, as in the authors' program. */
+        In [0, 1]. All: 0.11, as in the authors' program. */
         CV_PROP_RW double colorWeight;
 
         //! @}
