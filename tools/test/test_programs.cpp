@@ -16,8 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct Execution
 {
@@ -69,7 +68,7 @@ TEST(HDPStereo_Programs, help_and_wrong_arguments)
     const DatasetFolder folder;
     for (const char* program :
          { "hdp_evaluate", "hdp_benchmark", "hdp_train", "hdp_parameters", "hdp_pictures", "hdp_robustness",
-           "hdp_video", "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
+           "hdp_stability", "hdp_video", "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
     {
         SCOPED_TRACE(program);
         const Execution help = run(folder, String(program) + " --help");
@@ -100,6 +99,7 @@ TEST(HDPStereo_Programs, full_disk)
            "hdp_train --layers=2 --max-components=1" + dataset + " -o " + folder.path("model.yml"),
            "hdp_robustness --methods=fast --cases=clean" + dataset, "hdp_parameters --presets=fast --runs=1" + dataset,
            "hdp_video --methods=fast --noise=0 --still=2" + dataset,
+           "hdp_stability --methods=fast --changes=flip" + dataset,
            "hdp_pictures --output=" + folder.root + pair + truth, "example_hdpstereo_hdp_stereo_match" + pair,
            "example_hdpstereo_hdp_own_tree" + pair })
     {
@@ -143,6 +143,35 @@ TEST(HDPStereo_Programs, robustness)
     }
     folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
     EXPECT_EQ(2, run(folder, common + " --cases=clean").status);
+}
+
+TEST(HDPStereo_Programs, stability)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    for (const char* side : { "left.png", "right.png" })
+        folder.write(String("others/street/") + side, cv::imread(folder.path("dataset/a/") + side));
+    const String common = "hdp_stability --num-disparities=32 --methods=fast,bm " + folder.root;
+    const Execution good = run(folder, common + " --confidence");
+    EXPECT_EQ(0, good.status) << good.errors;
+    for (const char* row :
+         { "### Stability of dataset, means of 3 pairs", "### Stability of others, means of 1 pairs",
+           "### D1 of dataset, means of 3 pairs", "\n| fast | - | - | - | - | ", "| change | fast | bm |",
+           "| noise.5 | ", "| gamma.95 | ", "| left8 | ", "| top1 | ", "| mirror | ", "| scale.98 | ", "| bits12 | ",
+           "### Confidence and stability of dataset", "\n| bm | - | - | - | - |\n" })
+        EXPECT_NE(String::npos, good.output.find(row)) << row << good.output;
+    EXPECT_EQ(good.output, run(folder, common + " --confidence --threads=1").output);
+    const Execution few = run(folder, common + " --changes=top3,clean --scenes=a");
+    EXPECT_EQ(0, few.status) << few.errors;
+    EXPECT_NE(String::npos, few.output.find("| clean | **0.00** | **0.00** |")) << few.output;
+    for (const char* bad : { "left", "left1.5", "jpeg0", "flip2", "rain", "noise" })
+    {
+        const Execution wrong = run(folder, common + " --changes=" + bad);
+        EXPECT_EQ(1, wrong.status) << bad;
+        EXPECT_EQ(0u, wrong.errors.find("error: --changes knows no change '" + String(bad) + "'")) << wrong.errors;
+    }
+    folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
+    EXPECT_EQ(2, run(folder, common + " --changes=flip").status);
 }
 
 TEST(HDPStereo_Programs, video)
@@ -488,7 +517,6 @@ TEST(HDPStereo_Programs, live)
     EXPECT_EQ(1, run(folder, "example_hdpstereo_hdp_live no/such/video.avi --no-gui").status);
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test
 
 #endif
