@@ -24,6 +24,9 @@ static const char* const KEYS =
     "{resolution      |     | only these of Middlebury's: full, half, third or quarter, separated by commas }"
     "{methods         | systems,presets,opencv | names as in the tables, or these groups, separated by commas }"
     "{scenes          |     | only these, separated by commas }"
+    "{changes         |     | all figures are means over changes that must not matter: those of hdp_stability, or a "
+    "list; "
+    "maps and pictures are of the pairs as they are }"
     "{num-disparities |     | number of disparities; by default that of the dataset }"
     "{model           |     | prediction model of the paper's HDP systems: a file of hdp_train }"
     "{report          |     | folder for index.html, with the tables, pictures of all maps, and how they came about }"
@@ -58,6 +61,7 @@ static int run(const CommandLineParser& parser)
     settings.jobs = getInteger(parser, "jobs", 1, 256);
     settings.maps = parser.get<String>("maps");
     settings.hasReport = parser.has("report");
+    settings.changes = selectChanges(parser);
 
     std::vector<SceneResult> results;
     for (const Scene& scene : selectScenes(parser))
@@ -81,7 +85,10 @@ static int run(const CommandLineParser& parser)
     const int bad = evaluateScenes(settings, results);
 
     const std::vector<Table> tables = makeTables(settings.methods, results, settings.jobs);
-    String text;
+    String text, changes;
+    for (const HarmlessChange& change : settings.changes)
+        changes += (changes.empty() ? "Means over the changes " : ", ") + change.name;
+    std::cout << changes << (changes.empty() ? "" : "\n\n");
     for (const Table& table : tables)
     {
         std::cout << toMarkdown(table) << "\n";
@@ -91,9 +98,10 @@ static int run(const CommandLineParser& parser)
         writeText(csv, text + toCsv(everyPairTable(settings.methods, results)));
     if (settings.hasReport)
     {
-        const String summary = format(
-            "%d pairs, %d of them with something wrong; %d systems, %d threads, OpenCV " CV_VERSION "%s",
-            int(results.size()), bad, int(settings.methods.size()), threads, isInterrupted() ? "; interrupted" : "");
+        const String summary =
+            format("%d pairs, %d of them with something wrong; %d systems, %d threads, OpenCV " CV_VERSION "%s%s%s",
+                   int(results.size()), bad, int(settings.methods.size()), threads,
+                   isInterrupted() ? "; interrupted" : "", changes.empty() ? "" : ". ", changes.c_str());
         writeText(page, reportPage(tables, settings.methods, results, summary));
     }
     if (isInterrupted())
@@ -109,5 +117,5 @@ int main(int argc, char** argv)
         argc, argv, KEYS,
         "Tables of the paper, and a report with pictures, of a dataset of rectified stereo pairs.\n"
         "Exit status: 0 if all is well, 2 if a pair was skipped, 130 if interrupted, 1 on other errors.\n",
-        {}, 1, run);
+        { "changes=" }, 1, run);
 }

@@ -13,6 +13,7 @@
 
 #include "evaluation/command_line.hpp"
 #include "evaluation/datasets.hpp"
+#include "evaluation/harmless_changes.hpp"
 #include "evaluation/methods.hpp"
 #include "evaluation/scores.hpp"
 
@@ -24,6 +25,8 @@ static const char* const KEYS =
     "{help h ?  |           | print this and exit }"
     "{@root     |           | folder of Middlebury pairs with truth, see hdp_evaluate }"
     "{presets   | fast,tree | those to change: fast, tree or both }"
+    "{changes   |           | errors and times are means over changes that must not matter: those of hdp_stability, or "
+    "a list }"
     "{runs      | 3         | how often a pair is matched in each way, in turns; the shortest times count }"
     "{threads   |           | number of threads; all processors if not given }";
 
@@ -111,7 +114,8 @@ static std::vector<Variant> variantsOf(int preset)
 
 //! Matches a pair in all ways, in turns, and takes the processor time of all threads: so it matters little what else the
 //! computer does.
-static void measure(const Pair& pair, int preset, int runs, std::vector<Variant>& variants)
+static void measure(const Pair& pair, const HarmlessChange& change, const Pair& original, int preset, int runs,
+                    std::vector<Variant>& variants)
 {
     std::vector<Ptr<HDPTreeMatcher>> matchers;
     for (const Variant& variant : variants)
@@ -119,6 +123,7 @@ static void measure(const Pair& pair, int preset, int runs, std::vector<Variant>
         matchers.push_back(HDPTreeMatcher::create(0, pair.disparities.size(), preset));
         variant.change(*matchers.back());
     }
+    const Pair truth = truthOfChanged(change, original);
     std::vector<double> seconds(variants.size(), DBL_MAX);
     std::vector<Mat> maps(variants.size());
     for (int run = 0; run < runs; run++)
@@ -130,7 +135,8 @@ static void measure(const Pair& pair, int preset, int runs, std::vector<Variant>
         }
     for (size_t i = 0; i < variants.size(); i++)
     {
-        const Score score = scoreMap(toPixels(maps[i], 0), pair);
+        const Mat map = restoreMap(change, toPixels(maps[i], 0), original.left.size());
+        const Score score = scoreMap(map, truth);
         variants[i].error1 += score.error1;
         variants[i].error2 += score.error2;
         variants[i].relativeTime += seconds[i] / seconds[0];
@@ -141,6 +147,7 @@ static int run(const CommandLineParser& parser)
 {
     setThreads(parser);
     const int runs = getInteger(parser, "runs", 1, 1000);
+    const std::vector<HarmlessChange> changes = selectChanges(parser);
     std::vector<int> presets;
     for (const String& name : splitList(parser.get<String>("presets")))
     {
@@ -162,9 +169,13 @@ static int run(const CommandLineParser& parser)
         for (const Scene& scene : scenes)
         {
             std::cerr << variants[0].name << ": " << scene.set << "/" << scene.name << std::endl;
-            measure(readPair(scene), preset, runs, variants);
+            const Pair pair = readPair(scene);
+            for (const HarmlessChange& change : changes)
+                measure(changePair(change, pair, scene.name), change, pair, preset, runs, variants);
+            if (changes.empty())
+                measure(pair, HarmlessChange(), pair, preset, runs, variants);
         }
-        const double pairs = double(scenes.size());
+        const double pairs = double(scenes.size()) * (double)std::max<size_t>(changes.size(), 1);
         std::cout << "| " << variants[0].name << " with | err>=1 % | err>=2 % | time |\n|---|---|---|---|\n";
         for (const Variant& v : variants)
             std::cout << format("| %s | %.2f | %.2f | %.2f |\n", v.name.c_str(), v.error1 / pairs, v.error2 / pairs,
@@ -179,5 +190,5 @@ int main(int argc, char** argv)
     return runProgram(argc, argv, KEYS,
                       "What each parameter does to speed and accuracy: mean errors over all pairs, and the "
                       "processor time as a multiple of the preset's.\n",
-                      {}, 1, run);
+                      { "changes=" }, 1, run);
 }

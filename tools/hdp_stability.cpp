@@ -222,7 +222,7 @@ static int run(const CommandLineParser& parser)
         fail("a folder is needed, see --help");
     setThreads(parser);
     const std::vector<Method> methods = selectMethods("methods", parser.get<String>("methods"));
-    const std::vector<HarmlessChange> changes = selectChanges("changes", parser.get<String>("changes"));
+    const std::vector<HarmlessChange> changes = selectChanges(parser);
     const int numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, 2048) : 0;
     const std::vector<Scene> scenes = selectScenes(parser);
     catchInterrupts();
@@ -251,4 +251,4 @@ static int run(const CommandLineParser& parser)
     return isInterrupted() ? 130 : skipped > 0 ? 2 : 0;
 }
 
-int main(int argc, char** argv) { return runProgram(argc, argv, KEYS, ABOUT, { "confidence" }, 1, run); }
+int main(int argc, char** argv) { return runProgram(argc, argv, KEYS, ABOUT, { "confidence", "changes=" }, 1, run); }

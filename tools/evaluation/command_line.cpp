@@ -90,6 +90,8 @@ static void checkArguments(int argc, const char* const argv[], const cv::Command
         {
             fail("unknown option '" + option + "'");
         }
+        if (std::find(flags.begin(), flags.end(), name + "=") != flags.end())
+            continue;
         const bool isFlag = std::find(flags.begin(), flags.end(), name) != flags.end();
         if (isFlag && option != argument)
             fail("option '" + option + "' takes no value");

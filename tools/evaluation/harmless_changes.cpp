@@ -183,6 +183,14 @@ std::vector<HarmlessChange> selectChanges(const String& option, const String& li
     return changes;
 }
 
+std::vector<HarmlessChange> selectChanges(const CommandLineParser& parser)
+{
+    if (!parser.has("changes"))
+        return std::vector<HarmlessChange>();
+    const String list = parser.get<String>("changes");
+    return selectChanges("changes", list == "true" ? String(ALL_CHANGES) : list); // which an option without a value is
+}
+
 Pair changePair(const HarmlessChange& change, const Pair& pair, const String& scene)
 {
     Mat left = pair.left, right = pair.right;

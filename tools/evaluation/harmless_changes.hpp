@@ -52,6 +52,9 @@ Noise and random bits are the same in every run: they start from the names of sc
 */
 std::vector<HarmlessChange> selectChanges(const String& option, const String& list);
 
+//! Those of --changes=LIST; all 18 for --changes alone. None without the option, and if it has no default.
+std::vector<HarmlessChange> selectChanges(const cv::CommandLineParser& parser);
+
 //! The names of the 18 changes above; "clean" is none.
 extern const char* const ALL_CHANGES;
 

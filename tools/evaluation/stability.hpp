@@ -30,7 +30,7 @@ struct ConfidenceCounts
     double correlation() const;
 };
 
-//! Of a method on a pair. Errors are main scores, NO_SCORE without truth; shares are in percent, means over the changes.
+//! Of a method on a pair. Errors are main scores, NO_SCORE without truth; shares are percentages, means over the changes.
 struct Stability
 {
     double cleanError;
@@ -59,7 +59,7 @@ Stability measureStability(const Method& method, const Pair& pair, const std::ve
 is says what hides what. */
 Mat visiblePixels(const Pair& pair, const Mat& clean);
 
-//! Pixels within 4 of a step of the truth: by more than 2 disparities, and by more than one for each pixel that it takes
+//! Pixels within 4 of a step of the truth: by more than 2 disparities, and by more than 1 for each pixel that it takes
 Mat edgePixels(const Mat& truth);
 
 //! Pixels without texture: levels change by at most 2 from column to column, mean of 9 x 9 pixels.
