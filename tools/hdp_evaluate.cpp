@@ -14,6 +14,7 @@
 #include "evaluation/command_line.hpp"
 #include "evaluation/progress.hpp"
 #include "evaluation/result_tables.hpp"
+#include "evaluation/tunables.hpp"
 
 using namespace cv;
 using namespace hdp_tools;
@@ -24,9 +25,9 @@ static const char* const KEYS =
     "{resolution      |     | only these of Middlebury's: full, half, third or quarter, separated by commas }"
     "{methods         | systems,presets,opencv | names as in the tables, or these groups, separated by commas }"
     "{scenes          |     | only these, separated by commas }"
-    "{changes         |     | all figures are means over changes that must not matter: those of hdp_stability, or a "
-    "list; "
-    "maps and pictures are of the pairs as they are }"
+    "{changes         |     | all figures are means over changes that must not matter, the list of hdp_stability or "
+    "one's "
+    "own; maps and pictures are of the pairs as they are }"
     "{num-disparities |     | number of disparities; by default that of the dataset }"
     "{model           |     | prediction model of the paper's HDP systems: a file of hdp_train }"
     "{report          |     | folder for index.html, with the tables, pictures of all maps, and how they came about }"
@@ -47,6 +48,8 @@ static void writeText(const String& path, const String& text)
 
 static int run(const CommandLineParser& parser)
 {
+    if (useTunables(parser))
+        return 0;
     if (!parser.has("@root"))
         fail("a folder is needed, see --help");
     setThreads(parser);
@@ -114,7 +117,7 @@ static int run(const CommandLineParser& parser)
 int main(int argc, char** argv)
 {
     return runProgram(
-        argc, argv, KEYS,
+        argc, argv, String(KEYS) + TUNABLE_KEYS,
         "Tables of the paper, and a report with pictures, of a dataset of rectified stereo pairs.\n"
         "Exit status: 0 if all is well, 2 if a pair was skipped, 130 if interrupted, 1 on other errors.\n",
         { "changes=" }, 1, run);

@@ -12,6 +12,7 @@
 #include "evaluation/progress.hpp"
 #include "evaluation/stability.hpp"
 #include "evaluation/tables.hpp"
+#include "evaluation/tunables.hpp"
 
 using namespace cv;
 using namespace hdp_tools;
@@ -218,6 +219,8 @@ static void measure(const Scene& scene, int numDisparities, const std::vector<Me
 
 static int run(const CommandLineParser& parser)
 {
+    if (useTunables(parser))
+        return 0;
     if (!parser.has("@root"))
         fail("a folder is needed, see --help");
     setThreads(parser);
@@ -251,4 +254,7 @@ static int run(const CommandLineParser& parser)
     return isInterrupted() ? 130 : skipped > 0 ? 2 : 0;
 }
 
-int main(int argc, char** argv) { return runProgram(argc, argv, KEYS, ABOUT, { "confidence", "changes=" }, 1, run); }
+int main(int argc, char** argv)
+{
+    return runProgram(argc, argv, KEYS + TUNABLE_KEYS, ABOUT, { "confidence", "changes=" }, 1, run);
+}
