@@ -14,6 +14,7 @@
 #include "evaluation/command_line.hpp"
 #include "evaluation/progress.hpp"
 #include "evaluation/result_tables.hpp"
+#include "evaluation/tunables.hpp"
 
 using namespace cv;
 using namespace hdp_tools;
@@ -24,6 +25,9 @@ static const char* const KEYS =
     "{resolution      |     | only these of Middlebury's: full, half, third or quarter, separated by commas }"
     "{methods         | systems,presets,opencv | names as in the tables, or these groups, separated by commas }"
     "{scenes          |     | only these, separated by commas }"
+    "{changes         |     | all figures are means over changes that must not matter, the list of hdp_stability or "
+    "one's "
+    "own; maps and pictures are of the pairs as they are }"
     "{num-disparities |     | number of disparities; by default that of the dataset }"
     "{model           |     | prediction model of the paper's HDP systems: a file of hdp_train }"
     "{report          |     | folder for index.html, with the tables, pictures of all maps, and how they came about }"
@@ -44,6 +48,8 @@ static void writeText(const String& path, const String& text)
 
 static int run(const CommandLineParser& parser)
 {
+    if (useTunables(parser))
+        return 0;
     if (!parser.has("@root"))
         fail("a folder is needed, see --help");
     setThreads(parser);
@@ -58,6 +64,7 @@ static int run(const CommandLineParser& parser)
     settings.jobs = getInteger(parser, "jobs", 1, 256);
     settings.maps = parser.get<String>("maps");
     settings.hasReport = parser.has("report");
+    settings.changes = selectChanges(parser);
 
     std::vector<SceneResult> results;
     for (const Scene& scene : selectScenes(parser))
@@ -81,7 +88,10 @@ static int run(const CommandLineParser& parser)
     const int bad = evaluateScenes(settings, results);
 
     const std::vector<Table> tables = makeTables(settings.methods, results, settings.jobs);
-    String text;
+    String text, changes;
+    for (const HarmlessChange& change : settings.changes)
+        changes += (changes.empty() ? "Means over the changes " : ", ") + change.name;
+    std::cout << changes << (changes.empty() ? "" : "\n\n");
     for (const Table& table : tables)
     {
         std::cout << toMarkdown(table) << "\n";
@@ -91,9 +101,10 @@ static int run(const CommandLineParser& parser)
         writeText(csv, text + toCsv(everyPairTable(settings.methods, results)));
     if (settings.hasReport)
     {
-        const String summary = format(
-            "%d pairs, %d of them with something wrong; %d systems, %d threads, OpenCV " CV_VERSION "%s",
-            int(results.size()), bad, int(settings.methods.size()), threads, isInterrupted() ? "; interrupted" : "");
+        const String summary =
+            format("%d pairs, %d of them with something wrong; %d systems, %d threads, OpenCV " CV_VERSION "%s%s%s",
+                   int(results.size()), bad, int(settings.methods.size()), threads,
+                   isInterrupted() ? "; interrupted" : "", changes.empty() ? "" : ". ", changes.c_str());
         writeText(page, reportPage(tables, settings.methods, results, summary));
     }
     if (isInterrupted())
@@ -106,8 +117,8 @@ static int run(const CommandLineParser& parser)
 int main(int argc, char** argv)
 {
     return runProgram(
-        argc, argv, KEYS,
+        argc, argv, String(KEYS) + TUNABLE_KEYS,
         "Tables of the paper, and a report with pictures, of a dataset of rectified stereo pairs.\n"
         "Exit status: 0 if all is well, 2 if a pair was skipped, 130 if interrupted, 1 on other errors.\n",
-        {}, 1, run);
+        { "changes=" }, 1, run);
 }

@@ -4,7 +4,7 @@
 
 // What each parameter of HDPTreeMatcher does to speed and accuracy: changes one at a time in PRESET_FAST and in
 // PRESET_TREE, matches all pairs of a dataset, and prints a table of the errors and of the processor time beside the
-// preset's own.
+// preset's own. --sweep does the same for the tuned constants of the library.
 
 #include <ctime>
 #include <functional>
@@ -13,8 +13,10 @@
 
 #include "evaluation/command_line.hpp"
 #include "evaluation/datasets.hpp"
+#include "evaluation/harmless_changes.hpp"
 #include "evaluation/methods.hpp"
 #include "evaluation/scores.hpp"
+#include "evaluation/tunables.hpp"
 
 using namespace cv;
 using namespace hdp_tools;
@@ -22,8 +24,12 @@ using cv::stereo::HDPTreeMatcher;
 
 static const char* const KEYS =
     "{help h ?  |           | print this and exit }"
-    "{@root     |           | folder of Middlebury pairs with truth, see hdp_evaluate }"
-    "{presets   | fast,tree | those to change: fast, tree or both }"
+    "{@root     |           | folder of pairs with truth, or of such folders, see hdp_evaluate }"
+    "{presets   | fast,tree | those to change: fast, tree or both; with --sweep any }"
+    "{changes   |           | errors and times are means over changes that must not matter, the list of hdp_stability "
+    "or one's own }"
+    "{sweep     |           | instead of the parameters, tuned constants of the library, see --list-tunables: "
+    "NAME=VALUE:VALUE, or NAME for half of it and double, separated by commas }"
     "{runs      | 3         | how often a pair is matched in each way, in turns; the shortest times count }"
     "{threads   |           | number of threads; all processors if not given }";
 
@@ -118,75 +124,150 @@ static std::vector<Variant> variantsOf(int preset)
     return variants;
 }
 
-//! Matches a pair in all ways, in turns, and takes the processor time of all threads: so it matters little what else the
-//! computer does.
-static void measure(const Pair& pair, int preset, int runs, std::vector<Variant>& variants)
+//! A preset, and the same with each value of --sweep
+static std::vector<Variant> variantsOf(const String& preset, const std::vector<TunableSetting>& sweep)
+{
+    std::vector<Variant> variants(1, { preset, [](HDPTreeMatcher&) {}, 0, 0, 0 });
+    for (const TunableSetting& setting : sweep)
+        variants.push_back({ setting.name + " = " + setting.value, variants[0].change, 0, 0, 0 });
+    return variants;
+}
+
+//! What is done with the pairs of every set
+struct Settings
+{
+    std::vector<HarmlessChange> changes; // over which errors and times are means
+    std::vector<TunableSetting> sweep;   // of all variants but the first one, or none
+    int preset, runs;
+};
+
+//! Errors by the two figures that the tables of a dataset have
+struct Figures
+{
+    const char* names[2];
+    double Score::*figures[2];
+};
+
+static Figures figuresOf(Pair::Protocol protocol)
+{
+    if (protocol == Pair::KITTI)
+        return { { "average error, pixels", "D1 %" }, { &Score::average, &Score::d1 } };
+    if (protocol == Pair::BAD)
+        return { { "bad 1.0 %", "bad 2.0 %" }, { &Score::bad1, &Score::bad2 } };
+    return { { "err>=1 %", "err>=2 %" }, { &Score::error1, &Score::error2 } };
+}
+
+//! Returns the processor time of all threads: so it matters little what else the computer does.
+static double compute(HDPTreeMatcher& matcher, const Pair& pair, Mat& map)
+{
+    const std::clock_t start = std::clock();
+    matcher.compute(pair.left, pair.right, map);
+    return double(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+//! Matches a changed pair in all ways, in turns.
+static void measure(const Pair& pair, const HarmlessChange& change, const Pair& changed, const Settings& settings,
+                    std::vector<Variant>& variants)
 {
     std::vector<Ptr<HDPTreeMatcher>> matchers;
     for (const Variant& variant : variants)
     {
-        matchers.push_back(HDPTreeMatcher::create(0, pair.disparities.size(), preset));
+        matchers.push_back(HDPTreeMatcher::create(0, changed.disparities.size(), settings.preset));
         variant.change(*matchers.back());
     }
     std::vector<double> seconds(variants.size(), DBL_MAX);
     std::vector<Mat> maps(variants.size());
-    for (int run = 0; run < runs; run++)
+    for (int run = 0; run < settings.runs; run++)
         for (size_t i = 0; i < variants.size(); i++)
         {
-            const std::clock_t start = std::clock();
-            matchers[i]->compute(pair.left, pair.right, maps[i]);
-            seconds[i] = std::min(seconds[i], double(std::clock() - start) / CLOCKS_PER_SEC);
+            const bool isSwept = i > 0 && !settings.sweep.empty();
+            const TunableSetting before = isSwept ? applySetting(settings.sweep[i - 1]) : TunableSetting();
+            seconds[i] = std::min(seconds[i], compute(*matchers[i], changed, maps[i]));
+            if (isSwept)
+                applySetting(before);
         }
+    const Pair truth = truthOfChanged(change, pair);
+    const Figures figures = figuresOf(pair.protocol);
     for (size_t i = 0; i < variants.size(); i++)
     {
-        const Score score = scoreMap(toPixels(maps[i], 0), pair);
-        variants[i].error1 += score.error1;
-        variants[i].error2 += score.error2;
+        const Score score = scoreMap(restoreMap(change, toPixels(maps[i], 0), pair.left.size()), truth);
+        variants[i].error1 += score.*figures.figures[0];
+        variants[i].error2 += score.*figures.figures[1];
         variants[i].relativeTime += seconds[i] / seconds[0];
     }
 }
 
+//! A table for the scenes of a set, which have truth of one kind
+static void measureSet(const std::vector<Scene>& scenes, const Settings& settings, std::vector<Variant> variants)
+{
+    Figures figures = figuresOf(Pair::MIDDLEBURY);
+    for (const Scene& scene : scenes)
+    {
+        std::cerr << variants[0].name << ": " << scene.set << "/" << scene.name << std::endl;
+        const Pair pair = readPair(scene);
+        figures = figuresOf(pair.protocol);
+        for (const HarmlessChange& change : settings.changes)
+            measure(pair, change, changePair(change, pair, scene.name), settings, variants);
+        if (settings.changes.empty())
+            measure(pair, HarmlessChange(), pair, settings, variants);
+    }
+    const double count = double(scenes.size() * std::max<size_t>(settings.changes.size(), 1));
+    std::cout << "| " << scenes[0].set << ": " << variants[0].name << " with | " << figures.names[0] << " | "
+              << figures.names[1] << " | time |\n|---|---|---|---|\n";
+    for (const Variant& v : variants)
+        std::cout << format("| %s | %.2f | %.2f | %.2f |\n", v.name.c_str(), v.error1 / count, v.error2 / count,
+                            v.relativeTime / count);
+    std::cout << std::endl;
+}
+
+//! Those with truth, by set
+static std::vector<std::vector<Scene>> findSets(const String& root)
+{
+    std::vector<std::vector<Scene>> sets;
+    for (const Scene& scene : findScenes(root))
+    {
+        if (scene.truth.empty())
+            continue;
+        if (sets.empty() || sets.back()[0].set != scene.set)
+            sets.push_back(std::vector<Scene>());
+        sets.back().push_back(scene);
+    }
+    if (sets.empty())
+        fail(root + ": no pairs with truth");
+    return sets;
+}
+
 static int run(const CommandLineParser& parser)
 {
+    if (useTunables(parser))
+        return 0;
     setThreads(parser);
-    const int runs = getInteger(parser, "runs", 1, 1000);
-    std::vector<int> presets;
-    for (const String& name : splitList(parser.get<String>("presets")))
-    {
-        if (name != "fast" && name != "tree")
+    Settings settings;
+    settings.runs = getInteger(parser, "runs", 1, 1000);
+    settings.changes = selectChanges(parser);
+    if (parser.has("sweep"))
+        settings.sweep = parseSweep("sweep", parser.get<String>("sweep"));
+    const std::vector<String> presets = splitList(parser.get<String>("presets"));
+    for (const String& name : presets)
+        if (settings.sweep.empty() && name != "fast" && name != "tree")
             fail("--presets=" + parser.get<String>("presets") + ": neither fast nor tree");
-        presets.push_back(presetOf(name));
-    }
 
-    std::vector<Scene> scenes;
-    for (const Scene& scene : findScenes(parser.get<String>("@root")))
-        if (!scene.truth.empty() && !scene.isFrame)
-            scenes.push_back(scene);
-    if (scenes.empty())
-        fail(parser.get<String>("@root") + ": no Middlebury pairs with truth");
-
-    for (const int preset : presets)
+    const std::vector<std::vector<Scene>> sets = findSets(parser.get<String>("@root"));
+    for (const String& name : presets)
     {
-        std::vector<Variant> variants = variantsOf(preset);
-        for (const Scene& scene : scenes)
-        {
-            std::cerr << variants[0].name << ": " << scene.set << "/" << scene.name << std::endl;
-            measure(readPair(scene), preset, runs, variants);
-        }
-        const double pairs = double(scenes.size());
-        std::cout << "| " << variants[0].name << " with | err>=1 % | err>=2 % | time |\n|---|---|---|---|\n";
-        for (const Variant& v : variants)
-            std::cout << format("| %s | %.2f | %.2f | %.2f |\n", v.name.c_str(), v.error1 / pairs, v.error2 / pairs,
-                                v.relativeTime / pairs);
-        std::cout << std::endl;
+        settings.preset = presetOf(name);
+        const std::vector<Variant> variants =
+            settings.sweep.empty() ? variantsOf(settings.preset) : variantsOf(name, settings.sweep);
+        for (const std::vector<Scene>& set : sets)
+            measureSet(set, settings, variants);
     }
     return 0;
 }
 
 int main(int argc, char** argv)
 {
-    return runProgram(argc, argv, KEYS,
-                      "What each parameter does to speed and accuracy: mean errors over all pairs, and the "
+    return runProgram(argc, argv, String(KEYS) + TUNABLE_KEYS,
+                      "What each parameter does to speed and accuracy: mean errors over the pairs of each set, and the "
                       "processor time as a multiple of the preset's.\n",
-                      {}, 1, run);
+                      { "changes=" }, 1, run);
 }

@@ -14,6 +14,7 @@
 #include "evaluation/progress.hpp"
 #include "evaluation/scores.hpp"
 #include "evaluation/tables.hpp"
+#include "evaluation/tunables.hpp"
 
 using namespace cv;
 using namespace hdp_tools;
@@ -54,6 +55,8 @@ static Table toTable(const String& set, Pair::Protocol protocol, size_t pairs, c
 
 static int run(const CommandLineParser& parser)
 {
+    if (useTunables(parser))
+        return 0;
     if (!parser.has("@root"))
         fail("a folder is needed, see --help");
     setThreads(parser);
@@ -116,7 +119,7 @@ static int run(const CommandLineParser& parser)
 int main(int argc, char** argv)
 {
     return runProgram(
-        argc, argv, KEYS,
+        argc, argv, KEYS + TUNABLE_KEYS,
         "Errors of stereo matchers when the cameras are not ideal: light, noise, blur, rows.\n"
         "Exit status: 0 if all is well, 2 if a pair was skipped, 130 if interrupted, 1 on other errors.\n",
         {}, 1, run);

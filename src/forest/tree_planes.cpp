@@ -5,6 +5,7 @@
 #include "tree_planes.hpp"
 
 #include "../base/disparity_units.hpp"
+#include "../base/tunable.hpp"
 #include "tree_walk.hpp"
 #include <numeric>
 
@@ -12,21 +13,21 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-const int minPixels = 400;      // of a tree that gets a plane
-const int samples = 300;        // of its pixels, about
-const int triples = 60;         // planes that are tried
-const double leastBase = 0.05;  // area of the parallelogram of three pixels, as a share of the tree's
-const double steepest = 0.5;    // slope, in disparities per pixel
-const double tiltCost = 0.2;    // per disparity between the ends of the tree: of two planes, the flatter one
-const int fits = 4;             // to the disparities near the plane
-const double fitDistance = 1.5; // of those
-const double onDistance = 1;    // of disparities that lie on the plane
-const double leastShare = 0.4;  // of the disparities that lie on it
-const double mostRise = 4.5;    // of the mean cost, in units of the volume
-const double leastContrast = 1; // by which the mean of the candidates' costs exceeds that of the disparities
-const int largestRise = 64;     // of a pixel's, for pixels of other surfaces to count as such
-
-const int largestPenalty = 10; // of a disparity off the plane, in units of the volume
+HDP_TUNABLE(int, minPixels, 400, "pixels", "of a tree that gets a plane: what fewer say is mostly noise");
+HDP_TUNABLE(int, samples, 300, "pixels", "of a tree, about: more cost time and find the same plane");
+HDP_TUNABLE(int, triples, 60, "planes", "that are tried: four of them are right if minShare lies on the right one");
+HDP_TUNABLE(double, minBase, 0.05, "share of the tree", "area that three pixels span: what is narrow tells no slope");
+HDP_TUNABLE(double, maxSlope, 0.5, "disparities per pixel", "steeper planes join two surfaces");
+HDP_TUNABLE(double, tiltCost, 0.2, "cost per disparity",
+            "between the ends of the tree: of two planes, the flatter one");
+HDP_TUNABLE(int, fits, 4, "fits", "to the disparities near the plane: then these are the same as before");
+HDP_TUNABLE(double, fitDistance, 1.5, "disparities", "from the plane: what is farther off is another surface");
+HDP_TUNABLE(double, onDistance, 1, "disparities", "from the plane that disparities on it are off by noise");
+HDP_TUNABLE(double, minShare, 0.4, "share of the samples", "on the plane: a tree of several surfaces gets none");
+HDP_TUNABLE(double, maxRise, 4.5, "cost", "of the mean over the tree: the costs are against a plane that has more");
+HDP_TUNABLE(double, minContrast, 1, "cost", "of the mean candidate above the winner's: flat costs fit any plane");
+HDP_TUNABLE(int, maxPixelRise, 64, "cost", "of one pixel: one of another surface counts no more than that");
+HDP_TUNABLE(int, maxPenalty, 10, "cost", "of a disparity off the plane: so the scanlines can still leave it");
 
 //! d = coefficients . (1, x, y)
 typedef Vec3d Plane;
@@ -38,7 +39,7 @@ class TreeSamples
 {
 public:
     TreeSamples(const TreeWalk& walk, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
-        : leastRise_(), interval_(tree.interval), size_(tree.size), begin_(0, volume.size.width, volume.size.height)
+        : minRise_(), interval_(tree.interval), size_(tree.size), begin_(0, volume.size.width, volume.size.height)
     {
         const ushort* const winners = disparity.ptr<ushort>();
         const int step = std::max(tree.size / samples, 1);
@@ -49,7 +50,7 @@ public:
             const uchar* const costs = &volume.costs[volume.candidates[pixel].start()];
             Sample sample = { costs, basisOf(pixel, volume.size.width), winner, 0 };
             sample.cost = costAt(sample, winner);
-            leastRise_[samples_.size() % phases] += *std::min_element(costs, costs + interval_.size()) - sample.cost;
+            minRise_[samples_.size() % phases] += *std::min_element(costs, costs + interval_.size()) - sample.cost;
             samples_.push_back(sample);
             for (int term = 1; term < 3; ++term)
             {
@@ -66,7 +67,7 @@ public:
         int64 sum = 0; // of the differences from the winner's cost
         for (const Sample& sample : samples_)
             sum += std::accumulate(sample.costs, sample.costs + candidates, 0) - candidates * sample.cost;
-        return sum >= leastContrast * candidates * samples_.size();
+        return sum >= minContrast * candidates * samples_.size();
     }
 
     //! The plane of least rise among those through three samples, fitted to the disparities near it
@@ -124,7 +125,7 @@ private:
     {
         int sum = 0;
         for (size_t i = phase; i < samples_.size(); i += phases)
-            sum += std::min(costAt(samples_[i], plane.dot(samples_[i].basis)) - samples_[i].cost, +largestRise);
+            sum += std::min(costAt(samples_[i], plane.dot(samples_[i].basis)) - samples_[i].cost, +maxPixelRise);
         return sum;
     }
 
@@ -134,11 +135,11 @@ private:
     {
         const Vec3d extent = end_ - begin_;
         const double tilt = tiltCost * (std::abs(plane[1]) * extent[1] + std::abs(plane[2]) * extent[2]);
-        int sum = std::accumulate(leastRise_, leastRise_ + phases, 0);
+        int sum = std::accumulate(minRise_, minRise_ + phases, 0);
         double least = 0;
         for (int phase = 0; phase < phases; ++phase)
         {
-            sum += riseOf(plane, phase) - leastRise_[phase];
+            sum += riseOf(plane, phase) - minRise_[phase];
             least = sum / (double)samples_.size() + tilt;
             if (least >= limit)
                 break;
@@ -167,12 +168,12 @@ private:
         const Vec3d p = b.basis - a.basis, q = c.basis - a.basis;
         const double area = p[1] * q[2] - q[1] * p[2], rise = b.disparity - a.disparity,
                      secondRise = c.disparity - a.disparity;
-        if (std::abs(area) < leastBase * size_)
+        if (std::abs(area) < minBase * size_)
             return false;
         plane[1] = (rise * q[2] - secondRise * p[2]) / area;
         plane[2] = (secondRise * p[1] - rise * q[1]) / area;
         plane[0] = a.disparity - plane[1] * a.basis[1] - plane[2] * a.basis[2];
-        return std::abs(plane[1]) <= steepest && std::abs(plane[2]) <= steepest;
+        return std::abs(plane[1]) <= maxSlope && std::abs(plane[2]) <= maxSlope;
     }
 
     int costAt(const Sample& sample, double disparity) const
@@ -182,7 +183,7 @@ private:
     }
 
     static const int phases = 8; // of the samples
-    int leastRise_[phases];      // the lowest that riseOf() may be
+    int minRise_[phases];        // the lowest that riseOf() may be
     const DisparityInterval interval_;
     const int size_;    // of the tree
     Vec3d begin_, end_; // of its columns and rows
@@ -196,7 +197,7 @@ void prefer(const Plane& plane, const TreeWalk& walk, const DisparityTree& tree,
         const int pixel = walk.pixels[i];
         const double disparity = plane.dot(basisOf(pixel, volume.size.width));
         if (!volume.contradicts(pixel, disparity))
-            volume.prefer(pixel, disparity, largestPenalty);
+            volume.prefer(pixel, disparity, maxPenalty);
     }
 }
 
@@ -219,7 +220,7 @@ int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVo
             if (!of.haveContrast())
                 continue;
             const Plane plane = of.findPlane();
-            hasPlane[t] = of.rise(plane) < mostRise && of.shareOn(plane) >= leastShare;
+            hasPlane[t] = of.rise(plane) < maxRise && of.shareOn(plane) >= minShare;
             if (hasPlane[t])
                 prefer(plane, walk, tree, volume);
         }

@@ -9,6 +9,7 @@
 
 #include "image_levels.hpp"
 #include "../base/robust_fit.hpp"
+#include "../base/tunable.hpp"
 
 #include <cmath>
 
@@ -17,21 +18,33 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 const double white = 255 * greyScale;
-const int meanRadius = 3; // of the square around a corner
-const int leastMatches = 24;
-const double leastDeviation = 0.5 / 255; // of the levels that matches see
-const double leastChange = 1. / 255;     // root of the mean square at the matches that is worth a change
-const double largestRest = 4. / 255;     // median difference of the levels that a model may leave, and
-const double largestShare = 0.7;         // as a share of what it was
+HDP_TUNABLE(int, meanRadius, 3, "pixels", "of the square around a corner whose mean level counts: noise averages out");
+HDP_TUNABLE(int, minMatches, 24, "matches", "for ten coefficients, most of which the prior holds");
+HDP_TUNABLE(double, levelDeviation, 0.5 / 255, "of white", "by which matched levels differ at best: they are rounded");
+HDP_TUNABLE(double, minChange, 1. / 255, "of white", "root of the mean square: what is below is not worth a change");
+HDP_TUNABLE(double, maxRest, 4. / 255, "of white", "median difference that a model which fits may leave");
+HDP_TUNABLE(double, maxRestShare, 0.7, "share", "of that difference before the model: one that explains less is none");
+
+// Expected deviations of the coefficients from those of the same light. What vignetting and gamma do is within them;
+// what few matches cannot tell stays as it is.
+HDP_TUNABLE(double, gainDeviation, 0.3, "factor", "exposures differ by half a stop");
+HDP_TUNABLE(double, slopeDeviation, 0.1, "factor per width", "light from one side");
+HDP_TUNABLE(double, curveDeviation, 0.15, "factor per squared width", "vignetting");
+HDP_TUNABLE(double, rimDeviation, 1, "factor per fourth power of the width",
+            "vignetting of the corners, where it is steep");
+HDP_TUNABLE(double, offsetDeviation, 0.1, "of white", "black levels and haze differ");
+HDP_TUNABLE(double, gammaDeviation, 0.15, "of white", "of the square and the cube of levels: curves of cameras differ");
 
 typedef LightModel::Coefficients Coefficients;
 typedef FitSample<LightModel::terms> LevelPair; // a match: the basis of the right level, the left level
 
-// Expected deviation of the coefficients from those of the same light. What vignetting and gamma do is within them; what
-// few matches cannot tell stays as it is.
-const Coefficients expected(0.3, 0.1, 0.1, 0.15, 0.15, 0.15, 1, 0.1, 0.15, 0.15);
-
 HDP_DISPATCH(alignLightRow)
+
+Coefficients expectedDeviations()
+{
+    return Coefficients(gainDeviation, slopeDeviation, slopeDeviation, curveDeviation, curveDeviation, curveDeviation,
+                        rimDeviation, offsetDeviation, gammaDeviation, gammaDeviation);
+}
 
 double meanLevel(const Mat& image, Point centre)
 {
@@ -54,7 +67,7 @@ std::vector<LevelPair> toLevels(const CoarseMatches& coarse)
             continue;
         const double x = (match.x + 0.5) / right.cols - 0.5, y = (match.y + 0.5) / right.rows - 0.5;
         const LevelPair pair = { LightModel::basis(meanLevel(right, matched), x, y), meanLevel(left, match.left),
-                                 leastDeviation };
+                                 levelDeviation };
         pairs.push_back(pair);
     }
     return pairs;
@@ -68,9 +81,9 @@ bool estimateLight(const CoarseMatches& coarse, LightModel& model)
     if (coarse.matches.empty())
         return false;
     const std::vector<LevelPair> pairs = toLevels(coarse);
-    if ((int)pairs.size() < leastMatches)
+    if ((int)pairs.size() < minMatches)
         return false;
-    const FitPrior<LightModel::terms> same = { LightModel::identity(), expected };
+    const FitPrior<LightModel::terms> same = { LightModel::identity(), expectedDeviations() };
     model.coefficients = fitRobustly(pairs, same, same.coefficients).coefficients;
     double change = 0;
     for (const LevelPair& pair : pairs)
@@ -78,9 +91,9 @@ bool estimateLight(const CoarseMatches& coarse, LightModel& model)
         const double difference = model.coefficients.dot(pair.basis) - pair.basis[0];
         change += difference * difference / pairs.size();
     }
-    const double before = leastDeviation * medianOf(fitResiduals(pairs, same.coefficients));
-    const double rest = leastDeviation * medianOf(fitResiduals(pairs, model.coefficients));
-    return change > leastChange * leastChange && rest < largestRest && rest < largestShare * before;
+    const double before = levelDeviation * medianOf(fitResiduals(pairs, same.coefficients));
+    const double rest = levelDeviation * medianOf(fitResiduals(pairs, model.coefficients));
+    return change > minChange * minChange && rest < maxRest && rest < maxRestShare * before;
 }
 
 void alignLight(Mat& levels, const LightModel& model)

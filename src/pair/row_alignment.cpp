@@ -10,6 +10,7 @@
 #include "corner_matches.hpp"
 #include "image_levels.hpp"
 #include "../base/robust_fit.hpp"
+#include "../base/tunable.hpp"
 
 #include <cfloat>
 #include <cmath>
@@ -18,16 +19,15 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-const int leastMatches = 24;
-const int trackedArea = 600000;         // of the finest layer that tells enough, in pixels
-const double ownVariance = 0.02 * 0.02; // of a match's row, beside what its window says, in pixels of its layer
+HDP_TUNABLE(int, minMatches, 24, "matches", "for five coefficients, and not all of them are right");
+HDP_TUNABLE(int, trackedArea, 600000, "pixels", "of the finest layer that is looked at: finer ones tell no more");
+HDP_TUNABLE(double, ownDeviation, 0.02, "pixels of the layer", "of a match's row, beside what its window says of it");
+HDP_TUNABLE(double, slopeDeviation, 2e-3, "rows per pixel", "cameras are turned by a tenth of a degree");
+HDP_TUNABLE(double, slopeChange, 1e-3, "rows per pixel", "of a slope from border to border: lenses and keystones");
 
-// What is expected of a model: standard deviations of a slope, and of its change over the width of the image
-const double slopeDeviation = 2e-3, slopeChange = 1e-3;
-
-// A model is applied if it moves rows by more than this root of the mean square, in pixels, when its deviation is taken
-// from it so many times. What is below costs more by interpolation than it gains.
-const double leastMove = 0.12, certainty = 2;
+// What moves rows by less costs more by interpolation than it gains.
+HDP_TUNABLE(double, minMove, 0.12, "pixels", "root of the mean square of a model that is applied");
+HDP_TUNABLE(double, certainty, 2, "deviations", "of the model, taken from its move: noise is no reason to move rows");
 
 typedef RowModel::Coefficients Coefficients;
 
@@ -52,7 +52,7 @@ std::vector<RowMove> toMoves(const std::vector<CornerMatch>& matches, int layer,
         {
             const Point2d place = fromCentre(match.x, match.left.y, layer, size);
             const RowMove move = { RowModel::basis(place), (match.y - match.left.y) * scale,
-                                   std::sqrt(match.variance + ownVariance) * scale };
+                                   std::sqrt(match.variance + ownDeviation * ownDeviation) * scale };
             moves.push_back(move);
         }
     return moves;
@@ -183,7 +183,7 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
     for (int layer = coarse.layer;; --layer)
     {
         const std::vector<RowMove> moves = toMoves(matches, layer, size);
-        if ((int)moves.size() < leastMatches)
+        if ((int)moves.size() < minMatches)
             break;
         const RowFit fit = fitRows(moves, size);
         const MeanSquares ofFit = meanSquares(fit, size);
@@ -204,7 +204,7 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
     if (ofBest.deviation == DBL_MAX || largestMove(best, size) > maxOffset)
         return false;
     model = best;
-    return ofBest.move - certainty * certainty * ofBest.deviation > leastMove * leastMove;
+    return ofBest.move - certainty * certainty * ofBest.deviation > minMove * minMove;
 }
 
 void alignRows(const Mat& right, const RowModel& model, Mat& aligned)

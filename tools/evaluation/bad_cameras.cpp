@@ -16,11 +16,7 @@ using namespace cv;
 
 namespace hdp_tools {
 
-namespace {
-
-Mat same(const Mat& image, RNG&) { return image; }
-
-ImageChange levels(const std::function<double(double)>& change)
+ImageChange changeLevels(const std::function<double(double)>& change)
 {
     Mat table(1, 256, CV_8U);
     for (int i = 0; i < 256; ++i)
@@ -32,33 +28,12 @@ ImageChange levels(const std::function<double(double)>& change)
     };
 }
 
-Mat addNoise(const Mat& image, double deviation, RNG& rng)
+ImageChange addNoise(double deviation)
 {
-    Mat noise(image.size(), CV_32FC3), changed;
-    rng.fill(noise, RNG::NORMAL, 0, deviation);
-    add(image, noise, changed, noArray(), CV_8U);
-    return changed;
-}
-
-ImageChange noise(double deviation)
-{
-    return [deviation](const Mat& image, RNG& rng) { return addNoise(image, deviation, rng); };
-}
-
-Mat darken(const Mat& image, RNG& rng)
-{
-    Mat table(1, 256, CV_8U), changed;
-    for (int i = 0; i < 256; ++i)
-        table.at<uchar>(i) = (uchar)(i / 8);
-    LUT(image, table, changed);
-    return addNoise(changed, 2, rng);
-}
-
-ImageChange blur(double deviation)
-{
-    return [deviation](const Mat& image, RNG&) {
-        Mat changed;
-        GaussianBlur(image, changed, Size(), deviation);
+    return [deviation](const Mat& image, RNG& rng) {
+        Mat noise(image.size(), CV_32FC3), changed;
+        rng.fill(noise, RNG::NORMAL, 0, deviation);
+        add(image, noise, changed, noArray(), CV_8U);
         return changed;
     };
 }
@@ -69,6 +44,28 @@ ImageChange compress(int quality)
         std::vector<uchar> bytes;
         imencode(".jpg", image, bytes, std::vector<int>{ IMWRITE_JPEG_QUALITY, quality });
         return imdecode(bytes, IMREAD_COLOR);
+    };
+}
+
+namespace {
+
+Mat same(const Mat& image, RNG&) { return image; }
+
+Mat darken(const Mat& image, RNG& rng)
+{
+    Mat table(1, 256, CV_8U), changed;
+    for (int i = 0; i < 256; ++i)
+        table.at<uchar>(i) = (uchar)(i / 8);
+    LUT(image, table, changed);
+    return addNoise(2)(changed, rng);
+}
+
+ImageChange blur(double deviation)
+{
+    return [deviation](const Mat& image, RNG&) {
+        Mat changed;
+        GaussianBlur(image, changed, Size(), deviation);
+        return changed;
     };
 }
 
@@ -103,15 +100,15 @@ bool makeCase(const String& letters, double number, CameraCase& made)
     if (letters == "clean")
         ;
     else if (letters == "gain")
-        made.right = levels([=](double value) { return value * number; });
+        made.right = changeLevels([=](double value) { return value * number; });
     else if (letters == "gamma")
-        made.right = levels([=](double value) { return 255 * std::pow(value / 255, number); });
+        made.right = changeLevels([=](double value) { return 255 * std::pow(value / 255, number); });
     else if (letters == "offset")
-        made.right = levels([=](double value) { return value + number; });
+        made.right = changeLevels([=](double value) { return value + number; });
     else if (letters == "vignette")
         made.right = vignette;
     else if (letters == "noise")
-        made.left = made.right = noise(number);
+        made.left = made.right = addNoise(number);
     else if (letters == "dark")
         made.left = made.right = darken;
     else if (letters == "blur")

@@ -20,6 +20,15 @@ using cv::String;
 //! A change of one image, CV_8UC3. rng: for noise.
 typedef std::function<Mat(const Mat& image, cv::RNG& rng)> ImageChange;
 
+//! The levels are changed by a function of them, from 0 to 255.
+ImageChange changeLevels(const std::function<double(double)>& change);
+
+//! Gaussian noise of this standard deviation is added, in levels.
+ImageChange addNoise(double deviation);
+
+//! JPEG of this quality
+ImageChange compress(int quality);
+
 struct CameraCase
 {
     String name; // for --cases, and in the table

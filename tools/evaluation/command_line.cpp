@@ -69,7 +69,7 @@ void setThreads(const cv::CommandLineParser& parser)
 static void checkArguments(int argc, const char* const argv[], const cv::CommandLineParser& parser,
                            std::vector<String> flags, int maxPositional)
 {
-    flags.insert(flags.end(), { "help", "h", "?" });
+    flags.insert(flags.end(), { "help", "h", "?", "list-tunables" });
     int positional = 0;
     for (int i = 1; i < argc; i++)
     {
@@ -90,12 +90,38 @@ static void checkArguments(int argc, const char* const argv[], const cv::Command
         {
             fail("unknown option '" + option + "'");
         }
+        if (std::find(flags.begin(), flags.end(), name + "=") != flags.end())
+            continue;
         const bool isFlag = std::find(flags.begin(), flags.end(), name) != flags.end();
         if (isFlag && option != argument)
             fail("option '" + option + "' takes no value");
         if (!isFlag && option.size() + 1 >= argument.size())
             fail("option '" + option + "' needs a value: " + option + "=VALUE");
     }
+}
+
+//! The arguments with `--set A=1 --set=B=2` as `--set=A=1,B=2`, for cv::CommandLineParser knows each option once.
+static std::vector<String> joinSettings(int argc, const char* const argv[])
+{
+    std::vector<String> arguments;
+    String settings;
+    bool areThere = false;
+    for (int i = 0; i < argc; i++)
+    {
+        String argument = argv[i];
+        if (argument == "--set" && i + 1 < argc)
+            argument += String("=") + argv[++i];
+        if (argument.compare(0, 6, "--set=") != 0 || argument.size() == 6)
+        {
+            arguments.push_back(argument);
+            continue;
+        }
+        settings += (areThere ? "," : "") + argument.substr(6);
+        areThere = true;
+    }
+    if (areThere)
+        arguments.push_back("--set=" + settings);
+    return arguments;
 }
 
 int runProgram(int argc, const char* const argv[], const String& keys, const String& about,
@@ -105,9 +131,13 @@ int runProgram(int argc, const char* const argv[], const String& keys, const Str
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); // errors are reported below
     try
     {
-        cv::CommandLineParser parser(argc, argv, keys);
+        const std::vector<String> joined = joinSettings(argc, argv);
+        std::vector<const char*> arguments;
+        for (const String& argument : joined)
+            arguments.push_back(argument.c_str());
+        cv::CommandLineParser parser((int)arguments.size(), arguments.data(), keys);
         parser.about(about);
-        checkArguments(argc, argv, parser, flags, maxPositional);
+        checkArguments((int)arguments.size(), arguments.data(), parser, flags, maxPositional);
         int status = 0;
         if (parser.has("help"))
             parser.printMessage();

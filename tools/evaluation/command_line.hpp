@@ -39,7 +39,7 @@ void setThreads(const cv::CommandLineParser& parser);
 Checks the arguments more strictly than cv::CommandLineParser does: unknown options, options without a value, flags with
 one, and too many positional arguments are errors. Each error is reported in one line, and so is output that was lost,
 on a full disk for instance.
-@param flags Options without a value; --help is one anyway.
+@param flags Options without a value; --help is one anyway. "NAME=" is one that may have a value or not.
 @param run Returns the exit status.
 @return The exit status: 1 after an error.
 */

@@ -302,15 +302,14 @@ static Mat readTruth(const String& path, cv::Size size, const String& resolution
 //! Mask of the pixels of a pair with truth that count
 static Mat readJudged(const Scene& scene, const Pair& pair)
 {
-    const cv::Size size = pair.left.size();
     if (pair.protocol == Pair::KITTI)
         return knownPixels(pair.truth);
     if (!scene.nonOccludedMask.empty())
-        return (readOfSize(scene.nonOccludedMask, cv::IMREAD_GRAYSCALE, size) == 255) & knownPixels(pair.truth);
+        return (readOfSize(scene.nonOccludedMask, cv::IMREAD_GRAYSCALE, pair.left.size()) == 255) &
+               knownPixels(pair.truth);
     // The maps of 2001 to 2006 are whole numbers and agree exactly.
     const double tolerance = pair.protocol == Pair::BAD ? 1 : 0;
-    int depth;
-    return nonOccludedPixels(pair.truth, readTruth(scene.rightTruth, size, scene.resolution, depth), tolerance);
+    return nonOccludedPixels(pair.truth, pair.rightTruth, tolerance);
 }
 
 static int numDisparitiesOf(const Scene& scene, const Pair& pair)
@@ -342,6 +341,9 @@ Pair readPair(const Scene& scene)
         pair.truth = readTruth(scene.truth, size, scene.resolution, depth);
         const bool isKitti = scene.isFrame || (depth == CV_16U && !fs::exists(scene.rightTruth));
         pair.protocol = isKitti ? Pair::KITTI : depth == CV_32F ? Pair::BAD : Pair::MIDDLEBURY;
+        // Without a mask, it says what is not occluded; it must be there.
+        if (!isKitti && (scene.nonOccludedMask.empty() || fs::exists(scene.rightTruth)))
+            pair.rightTruth = readTruth(scene.rightTruth, size, scene.resolution, depth);
         pair.judged = readJudged(scene, pair);
         if (isKitti && !scene.nonOccludedTruth.empty())
             pair.judgedNonOccluded = knownPixels(readTruth(scene.nonOccludedTruth, size, String(), depth));

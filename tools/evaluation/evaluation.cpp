@@ -34,33 +34,92 @@ void makeFolder(const String& path)
         fail("cannot make the folder '" + path + "'");
 }
 
+//! What a method made of a pair
+struct Matched
+{
+    Mat disparity;
+    double seconds;
+    Ptr<HDPTreeMatcher> hdp; // empty if it is another matcher
+    Mat confidence;          // of hdp
+};
+
+static Matched match(const Method& method, const Pair& pair, int runs)
+{
+    Matched matched;
+    const Ptr<cv::StereoMatcher> matcher = method.create(pair.disparities);
+    matched.disparity = matchDensely(method, *matcher, pair.left, pair.right, &matched.seconds, runs);
+    matched.hdp = matcher.dynamicCast<HDPTreeMatcher>();
+    if (matched.hdp)
+        matched.hdp->getConfidence(matched.confidence);
+    return matched;
+}
+
+static Score scoreMatched(const Mat& disparity, const Mat& confidence, const Pair& pair)
+{
+    Score score = scoreMap(disparity, pair);
+    if (!confidence.empty() && pair.protocol != Pair::NO_TRUTH)
+        findSparsification(wrongPixels(disparity, pair), pair.judged, confidence, score);
+    return score;
+}
+
+//! Means over the changes
+static void evaluateChanges(const Method& method, const Pair& pair, const EvaluationSettings& settings,
+                            const String& scene, Result& result)
+{
+    const cv::Size size = pair.left.size();
+    std::vector<Score> scores;
+    std::vector<double> seconds;
+    std::vector<std::vector<double>> ratios; // by layer
+    for (const HarmlessChange& change : settings.changes)
+    {
+        const Matched matched = match(method, changePair(change, pair, scene), settings.runs);
+        scores.push_back(
+            scoreMatched(restoreMap(change, matched.disparity, size),
+                         matched.confidence.empty() ? Mat() : restorePicture(change, matched.confidence, size),
+                         truthOfChanged(change, pair)));
+        seconds.push_back(matched.seconds);
+        std::vector<double> ofChange;
+        if (matched.hdp)
+            ofChange = matched.hdp->getFindings().searchRatios;
+        ratios.resize(std::max(ratios.size(), ofChange.size()));
+        for (size_t l = 0; l < ofChange.size(); l++)
+            ratios[l].push_back(ofChange[l]);
+    }
+    result.score = meanScore(scores);
+    result.seconds = meanOf(seconds);
+    for (const std::vector<double>& ofLayer : ratios)
+        result.ratios.push_back(meanOf(ofLayer));
+}
+
 //! Fills one result; may throw.
 static void evaluateMethod(const Method& method, const Pair& pair, const EvaluationSettings& settings,
                            SceneResult& scene, Result& result)
 {
-    const Ptr<cv::StereoMatcher> matcher = method.create(pair.disparities);
-    const Mat disparity = matchDensely(method, *matcher, pair.left, pair.right, &result.seconds, settings.runs);
-    result.score = scoreMap(disparity, pair);
-    const Ptr<HDPTreeMatcher> hdp = matcher.dynamicCast<HDPTreeMatcher>();
-    if (hdp)
+    const bool hasChanges = !settings.changes.empty(), isShown = settings.hasReport || !settings.maps.empty();
+    Matched matched; // the pair as it is, which pictures are of
+    if (!hasChanges || isShown)
+        matched = match(method, pair, hasChanges ? 1 : settings.runs);
+    if (hasChanges)
+        evaluateChanges(method, pair, settings, scene.scene.name, result);
+    else
     {
-        result.ratios = hdp->getFindings().searchRatios;
-        Mat confidence;
-        hdp->getConfidence(confidence);
-        if (pair.protocol != Pair::NO_TRUTH)
-            findSparsification(wrongPixels(disparity, pair), pair.judged, confidence, result.score);
+        result.seconds = matched.seconds;
+        result.score = scoreMatched(matched.disparity, matched.confidence, pair);
+        if (matched.hdp)
+            result.ratios = matched.hdp->getFindings().searchRatios;
     }
     if (!settings.maps.empty())
     {
         const String folder = fs::join(fs::join(settings.maps, method.name), scene.scene.set);
         makeFolder(folder);
-        writeDisparity(fs::join(folder, scene.scene.name + ".png"), disparity);
+        writeDisparity(fs::join(folder, scene.scene.name + ".png"), matched.disparity);
     }
     if (settings.hasReport)
     {
-        scene.maps +=
-            figure(resultPicture(disparity, pair), method.name + ": " + printScore(result.score, pair.protocol) +
-                                                       cv::format(", %.3f s", result.seconds));
+        const Ptr<HDPTreeMatcher>& hdp = matched.hdp;
+        scene.maps += figure(resultPicture(matched.disparity, pair), method.name + ": " +
+                                                                         printScore(result.score, pair.protocol) +
+                                                                         cv::format(", %.3f s", result.seconds));
         if (hdp && hdp->getParams().usePrediction &&
             hdp->getParams().aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES)
             scene.predictions += "<div class=\"figures\">\n" + predictionFigures(method.name, *hdp, pair) + "</div>\n";

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "datasets.hpp"
+#include "harmless_changes.hpp"
 #include "methods.hpp"
 #include "scores.hpp"
 
@@ -45,11 +46,12 @@ struct SceneResult
 struct EvaluationSettings
 {
     std::vector<Method> methods;
-    int numDisparities; // 0: the dataset's
-    int runs;           // of which the shortest time counts
-    int jobs;           // pairs that are matched at a time
-    String maps;        // folder for METHOD/SET/SCENE.png, or empty
-    bool hasReport;     // makes the figures
+    int numDisparities;                  // 0: the dataset's
+    int runs;                            // of which the shortest time counts
+    int jobs;                            // pairs that are matched at a time
+    String maps;                         // folder for METHOD/SET/SCENE.png, or empty
+    bool hasReport;                      // makes the figures
+    std::vector<HarmlessChange> changes; // over which all figures are means; if empty, they are of the pair as it is
 };
 
 //! Makes a folder and those above it; fails if it cannot.

@@ -27,6 +27,7 @@ struct Pair
     Mat left, right;       // CV_8UC3 or CV_16UC1, see readPicture()
     cv::Range disparities; // to be searched
     Mat truth;             // NO_DISPARITY where unknown; empty without truth
+    Mat rightTruth;        // of the right image; may be empty
     Mat judged;            // mask of the pixels that count
     Mat judgedNonOccluded; // those of KITTI that are not occluded; may be empty
 };

@@ -116,4 +116,19 @@ double meanOf(const std::vector<double>& values)
     return count > 0 ? sum / count : NO_SCORE;
 }
 
+Score meanScore(const std::vector<Score>& scores)
+{
+    Score mean;
+    for (double Score::*figure : { &Score::error1, &Score::error2, &Score::badHalf, &Score::bad1, &Score::bad2,
+                                   &Score::bad4, &Score::d1, &Score::d1NonOccluded, &Score::invalid, &Score::average,
+                                   &Score::occluded, &Score::sparsification, &Score::leastSparsification })
+    {
+        std::vector<double> values;
+        for (const Score& score : scores)
+            values.push_back(score.*figure);
+        mean.*figure = meanOf(values);
+    }
+    return mean;
+}
+
 } // namespace hdp_tools

@@ -50,6 +50,9 @@ void findSparsification(const Mat& wrong, const Mat& judged, const Mat& confiden
 //! Mean of the numbers that there are; NO_SCORE if there are none.
 double meanOf(const std::vector<double>& values);
 
+//! Means of each figure
+Score meanScore(const std::vector<Score>& scores);
+
 } // namespace hdp_tools
 
 #endif

@@ -5,71 +5,22 @@
 // The programs as a user calls them: exit status, and what they print and write.
 
 #include "test_precomp.hpp"
-#include "dataset_folder.hpp"
-#include "synthetic_pair.hpp"
+#include "programs.hpp"
 #include "synthetic_video.hpp"
-
-#include <cstdlib>
 
 #ifdef __unix__
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace opencv_test {
-namespace {
-
-struct Execution
-{
-    int status;
-    String output, errors;
-};
-
-String readText(const String& path)
-{
-    std::ifstream file(path.c_str(), std::ios::binary);
-    return String(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-}
-
-//! Runs a program of the build's bin/, by the shell.
-Execution run(const DatasetFolder& folder, const String& command, const String& output = String())
-{
-    const String out = output.empty() ? folder.path("stdout") : output, err = folder.path("stderr");
-    const String line = String(HDP_PROGRAMS) + "/" + command + " >'" + out + "' 2>'" + err + "'";
-    const int status = std::system(line.c_str());
-    const bool exited = status != -1 && WIFEXITED(status);
-    EXPECT_TRUE(exited) << command;
-    return { exited ? WEXITSTATUS(status) : -1, output.empty() ? readText(out) : String(), readText(err) };
-}
-
-//! A pair of 160 x 120 pixels and 32 disparities, and three scenes of it: dataset/half/{a,b,c}
-void writePair(const DatasetFolder& folder)
-{
-    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 21);
-    Mat truth;
-    pair.truth.convertTo(truth, CV_16U, 256);
-    truth.setTo(0, ~pair.visible);
-    for (const char* scene : { "dataset/a/", "dataset/b/", "dataset/c/" })
-    {
-        folder.write(String(scene) + "left.png", pair.left);
-        folder.write(String(scene) + "right.png", pair.right);
-        folder.write(String(scene) + "disp_left.png", truth);
-    }
-}
-
-String pairOf(const DatasetFolder& folder)
-{
-    return " " + folder.path("dataset/a/left.png") + " " + folder.path("dataset/a/right.png") + " --num-disparities=32";
-}
-
-String firstLine(const String& text) { return text.substr(0, text.find('\n')); }
+namespace opencv_test { namespace {
 
 TEST(HDPStereo_Programs, help_and_wrong_arguments)
 {
     const DatasetFolder folder;
     for (const char* program :
          { "hdp_evaluate", "hdp_benchmark", "hdp_train", "hdp_parameters", "hdp_pictures", "hdp_robustness",
-           "hdp_video", "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
+           "hdp_stability", "hdp_video", "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
     {
         SCOPED_TRACE(program);
         const Execution help = run(folder, String(program) + " --help");
@@ -100,6 +51,7 @@ TEST(HDPStereo_Programs, full_disk)
            "hdp_train --layers=2 --max-components=1" + dataset + " -o " + folder.path("model.yml"),
            "hdp_robustness --methods=fast --cases=clean" + dataset, "hdp_parameters --presets=fast --runs=1" + dataset,
            "hdp_video --methods=fast --noise=0 --still=2" + dataset,
+           "hdp_stability --methods=fast --changes=flip" + dataset,
            "hdp_pictures --output=" + folder.root + pair + truth, "example_hdpstereo_hdp_stereo_match" + pair,
            "example_hdpstereo_hdp_own_tree" + pair })
     {
@@ -143,6 +95,70 @@ TEST(HDPStereo_Programs, robustness)
     }
     folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
     EXPECT_EQ(2, run(folder, common + " --cases=clean").status);
+}
+
+TEST(HDPStereo_Programs, stability)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    for (const char* side : { "left.png", "right.png" })
+        folder.write(String("others/street/") + side, cv::imread(folder.path("dataset/a/") + side));
+    const String common = "hdp_stability --num-disparities=32 --methods=fast,bm " + folder.root;
+    const Execution good = run(folder, common + " --confidence");
+    EXPECT_EQ(0, good.status) << good.errors;
+    for (const char* row :
+         { "### Stability of dataset, means of 3 pairs", "### Stability of others, means of 1 pairs",
+           "### D1 of dataset, means of 3 pairs", "\n| fast | - | - | - | - | ", "| change | fast | bm |",
+           "| noise.5 | ", "| gamma.95 | ", "| left8 | ", "| top1 | ", "| mirror | ", "| scale.98 | ", "| bits12 | ",
+           "### Confidence and stability of dataset", "\n| bm | - | - | - | - |\n" })
+        EXPECT_NE(String::npos, good.output.find(row)) << row << good.output;
+    EXPECT_EQ(good.output, run(folder, common + " --confidence --threads=1").output);
+    const Execution few = run(folder, common + " --changes=top3,clean --scenes=a");
+    EXPECT_EQ(0, few.status) << few.errors;
+    EXPECT_NE(String::npos, few.output.find("| clean | **0.00** | **0.00** |")) << few.output;
+    for (const char* bad : { "left", "left1.5", "jpeg0", "flip2", "rain", "noise" })
+    {
+        const Execution wrong = run(folder, common + " --changes=" + bad);
+        EXPECT_EQ(1, wrong.status) << bad;
+        EXPECT_EQ(0u, wrong.errors.find("error: --changes knows no change '" + String(bad) + "'")) << wrong.errors;
+    }
+    folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
+    EXPECT_EQ(2, run(folder, common + " --changes=flip").status);
+}
+
+//! The mean over changes is that of runs with one change each.
+TEST(HDPStereo_Programs, means_over_changes)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String common = "hdp_evaluate --num-disparities=32 " + folder.path("dataset") + " --methods=fast ";
+    const auto errorOf = [&](const String& changes) {
+        const Execution result = run(folder, common + changes + " --csv=" + folder.path("tables.csv"));
+        EXPECT_EQ(0, result.status) << result.errors;
+        const String csv = readText(folder.path("tables.csv"));
+        const size_t row = csv.find("\ndataset,a,fast,");
+        return row == String::npos ? -1. : std::stod(csv.substr(row + 16)); // err>=1
+    };
+    const double clean = errorOf(""), noise = errorOf("--changes=noise4"), flip = errorOf("--changes=flip");
+    EXPECT_GT(noise, clean);
+    EXPECT_EQ(clean, errorOf("--changes=clean"));
+    EXPECT_NEAR((noise + flip) / 2, errorOf("--changes=noise4,flip"), 1e-4);
+
+    const String shown = " --maps=" + folder.path("maps") + " --report=" + folder.path("report");
+    const Execution all = run(folder, common + "--changes --scenes=b" + shown);
+    EXPECT_EQ(0, all.status) << all.errors;
+    EXPECT_EQ(0u, all.output.find("Means over the changes noise.5, ")) << all.output;
+    const String changed = readText(folder.path("maps/fast/dataset/b.png"));
+    EXPECT_EQ(0, run(folder, common + "--scenes=b" + shown).status);
+    EXPECT_TRUE(changed == readText(folder.path("maps/fast/dataset/b.png"))); // of the pair as it is
+    EXPECT_EQ(1, run(folder, common + "--changes=rain").status);
+
+    const Execution parameters =
+        run(folder, "hdp_parameters --runs=1 --presets=fast --changes=left2,mirror " + folder.path("dataset"));
+    EXPECT_EQ(0, parameters.status) << parameters.errors;
+    EXPECT_NE(String::npos,
+              parameters.output.find("| dataset: PRESET_FAST with | average error, pixels | D1 % | time |"));
+    EXPECT_NE(String::npos, parameters.output.find("| blockSize = 5 | "));
 }
 
 TEST(HDPStereo_Programs, video)
@@ -488,7 +504,6 @@ TEST(HDPStereo_Programs, live)
     EXPECT_EQ(1, run(folder, "example_hdpstereo_hdp_live no/such/video.avi --no-gui").status);
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test
 
 #endif
