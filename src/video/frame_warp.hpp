@@ -34,14 +34,17 @@ struct FrameWarp
     //! them at from.
     template <typename Take> void forEachRun(int y, const Take& take) const
     {
-        for (int x = 0; x < size.width; x += block)
+        const int width = size.width, lastX = width - 1, lastY = size.height - 1;
+        const Vec2s* const row = shifts.ptr<Vec2s>(y / block);
+        for (int x = 0; x < width; x += block)
         {
-            const int fromX = x + shift(x, y)[0];
-            if (fromX >= 0 && fromX + block <= size.width && x + block <= size.width)
-                take(x, Point(fromX, (*this)(x, y).y), +block);
+            const Vec2s s = row[x / block];
+            const int fromX = x + s[0], fromY = std::min(std::max(y + s[1], 0), lastY);
+            if (fromX >= 0 && fromX + block <= width && x + block <= width)
+                take(x, Point(fromX, fromY), +block);
             else
-                for (int i = x; i < std::min(x + block, size.width); ++i)
-                    take(i, (*this)(i, y), 1);
+                for (int i = x; i < std::min(x + block, width); ++i)
+                    take(i, Point(std::min(std::max(i + s[0], 0), lastX), fromY), 1);
         }
     }
 

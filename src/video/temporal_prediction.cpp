@@ -3,6 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "temporal_prediction.hpp"
+#include "temporal_prediction.simd.hpp"
+#include "video/temporal_prediction.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
 
 #include "../base/grey_levels.hpp"
 #include "../pair/image_pyramid.hpp"
@@ -14,6 +17,8 @@ namespace {
 typedef VideoFollowing T;
 
 const int cell = FrameMemory::cell;
+
+HDP_DISPATCH(sumSquares)
 
 void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
 {
@@ -75,6 +80,88 @@ bool isCut(const std::vector<Mat>& greyBefore, const FramePrediction& p)
     return 4 * known < (int64)now.total() || (change > T::cutNoise * known && 100 * change > T::cutShare * contrast);
 }
 
+//! The median of CV_8UC1
+int medianLevel(const Mat& image)
+{
+    int counts[256] = { 0 };
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+            ++counts[image.ptr(y)[x]];
+    int level = 0;
+    for (int64 sum = counts[0]; 2 * sum < (int64)image.total(); sum += counts[level])
+        ++level;
+    return level;
+}
+
+//! Rows of an image around one, the nearest ones where there are none
+void rowsAround(const Mat& image, int y, int radius, const uchar** rows)
+{
+    for (int dy = -radius; dy <= radius; ++dy)
+        *rows++ = image.ptr(std::min(std::max(y + dy, 0), image.rows - 1));
+}
+
+//! Sums over the squares around the pixels of a row
+class SquareSums
+{
+public:
+    explicit SquareSums(int width) : columns_(width + 2 * maxRadius), sums_(width) {}
+
+    const ushort* operator()(const Mat& image, int y, int radius)
+    {
+        const uchar* rows[2 * maxRadius + 1];
+        rowsAround(image, y, radius, rows);
+        dispatched::sumSquares(rows, radius, image.cols, columns_.data() + maxRadius, sums_.data());
+        return sums_.data();
+    }
+
+private:
+    enum
+    {
+        maxRadius = 2
+    };
+    std::vector<ushort> columns_, sums_;
+};
+
+//! How far each cell is from the mean around it
+void findContrast(const Mat& image, Mat& contrast)
+{
+    contrast.create(image.size(), CV_8U);
+    parallel_for_(Range(0, image.rows), [&](const Range& range) {
+        SquareSums sumsOf(image.cols);
+        for (int y = range.start; y < range.end; ++y)
+        {
+            const uchar* levels = image.ptr(y);
+            const ushort* sums = sumsOf(image, y, 2);
+            uchar* contrasts = contrast.ptr(y);
+            for (int x = 0; x < image.cols; ++x)
+                contrasts[x] = (uchar)(std::abs(25 * levels[x] - sums[x]) / 25);
+        }
+    });
+}
+
+//! The last frame as this one would show it if nothing moved but the camera: half a cell is the mean of two.
+void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
+{
+    static_assert(cell == 2, "Pixels are half cells.");
+    const int endX = cell * before.cols, lastX = endX - cell, lastY = cell * before.rows - cell;
+    warped.create(before.size(), CV_8U);
+    parallel_for_(Range(0, before.rows), [&](const Range& range) {
+        for (int y = range.start; y < range.end; ++y)
+        {
+            uchar* const row = warped.ptr(y);
+            warp.forEachRun(cell * y, [&](int x, const Point& from, int count) {
+                const int fromY = std::min(from.y, lastY);
+                const uchar *above = before.ptr(fromY / cell), *below = before.ptr((fromY + 1) / cell);
+                for (int k = x % cell; k < count && x + k < endX; k += cell)
+                {
+                    const int fromX = std::min(from.x + k, lastX), left = fromX / cell, right = (fromX + 1) / cell;
+                    row[(x + k) / cell] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) >> 2);
+                }
+            });
+        }
+    });
+}
+
 } // namespace
 
 void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
@@ -99,6 +186,36 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
     }
     findSources(last.grey[0], p.grey[0], p.motion.isStill ? nullptr : &p.warp, scratch, p.sources);
     p.verdict = CONTINUED;
+}
+
+void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch, Mat& sources)
+{
+    if (warp)
+        warpGrey(before, *warp, scratch.warped);
+    absdiff(now, warp ? scratch.warped : before, scratch.change);
+    findContrast(now, scratch.contrast);
+    const int noise = TemporalSources::minNoise + TemporalSources::noiseFactor * medianLevel(scratch.change);
+    sources.create(now.size(), CV_8U);
+    parallel_for_(Range(0, now.rows), [&](const Range& range) {
+        SquareSums changesOf(now.cols), contrastsOf(now.cols), sumsBefore(now.cols), sumsNow(now.cols);
+        for (int y = range.start; y < range.end; ++y)
+        {
+            const ushort *changes = changesOf(scratch.change, y, 1), *contrasts = contrastsOf(scratch.contrast, y, 2);
+            uchar* ofRow = sources.ptr(y);
+            for (int x = 0; x < now.cols; ++x)
+                ofRow[x] = changes[x] <= 9 * noise ||
+                           100 * 25 * changes[x] <= TemporalSources::contrastShare * 9 * contrasts[x];
+            if (!warp)
+                continue; // 1 is SAME_PLACE
+            const ushort *there = sumsBefore(before, y, 1), *here = sumsNow(now, y, 1);
+            for (int x = 0; x < now.cols; ++x)
+            {
+                const bool isSame = std::abs(here[x] - there[x]) <= 9 * TemporalSources::stillness / 2;
+                const bool isMoved = ofRow[x] && warp->isKnown(cell * x, cell * y);
+                ofRow[x] = (uchar)((isSame ? SAME_PLACE : 0) | (isMoved ? MOVED_PLACE : 0));
+            }
+        }
+    });
 }
 
 }}} // namespace cv::stereo::hdp

@@ -4,7 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_TEMPORAL_PREDICTION_HPP
 #define OPENCV_HDPSTEREO_TEMPORAL_PREDICTION_HPP
 
-#include "temporal_sources.hpp"
+#include "frame_memory.hpp"
+#include "frame_warp.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -16,6 +17,27 @@ struct VideoFollowing
         cutShare = 60, // percent of its contrast by which a coarse image changes at a cut
         cutNoise = 4   // grey levels; a coarse image that changes by no more on average is no cut
     };
+};
+
+//! The constants of findSources()
+struct TemporalSources
+{
+    enum
+    {
+        stillness = 5,      // halves of a grey level by which the mean of a cell that stands still changes at most
+        minNoise = 3,       // grey levels by which what is the same changes at most if the images have no noise
+        noiseFactor = 4,    // how much more that is with noise, in medians of the changes of all cells
+        contrastShare = 70, // percent of the contrast around by which what is the same changes at most if that is more
+        maxDistance = 3 // from the disparity of one source to that of the other, in pixels of the image: beyond, one of
+                        // them must be wrong
+    };
+};
+
+//! What a cell may take from the last frame
+enum TemporalSource
+{
+    SAME_PLACE = 1, // the image stands still
+    MOVED_PLACE = 2 // where the camera's motion leads, the last frame looks the same
 };
 
 //! What the last frame tells of this one before it is matched
@@ -45,6 +67,16 @@ scene.
 @param prediction Receives all that is known. */
 CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
                              FramePrediction& prediction);
+
+/** Finds what each cell may take from the last frame: what looks different where the motion leads, by more than noise
+and by about the contrast, is something else. Changes and contrasts are means over the squares around a cell.
+@param before FrameMemory::grey[0] of the last frame.
+@param now That of this frame.
+@param warp Where its pixels were; none if the camera stands still: what looks the same is at the same place then.
+@param scratch Memory to work in.
+@param sources CV_8UC1, receives TemporalSource of each cell. */
+CV_EXPORTS void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch,
+                            Mat& sources);
 
 }}} // namespace cv::stereo::hdp
 

@@ -9,16 +9,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of preferLastFrame()
-struct TemporalPrior
-{
-    enum
-    {
-        maxPenalty = 6 * CostVolume::scale,       // of disparities other than the predicted one, in units of the volume
-        maxPenaltyOfMeans = 3 * CostVolume::scale // the same for means: they vary less, and contradict more clearly
-    };
-};
-
 //! Whether the last frame predicts disparities: not before a second pair has agreed with the first one, nor if nothing
 //! moves, as joinLastFrame() keeps disparities then.
 CV_EXPORTS bool hasPrior(const FrameMemory& last, const FramePrediction& prediction);
