@@ -158,7 +158,7 @@ inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch,
 //! Continues the surface that begins at this pixel to the left border, half as steep as it is: most surfaces are bent.
 inline void continueSurface(ushort* disparity, const uchar* isShown, int begin, int width, int maxDisparity)
 {
-    const int last = std::min(width, begin + std::min(std::max(begin, +minSlopeColumns), +maxSlopeColumns));
+    const int last = std::min(width, begin + clamped(begin, minSlopeColumns, maxSlopeColumns));
     int end = begin + 1;
     while (end < last && isShown[end] && !isStep(disparity, end))
         ++end;
@@ -172,7 +172,7 @@ inline void continueSurface(ushort* disparity, const uchar* isShown, int begin, 
     for (int x = 0; x < begin; ++x)
     {
         const int fall = std::abs(rise) * (begin - x), steps = (fall + scale / 2) / scale;
-        disparity[x] = (ushort)std::min(std::max(first + (rise > 0 ? -steps : steps), 0), maxDisparity);
+        disparity[x] = (ushort)clamped(first + (rise > 0 ? -steps : steps), 0, maxDisparity);
     }
 }
 
