@@ -25,8 +25,8 @@ const int nearBorder = 3; // columns of the right image, from 1 on, that count a
 // column.
 const int minPerBest = 7;
 
-// A surface hides what is on its left if one pixel in minPerVisible at most is visible, and one in minPerShown at most is
-// not hidden by nearer ones.
+// A surface hides what is on its left if one pixel in minPerVisible at most is visible, and one in minPerShown at most
+// is not hidden by nearer ones.
 const int minPerVisible = 8, minPerShown = 4;
 static_assert(minPerVisible % minPerShown == 0, "mapToRight() divides them");
 
@@ -119,8 +119,8 @@ inline int findBorder(const ushort* disparity, const OcclusionScratch& scratch, 
     return border;
 }
 
-/** Where the part of the row begins that the right image shows, if matches by chance are the best ones of their columns:
-at the last surface that hides what is on its left, whatever the residuals are.
+/** Where the part of the row begins that the right image shows, if matches by chance are the best ones of their
+columns: at the last surface that hides what is on its left, whatever the residuals are.
 @param border What findBorder() has found.
 @param limit RowLimits::hiding. */
 inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int width, int blank, int border,

@@ -31,8 +31,8 @@ inline int distanceOf(const uchar* a, const uchar* b)
     return (int)v_reduce_sad(v_load(a), v_load(b)); // of 16 bytes
 }
 
-//! The descriptors of the pixels of an image that are far enough from its border, in even rows: those of points and their
-//! corners.
+//! The descriptors of the pixels of an image that are far enough from its border, in even rows: those of points and
+//! their corners.
 void describe(const Mat& grey, SupportPointBuffers& buffers, Mat& descriptors)
 {
     Mat &horizontal = buffers.horizontal, &vertical = buffers.vertical;
