@@ -28,8 +28,19 @@ compiler, in groups of 8 that are unrolled. */
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! |a - b| of numbers without sign, in their own lanes; always inlined, so that no instruction set has a symbol of it
+// What follows is always inlined, so that no instruction set has a symbol of it.
+
+//! |a - b| of numbers without sign, in their own lanes
 template <typename T> CV_ALWAYS_INLINE T difference(T a, T b) { return (T)(std::max(a, b) - std::min(a, b)); }
+
+//! condition ? a : b, condition being 0 or 1, without a branch
+CV_ALWAYS_INLINE int choose(int condition, int a, int b) { return b ^ ((a ^ b) & -condition); }
+
+//! The value, or the limit that it is beyond
+template <typename T> CV_ALWAYS_INLINE T clamped(T value, T min, T max)
+{
+    return std::min(std::max(value, min), max);
+}
 
 }}} // namespace cv::stereo::hdp
 

@@ -95,7 +95,7 @@ bool CostVolume::contradicts(int pixel, double disparity) const
     if (count <= 0)
         return false;
     const uchar* const all = &costs[own.start()];
-    const uchar cost = all[std::min(std::max(nearest, 0), count - 1)];
+    const uchar cost = all[clamped(nearest, 0, count - 1)];
     uchar least = cost;
     HDP_VECTORIZED for (int k = 0; k < count; ++k) least = std::min(least, all[k]);
     return cost - least > mostContradiction;
@@ -110,11 +110,11 @@ void CostVolume::prefer(int pixel, double disparity, int largest)
     for (int r = 0; r < own.rows(); ++r, raised += row)
     {
         // Farther from the row, all of it rises by the largest
-        const short from = (short)std::min(std::max(d - r * row * scale, -largest), row * scale + largest);
+        const short from = (short)clamped(d - r * row * scale, -largest, row * scale + largest);
         HDP_VECTORIZED for (short k = 0; k < row; ++k)
         {
             const short distance = (short)(k * scale - from), opposite = (short)-distance;
-            const short rise = std::min(std::max(distance, opposite), most);
+            const short rise = clamped(distance, opposite, most);
             raised[k] = (uchar)std::min((short)(raised[k] + rise), (short)255);
         }
     }

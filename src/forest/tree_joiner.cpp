@@ -21,8 +21,8 @@ bool isFrozen(int parentOfRoot) { return parentOfRoot < -frozenMark; }
 /** Tries edges in a stripe of rows.
 
 An edge to another stripe is left undecided, and freezes its tree: from its turn on, what the tree would be joined with
-is not known. An edge to a frozen tree is left undecided, too, and freezes the other tree. So each decision sees the same
-trees as without stripes. */
+is not known. An edge to a frozen tree is left undecided, too, and freezes the other tree. So each decision sees the
+same trees as without stripes. */
 class StripeJoiner
 {
 public:

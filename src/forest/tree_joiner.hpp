@@ -30,8 +30,8 @@ struct JoinerStripe
     std::vector<int> frozenRoots;    // of the trees that must not grow until then
 };
 
-/** Kruskal's algorithm: tries one edge after the other in the order of Rule 1, and joins the trees at its ends if Rule 2
-and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the image side by side; the trees and their
+/** Kruskal's algorithm: tries one edge after the other in the order of Rule 1, and joins the trees at its ends if Rule
+2 and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the image side by side; the trees and their
 roots are those of trying one edge after the other, for any number of stripes.
 @param strategy Rule 1 and Rule 2.
 @param weights From weighEdges().

@@ -6,6 +6,7 @@
 
 #include "../base/disparity_units.hpp"
 #include "../base/tunable.hpp"
+#include "../base/vectorized.hpp"
 #include "tree_walk.hpp"
 #include <numeric>
 
@@ -179,7 +180,7 @@ private:
     int costAt(const Sample& sample, double disparity) const
     {
         const int first = interval_.first, last = interval_.last;
-        return sample.costs[cvRound(std::min(std::max(disparity, (double)first), (double)last)) - first];
+        return sample.costs[cvRound(clamped(disparity, (double)first, (double)last)) - first];
     }
 
     static const int phases = 8; // of the samples

@@ -16,14 +16,14 @@ enum Visibility
     OUTSIDE   // nothing, it ends before
 };
 
-//! Marks the pixels as invalid whose disparity differs by more than maxDiff pixels from the maximum of those that map to
-//! the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
+//! Marks the pixels as invalid whose disparity differs by more than maxDiff pixels from the maximum of those that map
+//! to the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
 CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);
 
 /** Left-right check of a layer's disparities: which pixels are stable.
 @param disparity CV_16UC1, a disparity map.
-@param maxDiff A pixel is stable if the maximum of the disparities that map to its column of the right image is larger by
-maxDiff pixels at most. One that maps to no column is not.
+@param maxDiff A pixel is stable if the maximum of the disparities that map to its column of the right image is larger
+by maxDiff pixels at most. One that maps to no column is not.
 @param stable Receives CV_8UC1, 255 where stable, else 0. */
 CV_EXPORTS void findStable(const Mat& disparity, int maxDiff, Mat& stable);
 

@@ -7,6 +7,7 @@
 #include "median_filter.simd.hpp"
 #include "map/median_filter.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -29,7 +30,7 @@ void medianDisparity(const Mat& disparity, int size, Mat& filtered)
         for (int y = range.start; y < range.end; ++y)
         {
             for (int i = 0; i < size; ++i)
-                rows[i] = disparity.ptr<ushort>(std::min(std::max(y + i - radius, 0), disparity.rows - 1));
+                rows[i] = disparity.ptr<ushort>(clamped(y + i - radius, 0, disparity.rows - 1));
             dispatched::medianRow(rows.data(), size, width, sorted.data(), filtered.ptr<ushort>(y));
         }
     });

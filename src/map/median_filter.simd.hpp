@@ -91,11 +91,11 @@ template <> struct Forgetful<3>
 };
 
 // The median of a window of n x n, sorted along rows (i) and columns (j): element (i, j) is not smaller than the
-// (i + 1) (j + 1) elements above and on its left, itself among them, and not larger than the (n - i) (n - j) below and on
-// its right. If one of the two is more than half of the window, the element cannot be the median but by being equal to
-// it: what is near the first and the last corner drops out. So does the smaller of two elements if those that are not
-// smaller than either are more than half of the window, and the larger of two the other way round. As many drop out below
-// the median as above it, so it is the median of those that remain.
+// (i + 1) (j + 1) elements above and on its left, itself among them, and not larger than the (n - i) (n - j) below and
+// on its right. If one of the two is more than half of the window, the element cannot be the median but by being equal
+// to it: what is near the first and the last corner drops out. So does the smaller of two elements if those that are
+// not smaller than either are more than half of the window, and the larger of two the other way round. As many drop out
+// below the median as above it, so it is the median of those that remain.
 
 inline short medianOfSorted(const short (&d)[3][3]) { return medianOfThree(d[0][2], d[1][1], d[2][0]); }
 

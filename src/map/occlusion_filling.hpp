@@ -31,12 +31,12 @@ pixels that map to one column of the right image the one with the lowest residua
 another one, and those that map to no column, are not. Nor are single pixels between two that are not, nor what is left
 of a surface that begins at the border of the right image: the last run of four pixels it shows, without steps, of which
 the first one is in column 0, 1 or 2; or one that is nearer than what is before it, if nearer pixels hide three quarters
-of that from the right image, or it maps to no column, and an eighth at most is visible in columns that are not blank. The
-surface is continued to the left border, half as steep as its first columns are.
+of that from the right image, or it maps to no column, and an eighth at most is visible in columns that are not blank.
+The surface is continued to the left border, half as steep as its first columns are.
 @param disparity CV_16UC1, a disparity map; changed.
 @param residual Matching costs, CV_8UC1.
-@param right Grey levels of the right image, CV_16UC1, see greyLevels(): columns on its left are blank that are black, as
-rectification leaves them. None if empty. */
+@param right Grey levels of the right image, CV_16UC1, see greyLevels(): columns on its left are blank that are black,
+as rectification leaves them. None if empty. */
 CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right = Mat());
 
 }}} // namespace cv::stereo::hdp

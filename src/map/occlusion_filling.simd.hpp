@@ -25,8 +25,8 @@ const int nearBorder = 3; // columns of the right image, from 1 on, that count a
 // column.
 const int minPerBest = 7;
 
-// A surface hides what is on its left if one pixel in minPerVisible at most is visible, and one in minPerShown at most is
-// not hidden by nearer ones.
+// A surface hides what is on its left if one pixel in minPerVisible at most is visible, and one in minPerShown at most
+// is not hidden by nearer ones.
 const int minPerVisible = 8, minPerShown = 4;
 static_assert(minPerVisible % minPerShown == 0, "mapToRight() divides them");
 
@@ -119,8 +119,8 @@ inline int findBorder(const ushort* disparity, const OcclusionScratch& scratch, 
     return border;
 }
 
-/** Where the part of the row begins that the right image shows, if matches by chance are the best ones of their columns:
-at the last surface that hides what is on its left, whatever the residuals are.
+/** Where the part of the row begins that the right image shows, if matches by chance are the best ones of their
+columns: at the last surface that hides what is on its left, whatever the residuals are.
 @param border What findBorder() has found.
 @param limit RowLimits::hiding. */
 inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int width, int blank, int border,
@@ -158,7 +158,7 @@ inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch,
 //! Continues the surface that begins at this pixel to the left border, half as steep as it is: most surfaces are bent.
 inline void continueSurface(ushort* disparity, const uchar* isShown, int begin, int width, int maxDisparity)
 {
-    const int last = std::min(width, begin + std::min(std::max(begin, +minSlopeColumns), +maxSlopeColumns));
+    const int last = std::min(width, begin + clamped(begin, minSlopeColumns, maxSlopeColumns));
     int end = begin + 1;
     while (end < last && isShown[end] && !isStep(disparity, end))
         ++end;
@@ -172,7 +172,7 @@ inline void continueSurface(ushort* disparity, const uchar* isShown, int begin, 
     for (int x = 0; x < begin; ++x)
     {
         const int fall = std::abs(rise) * (begin - x), steps = (fall + scale / 2) / scale;
-        disparity[x] = (ushort)std::min(std::max(first + (rise > 0 ? -steps : steps), 0), maxDisparity);
+        disparity[x] = (ushort)clamped(first + (rise > 0 ? -steps : steps), 0, maxDisparity);
     }
 }
 

@@ -21,9 +21,9 @@ struct ThinStructures
     };
 };
 
-/** Gives back what the median removed although it is more than noise: a pixel takes its disparity from before the median
-if this is nearer by minDistance, and if minShare of the pixels in the window around it, as far as that is inside the
-image, had the same disparity but for maxDifference.
+/** Gives back what the median removed although it is more than noise: a pixel takes its disparity from before the
+median if this is nearer by minDistance, and if minShare of the pixels in the window around it, as far as that is inside
+the image, had the same disparity but for maxDifference.
 @param unfiltered The map before the median, CV_16UC1.
 @param disparity The map after the median. */
 CV_EXPORTS void restoreThinStructures(const Mat& unfiltered, Mat& disparity);

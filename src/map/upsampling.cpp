@@ -15,7 +15,7 @@ void upsampleDisparity(const Mat& upper, Size size, Mat& disparity)
     parallel_for_(Range(0, size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
-            const auto clampRow = [&](int row) { return std::min(std::max(row, 0), upper.rows - 1); };
+            const auto clampRow = [&](int row) { return clamped(row, 0, upper.rows - 1); };
             const ushort* own = upper.ptr<ushort>(clampRow(y / 2));
             const ushort* beside = upper.ptr<ushort>(clampRow(y % 2 ? y / 2 + 1 : y / 2 - 1));
             ushort* row = disparity.ptr<ushort>(y);

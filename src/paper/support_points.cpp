@@ -4,63 +4,142 @@
 #include "../precomp.hpp"
 #include "support_points.hpp"
 
-#include "support_points.simd.hpp"
-#include "paper/support_points.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
+#include "opencv2/core/hal/intrin.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-typedef SupportPointGrid Grid;
+// In pixels but where it is said
+const int spacing = 4;
+const int corner = 2;              // descriptors are compared at (+-corner, +-corner) of a point
+const int reach = 3;               // of a descriptor: 2 for its samples, 1 for their gradients
+const int margin = corner + reach; // of a point to the border
+const int neighbourhood = 4;       // of points that support one another, in grid places
+const int descriptorSize = 16;
 
-// Parts of the grid that are matched as a whole: long runs of rows share their corners, and what is kept of few columns
-// stays in the cache.
-const int rowsAtOnce = 16, columnsAtOnce = 32;
+const int minRange = 10; // a point with fewer possible disparities has no reliable match
+const int minTexture = 10;
+const float uniqueness = 0.95f;
+const int maxLeftRightDifference = 2;
+const int maxNeighbourDifference = 4;
+const int minSupporters = 4;
 
-HDP_DISPATCH(sobelGradients)
-HDP_DISPATCH(matchPoints)
-HDP_DISPATCH(keepSupported)
-
-//! The gradients of an image, or of it mirrored
-void prepareGradients(const Mat& grey, bool mirrored, Mat& horizontal, Mat& vertical)
+//! The L1 distance of two descriptors
+inline int distanceOf(const uchar* a, const uchar* b)
 {
-    horizontal.create(grey.rows, grey.cols + Grid::lanes, CV_8U);
-    vertical.create(horizontal.size(), CV_8U);
-    parallel_for_(Range(1, std::max(grey.rows - 1, 1)), [&](const Range& rows) { // no descriptor reaches the others
-        for (int y = rows.start; y < rows.end; ++y)
-            dispatched::sobelGradients(grey.ptr(y - 1), grey.ptr(y), grey.ptr(y + 1), grey.cols, horizontal.ptr(y),
-                                       vertical.ptr(y));
-        if (mirrored)
-            for (const Mat& gradients : { horizontal, vertical })
+    return (int)v_reduce_sad(v_load(a), v_load(b)); // of 16 bytes
+}
+
+//! The descriptors of the pixels of an image that are far enough from its border, in even rows: those of points and
+//! their corners.
+void describe(const Mat& grey, SupportPointBuffers& buffers, Mat& descriptors)
+{
+    Mat &horizontal = buffers.horizontal, &vertical = buffers.vertical;
+    // A quarter, rounded down, around 128
+    Sobel(grey, buffers.derivative, CV_16S, 1, 0);
+    buffers.derivative.convertTo(horizontal, CV_8U, 0.25, 128 - 0.375);
+    Sobel(grey, buffers.derivative, CV_16S, 0, 1);
+    buffers.derivative.convertTo(vertical, CV_8U, 0.25, 128 - 0.375);
+    descriptors.create((grey.rows + 1) / 2, grey.cols * descriptorSize, CV_8U);
+    parallel_for_(Range(0, descriptors.rows), [&](const Range& rows) {
+        for (int y = 2 * rows.start; y < 2 * rows.end; y += 2)
+        {
+            if (y < reach || y >= grey.rows - reach)
+                continue;
+            const ptrdiff_t step = horizontal.step;
+            for (int x = reach; x < grey.cols - reach; ++x)
             {
-                Mat image = gradients(rows, Range(0, grey.cols));
-                flip(image, image, 1);
+                const uchar *h = horizontal.ptr(y) + x, *v = vertical.ptr(y) + x;
+                const uchar samples[descriptorSize] = { h[-2 * step], h[-step - 2], h[-step],    h[-step + 2],
+                                                        h[-1],        h[0],         h[0],        h[1],
+                                                        h[step - 2],  h[step],      h[step + 2], h[2 * step],
+                                                        v[-step],     v[-1],        v[1],        v[step] };
+                std::copy(samples, samples + descriptorSize, descriptors.ptr(y / 2) + x * descriptorSize);
             }
+        }
     });
 }
 
-//! Matches all points that are far enough from the border.
-void matchGrid(const GradientPair& gradients, int height, int numDisparities, Mat& matches)
+//! Matches points of one image with the other one.
+class PointMatcher
 {
-    const int first = (Grid::margin + Grid::spacing - 1) / Grid::spacing;
-    const int lastRow = (height - 1 - Grid::margin) / Grid::spacing;
-    const int lastColumn = (gradients.width - 1 - Grid::margin) / Grid::spacing;
-    if (std::min(height, gradients.width) <= 2 * Grid::margin || lastRow < first || lastColumn < first)
-        return;
-    const auto matchParts = [&](const Range& parts) {
-        std::vector<short> buffer(Grid::bufferSize(columnsAtOnce, numDisparities));
-        for (int part = parts.start; part < parts.end; ++part)
+public:
+    PointMatcher(const Mat (&descriptors)[2], Size size, int numDisparities)
+        : descriptors_(descriptors), size_(size), numDisparities_(numDisparities)
+    {
+    }
+
+    //! The disparity of a point of the left image whose match is unique and leads back to it, or -1
+    int match(int x, int y) const
+    {
+        const int disparity = bestDisparity(0, x, y);
+        if (disparity < 0)
+            return -1;
+        const int back = bestDisparity(1, x - disparity, y);
+        return back >= 0 && std::abs(back - disparity) <= maxLeftRightDifference ? disparity : -1;
+    }
+
+private:
+    const uchar* descriptor(int side, int x, int y) const { return descriptors_[side].ptr(y / 2) + x * descriptorSize; }
+
+    //! The disparity of a point of the left (side 0) or right image, or -1 if it has no unique match
+    int bestDisparity(int side, int x, int y) const
+    {
+        if (x < margin || x >= size_.width - margin || y < margin || y >= size_.height - margin)
+            return -1;
+        const int last = std::min(numDisparities_ - 1, side == 0 ? x - margin : size_.width - 1 - margin - x);
+        if (last < minRange || !hasTexture(descriptor(side, x, y)))
+            return -1;
+        const uchar *own[4], *others[4];
+        for (int i = 0; i < 4; ++i)
         {
-            const int top = first + part * rowsAtOnce;
-            const Range rows(top, std::min(top + rowsAtOnce, lastRow + 1));
-            for (int left = first; left <= lastColumn; left += columnsAtOnce)
-                dispatched::matchPoints(gradients, numDisparities, rows,
-                                        Range(left, std::min(left + columnsAtOnce, lastColumn + 1)), buffer.data(),
-                                        matches.ptr<short>() + Grid::neighbourhood, matches.step1());
+            const int u = x + (i % 2 ? corner : -corner), v = y + (i < 2 ? -corner : corner);
+            own[i] = descriptor(side, u, v);
+            others[i] = descriptor(1 - side, u, v);
         }
-    };
-    parallel_for_(Range(0, (lastRow - first) / rowsAtOnce + 1), matchParts);
+        const ptrdiff_t next = side == 0 ? -descriptorSize : descriptorSize;
+        int lowest = INT_MAX, second = INT_MAX, best = -1; // second: of those that were not the lowest so far
+        for (int d = 0; d <= last; ++d)
+        {
+            int sum = 0;
+            for (int i = 0; i < 4; ++i)
+                sum += distanceOf(own[i], others[i] + d * next);
+            if (sum < lowest)
+            {
+                lowest = sum;
+                best = d;
+            }
+            else
+                second = std::min(second, sum);
+        }
+        return second < INT_MAX && (float)lowest < uniqueness * (float)second ? best : -1;
+    }
+
+    static bool hasTexture(const uchar* descriptor)
+    {
+        const uchar none[descriptorSize] = { 128, 128, 128, 128, 128, 128, 128, 128,
+                                             128, 128, 128, 128, 128, 128, 128, 128 };
+        return distanceOf(descriptor, none) >= minTexture;
+    }
+
+    const Mat (&descriptors_)[2];
+    Size size_;
+    int numDisparities_;
+};
+
+//! Whether enough of the points around one, itself among them, have its disparity
+bool isSupported(const Mat& matches, int y, int x)
+{
+    const int own = matches.at<short>(y, x);
+    int supporters = 0;
+    for (int v = std::max(y - neighbourhood, 0); v <= std::min(y + neighbourhood, matches.rows - 1); ++v)
+        for (int u = std::max(x - neighbourhood, 0); u <= std::min(x + neighbourhood, matches.cols - 1); ++u)
+        {
+            const int other = matches.at<short>(v, u);
+            supporters += other >= 0 && std::abs(other - own) <= maxNeighbourDifference;
+        }
+    return supporters >= minSupporters;
 }
 
 } // namespace
@@ -68,33 +147,27 @@ void matchGrid(const GradientPair& gradients, int height, int numDisparities, Ma
 void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, SupportPointBuffers& buffers, Mat& points)
 {
     const Mat images[] = { left, right };
-    GradientPair gradients;
     for (int side = 0; side < 2; ++side)
     {
         if (left.channels() == 3)
-            cvtColor(images[side], buffers.grey[side], COLOR_BGR2GRAY);
-        prepareGradients(left.channels() == 3 ? buffers.grey[side] : images[side], side == 1, buffers.horizontal[side],
-                         buffers.vertical[side]);
-        gradients.horizontal[side] = buffers.horizontal[side].ptr();
-        gradients.vertical[side] = buffers.vertical[side].ptr();
+            cvtColor(images[side], buffers.grey, COLOR_BGR2GRAY);
+        describe(left.channels() == 3 ? buffers.grey : images[side], buffers, buffers.descriptors[side]);
     }
-    gradients.step = buffers.horizontal[0].step;
-    gradients.width = left.cols;
-
-    const int rows = (left.rows + Grid::spacing - 1) / Grid::spacing;
-    const int cols = (left.cols + Grid::spacing - 1) / Grid::spacing;
+    const PointMatcher matcher(buffers.descriptors, left.size(), numDisparities);
     Mat& matches = buffers.matches;
-    matches.create(rows, cols + 2 * Grid::neighbourhood, CV_16S);
-    matches.setTo(Scalar::all(Grid::noMatch));
-    matchGrid(gradients, left.rows, numDisparities, matches);
-
-    points.create(rows, cols, CV_16S);
-    parallel_for_(Range(0, rows), [&](const Range& range) {
-        for (int y = range.start; y < range.end; ++y)
-            dispatched::keepSupported(matches.ptr<short>(y) + Grid::neighbourhood, (ptrdiff_t)matches.step1(),
-                                      std::min(y, +Grid::neighbourhood), std::min(rows - 1 - y, +Grid::neighbourhood),
-                                      cols, points.ptr<short>(y));
+    matches.create((left.rows + spacing - 1) / spacing, (left.cols + spacing - 1) / spacing, CV_16S);
+    points.create(matches.size(), CV_16S);
+    parallel_for_(Range(0, matches.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            for (int x = 0; x < matches.cols; ++x)
+                matches.at<short>(y, x) = (short)matcher.match(spacing * x, spacing * y);
     });
+    for (int y = 0; y < matches.rows; ++y)
+        for (int x = 0; x < matches.cols; ++x)
+        {
+            const short match = matches.at<short>(y, x);
+            points.at<short>(y, x) = match >= 0 && isSupported(matches, y, x) ? match : (short)-1;
+        }
 }
 
 void disparityHistogram(const Mat& points, int numDisparities, std::vector<double>& histogram)

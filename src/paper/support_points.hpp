@@ -18,38 +18,9 @@ among them) differ from it by at most 4.
 The authors' program has them instead of the paper's grid of 5 x 5 pixels; it counts those of the right image, too. */
 struct SupportPointBuffers
 {
-    Mat grey[2];
-    Mat horizontal[2], vertical[2]; // gradients, of the right image mirrored
+    Mat grey, derivative, horizontal, vertical; // of one image, and its gradients
+    Mat descriptors[2];                         // of the pixels in each second row, CV_8U, 16 columns per pixel
     Mat matches;
-};
-
-//! The grid of points and how it is worked on, all in pixels but where said
-struct SupportPointGrid
-{
-    static const int spacing = 4;
-    static const int corner = 2;              // descriptors are compared at (+-corner, +-corner) of a point
-    static const int reach = 3;               // of a descriptor: 2 for its samples, 1 for their gradients
-    static const int margin = corner + reach; // of a point to the border
-    static const int neighbourhood = 4;       // of points that support one another, in grid places
-    static const int noMatch = -16;           // far from all disparities
-    static const int lanes = 64;              // candidates that a descriptor is compared with at once
-
-    //! The candidates of a descriptor with what is computed behind the last one
-    static int bufferRow(int numDisparities) { return (numDisparities + lanes - 1) / lanes * lanes; }
-    //! For two rows of corners, one more descriptor, and the sums
-    static size_t bufferSize(int columns, int numDisparities)
-    {
-        return (2 * (size_t)(columns + 1) + 1) * bufferRow(numDisparities) + lanes;
-    }
-};
-
-//! Gradients (CV_8U) of the left image and of the mirrored right one, both of that width. There are
-//! SupportPointGrid::lanes more columns, of any values, behind each row.
-struct GradientPair
-{
-    const uchar *horizontal[2], *vertical[2];
-    size_t step;
-    int width;
 };
 
 //! Finds the support points of a pair of one size, CV_8UC1 or CV_8UC3, over disparities 0 .. numDisparities - 1.

@@ -34,9 +34,6 @@ inline int firstOf(int disparity, int candidates, int numDisparities)
     return std::max(std::min(disparity - (candidates / 2 - 1), numDisparities + outside - candidates), -outside);
 }
 
-//! condition ? a : b, condition being 0 or 1, without a branch
-inline int select(int condition, int a, int b) { return b ^ ((a ^ b) & -condition); }
-
 //! Whether two disparities of the layer belong to different surfaces
 inline int isOther(int a, int b) { return std::abs(a - b) >= discontinuity * subpixelScale; }
 
@@ -59,9 +56,9 @@ void predictRow(const DisparityRow& filtered, const DisparityRow& unfiltered, co
         const int here = 2 * own[x], match = matches[x];
         int other = farthest(here, 2 * leastRaw[x], 2 * mostRaw[x]);
         const int ofFiltered = farthest(here, 2 * least[x], 2 * most[x]);
-        other = select(isOther(ofFiltered, here), ofFiltered, other);
-        other = select((match != SparseMatches::noMatch) & isOther(match, here), match, other);
-        other = select(isOther(2 * raw[x], here), 2 * raw[x], other);
+        other = choose(isOther(ofFiltered, here), ofFiltered, other);
+        other = choose((match != SparseMatches::noMatch) & isOther(match, here), match, other);
+        other = choose(isOther(2 * raw[x], here), 2 * raw[x], other);
         const int nearest = wholeDisparity(here), nearestOther = wholeDisparity(other);
         const int around = firstOf(nearest, all, numDisparities);
         const int first = firstOf(nearest, length, numDisparities);
@@ -72,11 +69,11 @@ void predictRow(const DisparityRow& filtered, const DisparityRow& unfiltered, co
 
         const int hasOther = isOther(other, here);
         const int overlaps = hasOther & (std::abs(first - beyond) < length), isApart = hasOther - overlaps;
-        const int low = select(isApart, first, select(overlaps, between, around));
+        const int low = choose(isApart, first, choose(overlaps, between, around));
         windows[4 * x] = (ushort)low;
-        windows[4 * x + 1] = (ushort)select(isApart, beyond, low + length);
-        windows[4 * x + 2] = (ushort)select(overlaps, std::min(here, other), here);
-        windows[4 * x + 3] = (ushort)select(overlaps, std::max(here, other), select(isApart, other, here));
+        windows[4 * x + 1] = (ushort)choose(isApart, beyond, low + length);
+        windows[4 * x + 2] = (ushort)choose(overlaps, std::min(here, other), here);
+        windows[4 * x + 3] = (ushort)choose(overlaps, std::max(here, other), choose(isApart, other, here));
     }
 }
 

@@ -40,7 +40,7 @@ struct ScanlineProblem
     //! Of a window: others are outside of the range.
     int validCandidates() const
     {
-        return std::min(CandidateWindow::candidates + 0, numDisparities + 2 * CandidateWindow::beyondRange);
+        return std::min(+CandidateWindow::candidates, numDisparities + 2 * CandidateWindow::beyondRange);
     }
 };
 

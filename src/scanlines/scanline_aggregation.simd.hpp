@@ -134,7 +134,7 @@ private:
         const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
         for (int r = 0; r < groups; ++r)
         {
-            const int row = std::min(y + r * forward, lastRow), next = std::min(std::max(row + forward, 0), lastRow);
+            const int row = std::min(y + r * forward, lastRow), next = clamped(row + forward, 0, lastRow);
             left_[r] = p_.cost->leftPixels(row);
             right_[r] = p_.cost->rightPlane(0, row) + width_ - 1;
             weighEdges(p_.left->ptr<ushort>(row), p_.left->ptr<ushort>(next), edges_[r]);
@@ -382,7 +382,7 @@ private:
             const float slope = (float)std::max(std::max(before, after) - sum, 1);
             const float rise = (float)((before - after) & -isInner);
             const int tip = whole * subpixelScale + subpixelUnits(winnerFraction(rise, slope, blunt, sharp));
-            disparity[x] = (ushort)std::min(std::max(tip, 0), largest);
+            disparity[x] = (ushort)clamped(tip, 0, largest);
         }
         HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - large);
     }

@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set, as the *.simd.hpp that include it: no include guard.
 #include "scanline_aggregation.hpp"
+#include "../base/vectorized.hpp"
 #include <cstring>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -115,7 +116,7 @@ private:
     const uchar* priorOf(const Window& own, int run) const
     {
         const int distance = own.first[run] * subpixelScale - own.predicted[run];
-        return priorTable_[std::min(std::max(distance, -priorRange), priorRange - 1) + priorRange];
+        return priorTable_[clamped(distance, -priorRange, priorRange - 1) + priorRange];
     }
 
     //! Which lanes of `from` have the candidates of `to`

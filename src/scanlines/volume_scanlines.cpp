@@ -8,6 +8,7 @@
 #include "volume_scanlines.simd.hpp"
 #include "scanlines/volume_scanlines.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -17,7 +18,7 @@ namespace {
 // all threads.
 const int blockRows = 8;
 
-int blockColumns(int width) { return std::min(std::max(width / 16, 16), +VolumeProblem::maxScanlines); }
+int blockColumns(int width) { return clamped(width / 16, 16, +VolumeProblem::maxScanlines); }
 
 HDP_DISPATCH(aggregateRows)
 HDP_DISPATCH(aggregateColumns)

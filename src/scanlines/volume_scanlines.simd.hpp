@@ -203,7 +203,7 @@ private:
     {
         const WordLanes least = WordLanes::repeat(last.minimum), jump = WordLanes::repeat(last.minimum + large),
                         noCandidate = WordLanes::repeat(none);
-        const int count = isShort ? CostVolume::row + 0 : own.count;
+        const int count = isShort ? +CostVolume::row : own.count;
         before += own.first;
         here += own.first;
         WordLanes minimum = noCandidate, lowestSum = WordLanes::repeat(SHRT_MAX);

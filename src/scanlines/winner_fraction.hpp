@@ -5,8 +5,7 @@
 #define OPENCV_HDPSTEREO_WINNER_FRACTION_HPP
 
 #include "../base/disparity_units.hpp"
-#include "opencv2/core.hpp"
-#include <algorithm>
+#include "../base/vectorized.hpp"
 #include <cmath>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -24,7 +23,7 @@ CV_ALWAYS_INLINE float winnerFraction(float rise, float slope, float blunt, floa
 {
     const float rootShare = 0.65f;
     const float u = rise / slope;
-    const float share = rootShare * std::min(std::max((slope - blunt) / (sharp - blunt), 0.f), 1.f);
+    const float share = rootShare * clamped((slope - blunt) / (sharp - blunt), 0.f, 1.f);
     const float root = std::copysign(std::sqrt(std::abs(u)), u);
     return 0.5f * (u + share * (root - u));
 }
