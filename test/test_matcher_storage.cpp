@@ -369,7 +369,7 @@ TEST(HDPStereo_MatcherStorage, params_alone)
     FileStorage bad(withValue(text, "gamma", "-1."), FileStorage::READ | FileStorage::MEMORY);
     expectRejected([&] { params.read(bad.root()); }, "gamma must be finite and > 0, not -1");
     EXPECT_EQ(before, written(params));
-    params.treeStrategy.release();
+    params.treeStrategy = Ptr<TreeStrategy>();
     EXPECT_THROW(written(params), cv::Exception);
 }
 

@@ -19,7 +19,7 @@ static bool pyopencv_to_safe(PyObject* object, cv::Ptr<cv::stereo::DisparityPred
                              const ArgInfo& info)
 {
     if (object == Py_None)
-        model.release();
+        model = cv::Ptr<cv::stereo::DisparityPredictionModel>();
     return pyopencv_to_safe<cv::Ptr<cv::stereo::DisparityPredictionModel>>(object, model, info);
 }
 
