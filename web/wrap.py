@@ -4,7 +4,8 @@
 # of this distribution and at http://opencv.org/license.html.
 
 '''
-Wraps what HDPTreeMatcher's header marks by CV_WRAP and CV_PROP for JavaScript, by the Python package's reader of that header:
+Wraps what HDPTreeMatcher's header marks by CV_WRAP and CV_PROP for JavaScript, by the Python package's reader of
+that header:
     wrap.py hdp_tree_matcher.hpp METHODS DOCUMENTATION
 METHODS is included by hdpstereo.cpp; DOCUMENTATION is JSON, the parameters with the header's words for the page.
 '''
@@ -51,7 +52,7 @@ def method(result, name, arguments):
 
 
 def structs(header):
-    '''The bindings of Params and Findings: objects of JavaScript. A field of Params that is not there stays as it is.'''
+    '''The bindings of Params and Findings: objects. A field of Params that is not there stays as it is.'''
     for struct in ('Params', 'Findings'):
         fields = [(kind, name) for kind, name, _ in header.fields(struct) if name not in FIELDS_BY_HAND]
         yield ('.function("get%s", emscripten::optional_override([](HDPTreeMatcher& self) {\n'

@@ -160,7 +160,8 @@ class Interface(Test):
         with tempfile.TemporaryDirectory() as cache:
             allowed = pathlib.Path(cache) / 'allowed'  # pybind11's own metaclass
             allowed.write_text('\n'.join(['hdpstereo.' + cls.__qualname__ for cls in CLASSES] +
-                                         ['hdpstereo.TreeState.__init__', 'hdpstereo.HDPTreeMatcher.Findings.__init__']))
+                                         ['hdpstereo.TreeState.__init__',
+                                          'hdpstereo.HDPTreeMatcher.Findings.__init__']))
             for command in (['mypy.stubtest', 'hdpstereo', '--ignore-unused-allowlist', '--allowlist', str(allowed)],
                             ['mypy', '--strict', '--cache-dir', cache, str(program)]):
                 done = subprocess.run([sys.executable, '-m'] + command, env=environment, cwd=cache, text=True,
@@ -259,7 +260,8 @@ class Parameters(Test):
                 ('numDisparities must be > 0, not 0', matcher.setNumDisparities, 0),
                 ('gamma must be finite and > 0, not nan', lambda: change(matcher, gamma=float('nan'))),
                 ('delta0 must be in [0, 1) or AUTO, not 1', lambda: change(matcher, delta0=1)),
-                ('matchingCost must be COST_COLOR_GRADIENT or COST_CENSUS, not 2', lambda: change(matcher, matchingCost=2)),
+                ('matchingCost must be COST_COLOR_GRADIENT or COST_CENSUS, not 2',
+                 lambda: change(matcher, matchingCost=2)),
                 ('disparityDepth must be CV_16S or CV_32F, not 0', matcher.setDisparityDepth, 0),
                 ('treeStrategy must not be empty', matcher.setTreeStrategy, None),
                 ('layer must be >= 0, not -1', matcher.getLayerPrior, -1),
