@@ -122,16 +122,11 @@ struct Reader
     }
 };
 
-void checkStrategy(const Ptr<TreeStrategy>& strategy)
-{
-    if (!strategy)
-        CV_Error(Error::StsNullPtr, "treeStrategy must not be empty");
-}
-
 void checkParams(const M::Params& params)
 {
     visitParams(params, Checker());
-    checkStrategy(params.treeStrategy);
+    if (!params.treeStrategy)
+        CV_Error(Error::StsNullPtr, "treeStrategy must not be empty");
 }
 
 Ptr<TreeStrategy> readStrategy(const FileNode& fn, const Ptr<TreeStrategy>& own)
@@ -201,8 +196,8 @@ HDPTreeMatcher::Params::Params(int preset)
 
 void HDPTreeMatcher::Params::write(FileStorage& fs) const
 {
-    checkStrategy(treeStrategy);
     visitParams(*this, Writer{ fs });
+    CV_Assert(treeStrategy);
     fs << "treeStrategy"
        << "{"
        << "strategy" << treeStrategy->getDefaultName();
