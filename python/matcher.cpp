@@ -31,9 +31,71 @@ private:
     std::mutex mutex_;
 };
 
+//! The value of a field in words
+std::string inWords(const py::object& value)
+{
+    if (py::hasattr(value, "getDefaultName"))
+        return py::str(value.attr("getDefaultName")());
+    return py::hasattr(value, "name") ? py::str(value.attr("name")) : py::repr(value);
+}
+
+void addRepr(py::object& type, const std::vector<const char*>& fields)
+{
+    type.attr("__repr__") = py::cpp_function(
+        [fields](const py::object& self) {
+        std::string text;
+        for (const char* const field : fields)
+            text += (text.empty() ? "" : ", ") + std::string(field) + "=" + inWords(self.attr(field));
+        return py::type::of(self).attr("__qualname__").cast<std::string>() + "(" + text + ")";
+        },
+        py::is_method(type));
+}
+
+//! The values of a preset, but for some fields
+HDPTreeMatcher::Params createParams(int preset, const py::kwargs& fields)
+{
+    HDPTreeMatcher::Params params(preset);
+    const py::object object = py::cast(&params, py::return_value_policy::reference);
+    for (const auto& field : fields)
+    {
+        if (!py::hasattr(object, field.first))
+            throw py::type_error("Params has no field " + field.first.cast<std::string>());
+        py::setattr(object, field.first, field.second);
+    }
+    return params;
+}
+
+void defTreeStrategy(py::class_<HDPTreeMatcher::Params>& params, const char* documentation)
+{
+    params.def_property(
+        "treeStrategy", [](const HDPTreeMatcher::Params& self) { return self.treeStrategy; },
+        [](HDPTreeMatcher::Params& self, const py::object& strategy) { self.treeStrategy = keptStrategy(strategy); },
+        documentation);
+}
+
+void defPredictionModel(py::class_<HDPTreeMatcher::Params>& params, const char* documentation)
+{
+    params.def_property(
+        "predictionModel", [](const HDPTreeMatcher::Params& self) { return self.predictionModel; },
+        [](HDPTreeMatcher::Params& self, const cv::Ptr<DisparityPredictionModel>& model) {
+        self.predictionModel = model;
+        },
+        documentation);
+}
+
 std::unique_ptr<Matcher> create(int minDisparity, int numDisparities, int preset)
 {
     return std::unique_ptr<Matcher>(new Matcher(HDPTreeMatcher::create(minDisparity, numDisparities, preset)));
+}
+
+//! sgbm: of cv2, whose types this module does not know
+std::unique_ptr<Matcher> createLike(const py::object& sgbm, int preset)
+{
+    const auto valueOf = [&](const char* getter) { return sgbm.attr(getter)().cast<int>(); };
+    const cv::Ptr<cv::StereoSGBM> like = cv::StereoSGBM::create(
+        valueOf("getMinDisparity"), valueOf("getNumDisparities"), 3, 0, 0, valueOf("getDisp12MaxDiff"), 0, 0,
+        valueOf("getSpeckleWindowSize"), valueOf("getSpeckleRange"));
+    return std::unique_ptr<Matcher>(new Matcher(HDPTreeMatcher::createLike(like, preset)));
 }
 
 void addEnumeration(py::object& matcher, const char* name, const char* documentation,
@@ -110,6 +172,20 @@ Where C++ throws an exception, ValueError is raised, with the same text. Threads
 other. Each one is faster with its own.)doc");
     setPackage(matcher);
     const int defaultPreset = HDPTreeMatcher::PRESET_FAST;
+    py::class_<HDPTreeMatcher::Params> paramsType(matcher, "Params", R"doc(
+How to match. A preset is a value of this.
+
+    params = HDPTreeMatcher.Params(HDPTreeMatcher.PRESET_QUALITY, finestLayer=1)
+    params.gamma = 15
+    matcher.setParams(params)
+
+Values are checked by setParams().)doc");
+    setPackage(paramsType);
+    paramsType.def(py::init(&createParams), py::arg("preset") = defaultPreset, R"doc(
+The values of a preset, but for the fields that are given by name.)doc");
+    py::class_<HDPTreeMatcher::Findings> findingsType(matcher, "Findings",
+                                                      "What the last compute() found out about the pair.");
+    setPackage(findingsType);
     const char* const creation = R"doc(
 Creates a matcher.
 
@@ -120,6 +196,15 @@ preset: HDPTreeMatcher.PRESET_FAST, PRESET_ULTRAFAST, PRESET_QUALITY, PRESET_TRE
                 py::arg("preset") = defaultPreset, creation);
     matcher.def_static("create", &create, py::arg("minDisparity") = 0, py::arg("numDisparities") = 64,
                        py::arg("preset") = defaultPreset, creation);
+
+    matcher.def_static("createLike", &createLike, py::arg("sgbm"), py::arg("preset") = defaultPreset, R"doc(
+Creates a matcher that takes the place of a cv2.StereoSGBM.
+
+minDisparity, numDisparities, disp12MaxDiff, speckleWindowSize and speckleRange are taken over as they are now. What
+else it has is of its own algorithm, and is not taken over.
+
+sgbm: it is read, and not kept.
+preset: see create().)doc");
 
     matcher.def("compute", &compute, py::arg("left").noconvert(), py::arg("right").noconvert(),
                 py::arg("disparity") = py::none(), R"doc(
@@ -144,23 +229,31 @@ rejects is (minDisparity - 1) * 16, or minDisparity - 1. Raises ValueError if im
         py::arg("strategy"), "Rule 1 and Rule 2 of the spanning trees, section 3.2 of the paper, see TreeStrategy.");
     matcher.def("getTreeStrategy", &strategyOf, "See setTreeStrategy().");
     matcher.def(
-        "setPredictionModel",
-        [](Matcher& self, const cv::Ptr<DisparityPredictionModel>& model) {
-        self.run([&](HDPTreeMatcher& m) { m.setPredictionModel(model); });
+        "setParams",
+        [](Matcher& self, const HDPTreeMatcher::Params& params) {
+        const HDPTreeMatcher::Params copy = params; // another thread may change them
+        self.run([&](HDPTreeMatcher& m) { m.setParams(copy); });
         },
-        py::arg("model"), R"doc(
-Model behind the predicted intervals, section 2.2 of the paper.
+        py::arg("params"), R"doc(
+Sets how to match, see Params.
 
-model: of at least one layer less than the pyramid, or compute() raises ValueError. None (default): a published model,
-by the width of the image. Without effect with AGGREGATION_SCANLINES.)doc");
+Raises ValueError if a value is out of range; the matcher is unchanged then.)doc");
     matcher.def(
-        "getPredictionModel",
+        "getParams",
         [](Matcher& self) {
-        cv::Ptr<DisparityPredictionModel> model;
-        self.run([&](HDPTreeMatcher& m) { model = m.getPredictionModel(); });
-        return model;
+        std::unique_ptr<HDPTreeMatcher::Params> params;
+        self.run([&](HDPTreeMatcher& m) { params.reset(new HDPTreeMatcher::Params(m.getParams())); });
+        return params;
         },
-        "See setPredictionModel().");
+        "Returns a copy of how to match, see Params.");
+    matcher.def(
+        "getFindings",
+        [](Matcher& self) {
+        HDPTreeMatcher::Findings findings;
+        self.run([&](HDPTreeMatcher& m) { findings = m.getFindings(); });
+        return findings;
+        },
+        "Returns what the last compute() found out about the pair, see Findings.");
 
     matcher.attr("AUTO") = (int)HDPTreeMatcher::AUTO;
     using cv::String;

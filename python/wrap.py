@@ -4,16 +4,17 @@
 # of this distribution and at http://opencv.org/license.html.
 
 '''
-Wraps what HDPTreeMatcher's header marks by CV_WRAP, all but the methods that are wrapped by hand:
+Wraps what HDPTreeMatcher's header marks by CV_WRAP and CV_PROP, all but what is wrapped by hand:
     wrap.py hdp_tree_matcher.hpp __init__.pyi.in METHODS STUB
-METHODS is included by matcher.cpp; STUB is __init__.pyi.in with the same methods and the enumerations. A declaration
-that this program does not know how to wrap is an error.
+METHODS is included by matcher.cpp; STUB is __init__.pyi.in with the same methods, fields and enumerations. A
+declaration that this program does not know how to wrap is an error.
 '''
 
 import re
 import sys
 
-BY_HAND = {'create', 'setTreeStrategy', 'getTreeStrategy', 'setPredictionModel', 'getPredictionModel'}
+BY_HAND = {'create', 'createLike', 'setTreeStrategy', 'getTreeStrategy', 'setParams', 'getParams', 'getFindings'}
+FIELDS_BY_HAND = {'treeStrategy': 'TreeStrategy', 'predictionModel': 'Optional[DisparityPredictionModel]'}
 # cv::StereoMatcher's, which that header documents, but does not declare
 INHERITED = ('minDisparity', 'numDisparities', 'blockSize', 'speckleWindowSize', 'speckleRange', 'disp12MaxDiff')
 
@@ -39,7 +40,7 @@ DOXYGEN_WORDS = (  # to plain text
 )
 
 WORDS = DOXYGEN_WORDS + (  # and from C++ to Python
-    (r'\bHDPTreeMatcher::', 'HDPTreeMatcher.'),
+    (r'\b(HDPTreeMatcher|StereoMatcher|Params|Findings)::', r'\1.'),
     (r'\bDisparityPredictionModel::', 'DisparityPredictionModel.'),
     (r'cv::Mat_<float>', 'a numpy array of float32'),
     (r'cv::Exception', 'ValueError'),
@@ -65,8 +66,17 @@ def in_python_words(text):
 
 class Header:
     def __init__(self, text):
-        documentation, self.body = text.split('class CV_EXPORTS_W HDPTreeMatcher')
+        documentation, body = text.split('class CV_EXPORTS_W HDPTreeMatcher')
         self.documentation = documentation[documentation.rindex('/**'):]
+        struct = re.compile(r'struct CV_EXPORTS_W_SIMPLE (\w+)\s*\{(.*?)\n    \};', re.S)
+        self.structs = dict(struct.findall(body))
+        self.body = struct.sub('', body)
+
+    def fields(self, struct):
+        '''Type, name and documentation of the fields of a struct'''
+        for match in re.finditer(r'(?:/\*\*((?:(?!\*/).)*)\*/|//! ([^\n]*))\s*CV_PROP(?:_RW)? ([^;]*?) (\w+);',
+                                 self.structs[struct], re.S):
+            yield match[3], match[4], match[1] or match[2]
 
     def enumerations(self):
         '''Name, documentation, and the values by name'''
@@ -91,6 +101,50 @@ class Header:
                 arguments = [re.fullmatch(r'(.*?) ?(\w+)', ' '.join(a.split())).groups()
                              for a in arguments.split(',') if a.strip()]
                 yield result.replace('virtual', '').strip(), name, arguments, documentation
+
+
+class Field:
+    def __init__(self, header, kind, name, documentation):
+        self.kind = kind
+        self.name = name
+        self.documentation = in_python_words(documentation.replace('@brief ', ''))
+        self.enumeration = None
+        for enumeration, _, _ in header.enumerations():
+            if kind == 'int' and name.lower().endswith(enumeration.lower()):
+                self.enumeration = enumeration
+        self.is_vector = 'CV_OUT %s&' % kind in OUTPUTS
+        if kind not in SCALARS and not self.is_vector and name not in FIELDS_BY_HAND:
+            sys.exit('wrap.py cannot wrap the field %s %s: wrap it by hand, and add it to FIELDS_BY_HAND' %
+                     (kind, name))
+
+    def cpp(self, struct, is_writable):
+        '''The definition of the field'''
+        wrapped = struct[0].lower() + struct[1:] + 'Type'
+        if self.name in FIELDS_BY_HAND:
+            return 'def%s(%s, R"doc(%s)doc");\n' % (self.name[0].upper() + self.name[1:], wrapped,
+                                                   self.documentation)
+        value = 'toPython(self.%s)' % self.name
+        if self.enumeration:
+            value = 'enumerator("%s", self.%s)' % (self.enumeration, self.name)
+        get = '[](const HDPTreeMatcher::%s& self) { return %s; }' % (struct, value)
+        set_ = ''
+        if is_writable:
+            set_ = ' [](HDPTreeMatcher::%s& self, %s value) { self.%s = value; },' % (struct, self.kind, self.name)
+        return '%s.def_property%s("%s", %s,%s\n    R"doc(%s)doc");\n' % (
+            wrapped, '' if is_writable else '_readonly', self.name, get, set_, self.documentation)
+
+    def python_kind(self):
+        if self.name in FIELDS_BY_HAND:
+            return FIELDS_BY_HAND[self.name]
+        return OUTPUTS['CV_OUT %s&' % self.kind][1] if self.is_vector else SCALARS[self.kind]
+
+    def stub(self, is_writable):
+        '''The declaration for type checkers'''
+        kind = 'HDPTreeMatcher.' + self.enumeration if self.enumeration else self.python_kind()
+        lines = '@property\ndef %s(self) -> %s: ...\n' % (self.name, kind)
+        if is_writable:
+            lines += '@%s.setter\ndef %s(self, value: %s) -> None: ...\n' % (self.name, self.name, self.python_kind())
+        return re.sub('^', '        ', lines, flags=re.M).rstrip(' ')
 
 
 class Method:
@@ -163,6 +217,8 @@ def main():
     briefs = {}
     methods = [Method(header, *declaration, briefs) for declaration in header.methods()]
 
+    params, findings = ([Field(header, *field) for field in header.fields(struct)] for struct in ('Params', 'Findings'))
+
     with open(methods_file, 'w', encoding='utf-8') as f:
         f.write('// Made by wrap.py\n')
         for name, documentation, values in header.enumerations():
@@ -170,12 +226,22 @@ def main():
                     (name, documentation, ', '.join('{ "%s", %s }' % value for value in values)))
         for method in methods:
             f.write(method.cpp())
+        for field in params:
+            f.write(field.cpp('Params', True))
+        for field in findings:
+            f.write(field.cpp('Findings', False))
+        for name, fields in ('paramsType', params), ('findingsType', findings):
+            f.write('addRepr(%s, { %s });\n' % (name, ', '.join('"%s"' % field.name for field in fields)))
 
     stub = ''
     for name, _, values in header.enumerations():
         stub += '    class %s(enum.IntEnum):\n' % name
         stub += ''.join('        %s = %s\n' % value for value in values)
         stub += ''.join('    %s: ClassVar[%s]\n' % (value, name) for value, _ in values) + '\n'
+    stub += '    class Params:\n        def __init__(\n            self, preset: int = ..., *,\n'
+    stub += ',\n'.join('            %s: %s = ...' % (field.name, field.python_kind()) for field in params)
+    stub += '\n        ) -> None: ...\n' + ''.join(field.stub(True) for field in params) + '\n'
+    stub += '    class Findings:\n' + ''.join(field.stub(False) for field in findings) + '\n'
     stub += ''.join(method.stub() for method in methods)
     with open(template_file, encoding='utf-8') as f:
         template = f.read()

@@ -44,8 +44,8 @@ build find_package "-DCMAKE_PREFIX_PATH=$directory/installed"
 check "find_package" find_package/program
 build build_tree "-Dhdpstereo_DIR=$module_build"
 check "find_package, not installed" build_tree/program
-for wrong in 0.9 1.999 2.0; do
-    sed "s/hdpstereo 1.0/hdpstereo $wrong/" project/CMakeLists.txt >CMakeLists.txt
+for wrong in 1.0 2.999 3.0; do
+    sed "s/hdpstereo 2.0/hdpstereo $wrong/" project/CMakeLists.txt >CMakeLists.txt
     cp project/program.cpp .
     ! cmake -S . -B wrong "-DCMAKE_PREFIX_PATH=$directory/installed" >wrong.log 2>&1 || fail "it is taken for version $wrong"
 done
@@ -53,7 +53,7 @@ done
 if command -v pkg-config >/dev/null; then
     PKG_CONFIG_PATH=$(dirname "$(find installed -name hdpstereo.pc)")
     export PKG_CONFIG_PATH
-    pkg-config --exists 'hdpstereo >= 1.0' || fail "pkg-config finds version $(pkg-config --modversion hdpstereo)"
+    pkg-config --exists 'hdpstereo >= 2.0' || fail "pkg-config finds version $(pkg-config --modversion hdpstereo)"
     # shellcheck disable=SC2046  # a list of words
     run pkg-config "${CXX:-c++}" -std=c++11 project/program.cpp -o pkg-config $(pkg-config --cflags --libs hdpstereo) \
         "-Wl,-rpath,$(pkg-config --variable=libdir hdpstereo)"

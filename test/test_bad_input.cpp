@@ -169,7 +169,7 @@ TEST(HDPStereo_BadInput, setters)
     for (double bad : { -0.1, 1.1, infinity, -infinity, notANumber })
         expectBadValue(inParams([bad](Params& p) { p.colorWeight = bad; }), "colorWeight");
     expectBadValue([](HDPTreeMatcher& m) { m.setTreeStrategy(Ptr<TreeStrategy>()); }, "treeStrategy");
-    expectBadValue(inParams([](Params& p) { p.treeStrategy.release(); }), "treeStrategy");
+    expectBadValue(inParams([](Params& p) { p.treeStrategy = Ptr<TreeStrategy>(); }), "treeStrategy");
     expectBadValue(inParams([](Params& p) { p.finestLayer = 1, p.P2 = 101; }), "P2 must be in 0..100, not 101");
 }
 

@@ -19,7 +19,7 @@ TEST(HDPStereo_DropIn, header_of_the_other_stereo_module)
 {
 #ifdef HDPSTEREO_TEST_STEREO
     using namespace cv::stereo; // no name of one is ambiguous by the other
-    EXPECT_FALSE(HDPTreeMatcher::create()->getTreeStrategy().empty());
+    EXPECT_EQ(64, HDPTreeMatcher::create()->getNumDisparities());
     EXPECT_EQ(0, DisparityPredictionModel::create()->getNumLayers());
 #else
     throw SkipTestException("there is no opencv2/stereo.hpp");

@@ -4,7 +4,8 @@
 # of this distribution and at http://opencv.org/license.html.
 
 '''
-Wraps what HDPTreeMatcher's header marks by CV_WRAP for JavaScript, by the Python package's reader of that header:
+Wraps what HDPTreeMatcher's header marks by CV_WRAP and CV_PROP for JavaScript, by the Python package's reader of
+that header:
     wrap.py hdp_tree_matcher.hpp METHODS DOCUMENTATION
 METHODS is included by hdpstereo.cpp; DOCUMENTATION is JSON, the parameters with the header's words for the page.
 '''
@@ -15,12 +16,12 @@ import re
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'python'))
-from wrap import DOXYGEN_WORDS, OUTPUTS, SCALARS, Header, in_words  # noqa: E402
+from wrap import DOXYGEN_WORDS, FIELDS_BY_HAND, OUTPUTS, SCALARS, Header, in_words  # noqa: E402
 
 
 def plain(text):
     '''Sentences without markup'''
-    text = re.sub(r'HDPTreeMatcher::', '', text)
+    text = re.sub(r'(HDPTreeMatcher|Params|Findings)::', '', text)
     text = re.sub(r' ?@cite \w+', '', text)
     return ' '.join(in_words(text, DOXYGEN_WORDS).split())
 
@@ -50,19 +51,44 @@ def method(result, name, arguments):
     return '\n'.join(lines) + '\n}))\n'
 
 
+def structs(header):
+    '''The bindings of Params and Findings: objects. A field of Params that is not there stays as it is.'''
+    for struct in ('Params', 'Findings'):
+        fields = [(kind, name) for kind, name, _ in header.fields(struct) if name not in FIELDS_BY_HAND]
+        yield ('.function("get%s", emscripten::optional_override([](HDPTreeMatcher& self) {\n'
+               '    const HDPTreeMatcher::%s values = self.get%s();\n'
+               '    val object = val::object();\n' % (struct, struct, struct))
+        for _, name in fields:
+            yield '    object.set("%s", toJavaScript(values.%s));\n' % (name, name)
+        yield '    return object;\n}))\n'
+    yield ('.function("setParams", emscripten::optional_override([](HDPTreeMatcher& self, const val& object) {\n'
+           '    HDPTreeMatcher::Params params = self.getParams();\n')
+    for kind, name, _ in header.fields('Params'):
+        if name not in FIELDS_BY_HAND:
+            yield '    read(object, "%s", params.%s);\n' % (name, name)
+    yield '    run([&] { self.setParams(params); });\n}))\n'
+
+
+def declarations(header):
+    '''Kind, name, setter if it is no field of Params, and documentation of each parameter that is a number'''
+    fields = [field for field in header.fields('Params') if field[1] not in FIELDS_BY_HAND]
+    names = [name for _, name, _ in fields]
+    for kind, name, argument, documentation in header.inherited():
+        if argument not in names:
+            yield kind, argument, name, documentation
+    for kind, name, documentation in fields:
+        yield kind, name, None, documentation
+
+
 def parameters(header):
-    '''Name, kind, and what the header says of each parameter with a setter of one number'''
-    for result, name, arguments, documentation in header.methods():
-        if not name.startswith('set') or len(arguments) != 1 or arguments[0][0] not in SCALARS:
-            continue
-        kind, argument = arguments[0]
+    '''Name, kind, and what the header says of each parameter that is a number'''
+    for kind, name, setter, documentation in declarations(header):
         brief = re.search(r'@brief (.*?[.])(?=\s|$)', documentation, re.S)
         text = re.sub(r'@brief ', '', documentation)
-        text = re.sub(r'@param \w+ ', '', text)
-        bounds = re.search(r'(\d+)\.\.(\d+)', documentation)
+        bounds = re.search(r'(\d+)\.\.(\d+)', documentation) if kind == 'int' else None
         yield {
-            'name': name[3].lower() + name[4:] if not re.match('P[12]', name[3:]) else name[3:],
-            'method': name[3:],
+            'name': name,
+            'method': setter,
             'kind': kind,
             'brief': plain(brief[1] if brief else re.match(r'.*?[.;:](?=\s|$)', documentation, re.S)[0]),
             'text': plain(text),
@@ -85,6 +111,7 @@ def main():
         f.write('// Made by wrap.py\n#ifdef METHODS\n')
         for result, name, arguments, _ in header.methods():
             f.write(method(result, name, arguments))
+        f.write(''.join(structs(header)))
         f.write('#else\n')
         for _, _, values in header.enumerations():
             f.write(''.join('emscripten::constant("%s", %s);\n' % value for value in values))

@@ -186,6 +186,7 @@ TEST(HDPStereo_StereoAdapters, maps_are_those_of_the_preset)
             Mat map(left.size(), CV_32F); // as StereoSGBM, it makes another type of it
             adapter->compute(left, right, map);
             expectIdentical(filtered, map);
+            expectIdentical(filtered, match(*HDPTreeMatcher::createLike(adapter, system.preset), left, right));
         }
     }
 }

@@ -30,7 +30,8 @@ from hdpstereo import DisparityPredictionModel, HDPTreeMatcher, TreeStrategy
 HEADERS = pathlib.Path(__file__).resolve().parents[2] / 'include' / 'opencv2' / 'hdpstereo'
 OTHERS = {'minDisparity': 3, 'numDisparities': 17, 'blockSize': 5, 'speckleWindowSize': 100, 'speckleRange': 2,
           'disp12MaxDiff': 1, 'disparityDepth': hdpstereo.CV_32F, 'delta0': 0.125, 'beta': 0.5}
-CLASSES = (hdpstereo.TreeState, TreeStrategy, DisparityPredictionModel, HDPTreeMatcher)
+CLASSES = (hdpstereo.TreeState, TreeStrategy, DisparityPredictionModel, HDPTreeMatcher, HDPTreeMatcher.Params,
+           HDPTreeMatcher.Findings)
 
 
 def create_pair(shape=(120, 160), background=4, foreground=11):
@@ -58,9 +59,21 @@ def wrong(disparity):
 
 
 def parameters(matcher):
-    '''Of a matcher, all that have a setter, but objects.'''
+    '''All parameters of a matcher by name, but objects.'''
     names = [name[3:] for name in dir(matcher) if name.startswith('set')]
-    return {name: getattr(matcher, 'get' + name)() for name in names if name not in ('TreeStrategy', 'PredictionModel')}
+    values = {name[0].lower() + name[1:]: getattr(matcher, 'get' + name)() for name in names}
+    params = matcher.getParams()
+    values.update((name, getattr(params, name)) for name in dir(params) if not name.startswith('_'))
+    return {name: value for name, value in values.items()
+            if name not in ('params', 'treeStrategy', 'predictionModel')}
+
+
+def change(matcher, **fields):
+    '''Sets fields of a matcher's Params.'''
+    params = matcher.getParams()
+    for name, value in fields.items():
+        setattr(params, name, value)
+    matcher.setParams(params)
 
 
 class MinimumSpanningTree(TreeStrategy):
@@ -99,7 +112,7 @@ class Interface(Test):
 
     @unittest.skipUnless(HEADERS.is_dir(), 'there are no headers')
     def test_everything_is_wrapped(self):
-        method = r'CV_WRAP (?:static |virtual )*[\w:<>]+ (\w+)\('
+        method = r'CV_WRAP (?:static |virtual )*[\w:<>]+ (\w+)\('  # and no constructor
         for name in self.declared('hdp_tree_matcher.hpp', method):
             self.assertTrue(callable(getattr(HDPTreeMatcher, name, None)), name)
         for name in self.declared('disparity_prediction.hpp', method):
@@ -112,11 +125,14 @@ class Interface(Test):
                                 ('disparity_prediction.hpp', DisparityPredictionModel)):
             for name, value in self.declared(header, r'\n +([A-Z][A-Z_0-9]+) = (-?\d+)'):
                 self.assertEqual(int(value), getattr(wrapped, name), name)
+        for wrapped, pattern in ((HDPTreeMatcher.Params, 'CV_PROP_RW'), (HDPTreeMatcher.Findings, 'CV_PROP')):
+            fields = self.declared('hdp_tree_matcher.hpp', pattern + r' [^;]* (\w+);')
+            self.assertEqual(fields, set(name for name in dir(wrapped) if not name.startswith('_')))
 
     def test_enumerations(self):
         self.assertIs(HDPTreeMatcher.Preset.PRESET_FAST, HDPTreeMatcher.PRESET_FAST)
-        self.assertIs(HDPTreeMatcher.COST_CENSUS, HDPTreeMatcher().getMatchingCost())
-        self.assertIs(HDPTreeMatcher.AGGREGATION_TREE_SCANLINES, HDPTreeMatcher().getTopAggregation())
+        self.assertIs(HDPTreeMatcher.COST_CENSUS, HDPTreeMatcher.Params().matchingCost)
+        self.assertIs(HDPTreeMatcher.AGGREGATION_TREE_SCANLINES, HDPTreeMatcher.Params().topAggregation)
         for enumeration in (HDPTreeMatcher.Preset, HDPTreeMatcher.MatchingCost, DisparityPredictionModel.Published):
             for value in enumeration:
                 self.assertIs(value, pickle.loads(pickle.dumps(value)))
@@ -125,8 +141,8 @@ class Interface(Test):
         documented = [(hdpstereo.__name__, hdpstereo)]
         for cls in CLASSES:
             self.assertEqual('hdpstereo', cls.__module__)
-            documented += [(cls.__name__ + '.' + name, getattr(cls, name)) for name, value in vars(cls).items()
-                           if not name.startswith('_') and not isinstance(value, int)] + [(cls.__name__, cls)]
+            documented += [(cls.__qualname__ + '.' + name, getattr(cls, name)) for name, value in vars(cls).items()
+                           if not name.startswith('_') and not isinstance(value, int)] + [(cls.__qualname__, cls)]
         for name, value in documented:
             text = inspect.getdoc(value) or ''
             self.assertGreater(len(text.split()), 3, name)
@@ -143,8 +159,9 @@ class Interface(Test):
             environment['MYPYPATH'] = folder
         with tempfile.TemporaryDirectory() as cache:
             allowed = pathlib.Path(cache) / 'allowed'  # pybind11's own metaclass
-            allowed.write_text('\n'.join(['hdpstereo.' + cls.__name__ for cls in CLASSES] +
-                                         ['hdpstereo.TreeState.__init__']))
+            allowed.write_text('\n'.join(['hdpstereo.' + cls.__qualname__ for cls in CLASSES] +
+                                         ['hdpstereo.TreeState.__init__',
+                                          'hdpstereo.HDPTreeMatcher.Findings.__init__']))
             for command in (['mypy.stubtest', 'hdpstereo', '--ignore-unused-allowlist', '--allowlist', str(allowed)],
                             ['mypy', '--strict', '--cache-dir', cache, str(program)]):
                 done = subprocess.run([sys.executable, '-m'] + command, env=environment, cwd=cache, text=True,
@@ -181,27 +198,70 @@ class Parameters(Test):
         self.assertGreater(len(parameters(matcher)), 25)
         for name, value in parameters(matcher).items():
             before = parameters(matcher)
-            other = OTHERS.get(name[0].lower() + name[1:], not value if isinstance(value, bool) else
+            other = OTHERS.get(name, not value if isinstance(value, bool) else
                                value / 2 if isinstance(value, float) else 1 if value != 1 else 2)
             if isinstance(value, HDPTreeMatcher.MatchingCost):
                 other = HDPTreeMatcher.COST_CENSUS
-            if name == 'DisparityMedianSize':
+            if name == 'disparityMedianSize':
                 other = 3
-            if name == 'TopAggregation':
+            if name == 'topAggregation':
                 other = HDPTreeMatcher.AGGREGATION_TREE_SCANLINES
-            getattr(matcher, 'set' + name)(other)
+            setter = 'set' + name[0].upper() + name[1:]
+            if hasattr(matcher, setter):
+                getattr(matcher, setter)(other)
+            else:
+                change(matcher, **{name: other})
             after = parameters(matcher)
             self.assertEqual(type(value), type(after[name]), name)
             self.assertEqual(dict(before, **{name: other}), after, name)
+
+    def test_params(self):
+        for preset in HDPTreeMatcher.Preset:
+            matcher = HDPTreeMatcher(preset=HDPTreeMatcher.PRESET_FAST)
+            matcher.setParams(HDPTreeMatcher.Params(preset))
+            self.assertEqual(parameters(HDPTreeMatcher(preset=preset)), parameters(matcher))
+        own, model = SegmentTree(300), DisparityPredictionModel()
+        params = HDPTreeMatcher.Params(HDPTreeMatcher.PRESET_QUALITY, finestLayer=1, gamma=7, treeStrategy=own,
+                                       predictionModel=model)
+        self.assertEqual((1, 7, 2), (params.finestLayer, params.gamma, params.scanlinePasses))
+        self.assertIs(own, params.treeStrategy)
+        self.assertIs(model, params.predictionModel)
+        params.predictionModel = None
+        self.assertIsNone(params.predictionModel)
+        matcher.setParams(params)
+        params.gamma = 8  # of a copy
+        self.assertEqual(7, matcher.getParams().gamma)
+        text = repr(params)
+        self.assertTrue(text.startswith('HDPTreeMatcher.Params(disparityDepth=3, useTemporalPrediction=False'), text)
+        self.assertIn(' matchingCost=COST_CENSUS, blockSize=7,', text)
+        self.assertIn(' gamma=8.0,', text)
+        self.assertRaisesText(TypeError, 'Params has no field side', lambda: HDPTreeMatcher.Params(side=3))
+        self.assertRaises(TypeError, lambda: HDPTreeMatcher.Params(numLayers='two'))
+
+    def test_create_like(self):
+        class Like:  # cv2.StereoSGBM has these, among others
+            values = {'MinDisparity': -2, 'NumDisparities': 48, 'Disp12MaxDiff': 1, 'SpeckleWindowSize': 100,
+                      'SpeckleRange': -1}
+
+            def __getattr__(self, name):
+                return lambda: self.values[name[3:]]
+
+        matcher = HDPTreeMatcher.createLike(Like(), HDPTreeMatcher.PRESET_QUALITY)
+        expected = HDPTreeMatcher(-2, 48, HDPTreeMatcher.PRESET_QUALITY)
+        expected.setDisp12MaxDiff(1)
+        expected.setSpeckleWindowSize(100)
+        self.assertEqual(parameters(expected), parameters(matcher))
+        self.assertRaises(AttributeError, HDPTreeMatcher.createLike, None)
 
     def test_bad_values(self):
         matcher = HDPTreeMatcher()
         before = parameters(matcher)
         for text, function, *arguments in (
                 ('numDisparities must be > 0, not 0', matcher.setNumDisparities, 0),
-                ('gamma must be finite and > 0, not nan', matcher.setGamma, float('nan')),
-                ('delta0 must be in [0, 1) or AUTO, not 1', matcher.setDelta0, 1),
-                ('matchingCost must be COST_COLOR_GRADIENT or COST_CENSUS, not 2', matcher.setMatchingCost, 2),
+                ('gamma must be finite and > 0, not nan', lambda: change(matcher, gamma=float('nan'))),
+                ('delta0 must be in [0, 1) or AUTO, not 1', lambda: change(matcher, delta0=1)),
+                ('matchingCost must be COST_COLOR_GRADIENT or COST_CENSUS, not 2',
+                 lambda: change(matcher, matchingCost=2)),
                 ('disparityDepth must be CV_16S or CV_32F, not 0', matcher.setDisparityDepth, 0),
                 ('treeStrategy must not be empty', matcher.setTreeStrategy, None),
                 ('layer must be >= 0, not -1', matcher.getLayerPrior, -1),
@@ -213,8 +273,10 @@ class Parameters(Test):
                 ('sigmas must be finite and > 0', DisparityPredictionModel().addLayer, [0], [0], [1])):
             self.assertRaisesText(ValueError, text, function, *arguments)
         for bad in ('wide', [1], None, 1.5, 1 << 40):
-            self.assertRaises(TypeError, matcher.setNumLayers, bad)
-            self.assertRaises(TypeError, matcher.setPredictionModel, bad or object())
+            self.assertRaises(TypeError, matcher.setMaxRowOffset, bad)
+            self.assertRaises(TypeError, change, matcher, numLayers=bad)
+            self.assertRaises(TypeError, change, matcher, predictionModel=bad or object())
+            self.assertRaises(TypeError, matcher.setParams, bad)
         self.assertRaisesText(TypeError, 'strategy must be a TreeStrategy', matcher.setTreeStrategy, 'MST')
         self.assertEqual(before, parameters(matcher))
 
@@ -316,17 +378,22 @@ class Matching(Test):
         self.assertIsNone(matcher.getConfidence())
         self.assertEqual((None, None), matcher.getForest())
         self.assertIsNone(matcher.getLayerDisparity(0))
-        self.assertEqual(([], 0), (matcher.getStageTimes()[0], len(matcher.getSearchRatios())))
+        findings = matcher.getFindings()
+        self.assertEqual(([], 0, False), (findings.stages, len(findings.searchRatios), findings.areRowsMoved))
         disparity = matcher.compute(LEFT, RIGHT)
         confidence = matcher.getConfidence()
         self.assertEqual((np.uint8, disparity.shape), (confidence.dtype, confidence.shape))
         self.assertEqual([32, 16, 0], [len(matcher.getLayerPrior(layer)) for layer in range(3)])
-        self.assertEqual(3, len(matcher.getSearchRatios()))
+        self.assertEqual(3, len(matcher.getFindings().searchRatios))
         trees, intervals = matcher.getForest()
         self.assertEqual((np.int32, disparity.shape), (trees.dtype, trees.shape))
         self.assertEqual((np.uint16, disparity.shape + (2,)), (intervals.dtype, intervals.shape))
         self.assertSame((disparity / 16.0).astype(np.float32), matcher.getLayerDisparity(0))
-        stages, milliseconds = matcher.getStageTimes()
+        findings = matcher.getFindings()
+        stages, milliseconds = findings.stages, findings.stageTimes
+        self.assertTrue(repr(findings).startswith('HDPTreeMatcher.Findings(rows=array('), repr(findings))
+        with self.assertRaises(AttributeError):
+            findings.noise = 1
         self.assertIn('cost aggregation', stages)
         self.assertEqual(len(stages), len(milliseconds))
         # What is returned stays as it is, and needs no matcher.
@@ -368,9 +435,8 @@ class Matching(Test):
 class Strategies(Test):
     def match(self, strategy, prediction=True):
         matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_TREE)
-        matcher.setAggregation(HDPTreeMatcher.AGGREGATION_TREES)  # scanlines make different trees much alike
-        matcher.setUsePrediction(prediction)
-        matcher.setTreeStrategy(strategy)
+        # Scanlines make different trees much alike.
+        change(matcher, aggregation=HDPTreeMatcher.AGGREGATION_TREES, usePrediction=prediction, treeStrategy=strategy)
         return matcher.compute(LEFT, RIGHT)
 
     def test_same_as_those_of_the_library(self):
@@ -445,7 +511,7 @@ class Strategies(Test):
             return type('Ordering', (MinimumSpanningTree,), {'orderEdges': lambda self, weights, edges: order(edges)})()
 
         matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_TREE)
-        uses_matcher = type('Uses', (TreeStrategy,), {'mayJoin': lambda *arguments: matcher.getGamma()})()
+        uses_matcher = type('Uses', (TreeStrategy,), {'mayJoin': lambda *arguments: matcher.getParams()})()
         expected = matcher.compute(LEFT, RIGHT)
         permutation = 'treeStrategy: orderEdges must leave a permutation of the edges'
         for kind, text, strategy in (
@@ -492,7 +558,8 @@ class Storage(Test):
     def test_matcher(self):
         matcher = HDPTreeMatcher(-3, 40, HDPTreeMatcher.PRESET_PAPER)
         matcher.setTreeStrategy(hdpstereo.createSegmentTree(77))
-        matcher.setPredictionModel(DisparityPredictionModel.createPublished(DisparityPredictionModel.PUBLISHED_SMALL))
+        change(matcher,
+               predictionModel=DisparityPredictionModel.createPublished(DisparityPredictionModel.PUBLISHED_SMALL))
         expected = matcher.compute(LEFT, RIGHT)
         copies = [pickle.loads(pickle.dumps(matcher)), copy.deepcopy(matcher)]
         for name in ('matcher.yml', 'matcher.xml', 'matcher.json'):
@@ -505,14 +572,14 @@ class Storage(Test):
     def test_strategy_of_ones_own(self):
         matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_TREE)
         matcher.setTreeStrategy(SegmentTree(300))
-        matcher.setGamma(7)
+        change(matcher, gamma=7)
         matcher.save(self.path / 'own.yml')
         text = 'treeStrategy: set a strategy named SegmentTree before reading'
         self.assertRaisesText(ValueError, text, HDPTreeMatcher.load, self.path / 'own.yml')
         other = HDPTreeMatcher(0, 32)
         other.setTreeStrategy(SegmentTree(300))
         other.read(self.path / 'own.yml')
-        self.assertEqual(7, other.getGamma())
+        self.assertEqual(7, other.getParams().gamma)
         self.assertRaises(TypeError, pickle.dumps, matcher)
 
     def test_bad_files(self):
@@ -541,17 +608,17 @@ class Storage(Test):
 class Models(Test):
     def test_own(self):
         matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_PAPER)
-        self.assertIsNone(matcher.getPredictionModel())
+        self.assertIsNone(matcher.getParams().predictionModel)
         expected = matcher.compute(LEFT, RIGHT)
         model = DisparityPredictionModel()
         model.addLayer([0, 1.5], np.array([0.75, 4]), (0.25, 0.75))
-        matcher.setPredictionModel(model)
+        change(matcher, predictionModel=model)
         self.assertRaisesText(ValueError, 'predictionModel must have numLayers - 1 = 2 layers, not 1', matcher.compute,
                               LEFT, RIGHT)
         model.addLayer([0.5], [6], [1])
-        self.assertEqual(2, matcher.getPredictionModel().getNumLayers())
+        self.assertEqual(2, matcher.getParams().predictionModel.getNumLayers())
         self.assertTrue((expected != matcher.compute(LEFT, RIGHT)).any())
-        matcher.setPredictionModel(None)
+        change(matcher, predictionModel=None)
         self.assertSame(expected, matcher.compute(LEFT, RIGHT))
         means, sigmas, weights = model.getLayer(0)
         density = np.dot(weights, np.exp(-0.5 * ((2 - means) / sigmas) ** 2) / (np.sqrt(2 * np.pi) * sigmas))

@@ -24,24 +24,25 @@ class Contours(hdpstereo.TreeStrategy):
 
 def match(left: npt.NDArray[np.uint8], right: npt.NDArray[np.uint8]) -> Tuple[npt.NDArray[np.int16], List[str]]:
     matcher = HDPTreeMatcher.create(0, 64, preset=HDPTreeMatcher.PRESET_TREE)
-    matcher.setTreeStrategy(Contours())
-    matcher.setGamma(10)
-    matcher.setMatchingCost(HDPTreeMatcher.MatchingCost.COST_CENSUS)
-    cost: HDPTreeMatcher.MatchingCost = matcher.getMatchingCost()
+    params = HDPTreeMatcher.Params(HDPTreeMatcher.PRESET_TREE, gamma=10, treeStrategy=Contours())
+    params.matchingCost = HDPTreeMatcher.MatchingCost.COST_CENSUS
+    params.predictionModel = DisparityPredictionModel.createPublished(DisparityPredictionModel.PUBLISHED_SMALL)
+    matcher.setParams(params)
+    cost: HDPTreeMatcher.MatchingCost = matcher.getParams().matchingCost
     preset: HDPTreeMatcher.Preset = HDPTreeMatcher.PRESET_QUALITY
-    matcher.setPredictionModel(DisparityPredictionModel.createPublished(DisparityPredictionModel.PUBLISHED_SMALL))
     disparity: npt.NDArray[np.int16] = matcher.compute(left, right)
     confidence: Optional[npt.NDArray[np.uint8]] = matcher.getConfidence()
     if confidence is not None:
         disparity[confidence < 50] = -16
     matcher.save(pathlib.Path(cost.name + preset.name + '.yml'))
-    moved: bool = matcher.getRowAlignment()[0]
-    stages, milliseconds = matcher.getStageTimes()
-    return disparity, stages if moved else []
+    findings = matcher.getFindings()
+    return disparity, findings.stages if findings.areRowsMoved else []
 
 
 matcher = HDPTreeMatcher()
-matcher.setGamma('wide')  # type: ignore[arg-type]
-matcher.setNumLayers(1.5)  # type: ignore[arg-type]
+matcher.setNoiseThreshold('wide')  # type: ignore[arg-type]
+matcher.setMaxRowOffset(1.5)  # type: ignore[arg-type]
+matcher.getParams().gamma = 'wide'  # type: ignore[assignment]
+HDPTreeMatcher.Params(numLayers=1.5)  # type: ignore[arg-type]
 matcher.compute([[1]], [[2]])  # type: ignore[arg-type]
 matcher.getSomething()  # type: ignore[attr-defined]

@@ -10,26 +10,31 @@ function valueInCode(name, value, { parameters, enumerations }, scope, isPython)
     const parameter = parameters.find(p => p.name === name);
     if (!parameter) return null;
     const found = Object.entries(enumerations).find(
-        ([title]) => parameter.kind === 'int' && parameter.method.endsWith(title),
+        ([title]) => parameter.kind === 'int' && name.toLowerCase().endsWith(title.toLowerCase()),
     );
     if (found) return `${scope}${found[1].find(option => option.value === value).name}`;
     if (parameter.kind === 'bool') return isPython ? (value ? 'True' : 'False') : String(value);
     return String(value);
 }
 
-function setters(settings, documentation, scope, call, isPython) {
-    return Object.entries(settings.changes)
-        .map(([name, value]) => {
-            const strategy = strategies.find(s => name === 'treeStrategy' && s.name === value);
-            const [method, argument] = strategy
-                ? ['TreeStrategy', `${isPython ? 'hdpstereo.' : 'cv::stereo::'}${strategy.factory}()`]
-                : [
-                      documentation.parameters.find(p => p.name === name).method,
-                      valueInCode(name, value, documentation, scope, isPython),
-                  ];
-            return `${call}set${method}(${argument})${isPython ? '' : ';'}\n`;
-        })
-        .join('');
+function changesInCode(settings, documentation, isPython) {
+    const scope = isPython ? 'hdpstereo.HDPTreeMatcher.' : 'HDPTreeMatcher::',
+        call = isPython ? 'matcher.' : 'matcher->',
+        end = isPython ? '\n' : ';\n';
+    let setters = '',
+        fields = '';
+    for (const [name, value] of Object.entries(settings.changes)) {
+        const parameter = documentation.parameters.find(p => p.name === name),
+            strategy = strategies.find(s => name === 'treeStrategy' && s.name === value),
+            argument = strategy
+                ? `${isPython ? 'hdpstereo.' : 'cv::stereo::'}${strategy.factory}()`
+                : valueInCode(name, value, documentation, scope, isPython);
+        if (parameter?.method) setters += `${call}set${parameter.method}(${argument})${end}`;
+        else fields += `params.${name} = ${argument}${end}`;
+    }
+    if (fields)
+        fields = `${isPython ? '' : 'auto '}params = ${call}getParams()${end}${fields}${call}setParams(params)${end}`;
+    return setters + fields;
 }
 
 export function codeOf(settings, documentation) {
@@ -38,14 +43,14 @@ export function codeOf(settings, documentation) {
         'using cv::stereo::HDPTreeMatcher;\n' +
         'auto matcher = HDPTreeMatcher::create(\n' +
         `    ${minDisparity}, ${numDisparities}, HDPTreeMatcher::PRESET_${preset});\n` +
-        setters(settings, documentation, 'HDPTreeMatcher::', 'matcher->', false) +
+        changesInCode(settings, documentation, false) +
         'cv::Mat disparity;\n' +
         'matcher->compute(left, right, disparity); // 16 * disparity';
     const python =
         'import hdpstereo\n' +
         'matcher = hdpstereo.HDPTreeMatcher.create(\n' +
         `    ${minDisparity}, ${numDisparities}, hdpstereo.HDPTreeMatcher.PRESET_${preset})\n` +
-        setters(settings, documentation, 'hdpstereo.HDPTreeMatcher.', 'matcher.', true) +
+        changesInCode(settings, documentation, true) +
         'disparity = matcher.compute(left, right)  # 16 * disparity';
     return { cpp, python };
 }

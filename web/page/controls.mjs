@@ -32,7 +32,6 @@ const groups = [
 const elsewhere = ['minDisparity', 'numDisparities', 'disparityDepth', 'useTemporalPrediction'];
 const treeStrategy = {
     name: 'treeStrategy',
-    method: 'TreeStrategy',
     kind: 'strategy',
     brief: 'Rule 1 and Rule 2 of the spanning trees.',
     text: 'Rule 1 and Rule 2 of the spanning trees.',
@@ -195,7 +194,7 @@ export class Controls {
         return node;
     }
 
-    #input({ name, kind, method, bounds }, id) {
+    #input({ name, kind, bounds }, id) {
         const choose = options => {
             const input = element('select');
             for (const { name: title, value } of options)
@@ -222,7 +221,7 @@ export class Controls {
             };
         }
         const enumeration = Object.entries(this.documentation.enumerations).find(
-            ([title]) => kind === 'int' && method.endsWith(title),
+            ([title]) => kind === 'int' && name.toLowerCase().endsWith(title.toLowerCase()),
         );
         if (enumeration) {
             const select = choose(enumeration[1]);

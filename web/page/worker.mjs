@@ -18,8 +18,8 @@ function presetNumber(name) {
 }
 
 function readParameters(matcher) {
-    const values = { treeStrategy: matcher.getTreeStrategy() };
-    for (const { name, method } of parameters) values[name] = matcher[`get${method}`]();
+    const values = { treeStrategy: matcher.getTreeStrategy(), ...matcher.getParams() };
+    for (const { name, method } of parameters) if (method) values[name] = matcher[`get${method}`]();
     return values;
 }
 
@@ -37,10 +37,13 @@ function presetValues(names) {
 function applySettings(matcher, { minDisparity, numDisparities, changes }) {
     matcher.setMinDisparity(minDisparity);
     matcher.setNumDisparities(numDisparities);
+    const fields = {}; // of Params
     for (const [name, value] of Object.entries(changes)) {
         const parameter = parameters.find(p => p.name === name);
-        matcher[`set${parameter ? parameter.method : 'TreeStrategy'}`](value);
+        if (parameter && !parameter.method) fields[name] = value;
+        else matcher[`set${parameter ? parameter.method : 'TreeStrategy'}`](value);
     }
+    matcher.setParams(fields);
 }
 
 function createMatcher(settings) {
@@ -59,15 +62,14 @@ function createMatcher(settings) {
 }
 
 function findings(matcher) {
-    const rows = matcher.getRowAlignment(),
-        light = matcher.getLightAlignment();
+    const found = matcher.getFindings();
     return {
-        noise: matcher.getNoiseLevel(),
+        noise: found.noise,
         noiseThreshold: matcher.getNoiseThreshold(),
-        rows: { sought: matcher.getMaxRowOffset() > 0, moved: rows.result, model: rows.model },
-        light: { sought: matcher.getUseLightAlignment(), changed: light.result, model: light.model },
-        ratios: matcher.getSearchRatios(),
-        times: matcher.getStageTimes(),
+        rows: { sought: matcher.getMaxRowOffset() > 0, moved: found.areRowsMoved, model: found.rows },
+        light: { sought: matcher.getUseLightAlignment(), changed: found.isLightChanged, model: found.light },
+        ratios: found.searchRatios,
+        times: { stages: found.stages, milliseconds: found.stageTimes },
     };
 }
 

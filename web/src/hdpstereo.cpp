@@ -2,7 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// HDPTreeMatcher for JavaScript. Methods have the names of the header; images are objects of width, height and data.
+// HDPTreeMatcher for JavaScript. Methods have the names of the header; images are objects of width, height and data,
+// Params and Findings objects with their fields. The tree strategy is no field, but has its accessors.
 
 #include <emscripten/bind.h>
 
@@ -49,6 +50,13 @@ template <typename T> val arrayOf(const std::vector<T>& values)
 
 val toJavaScript(const std::vector<double>& values) { return arrayOf(values); }
 val toJavaScript(const std::vector<std::string>& values) { return arrayOf(values); }
+
+//! A property of an object, if it has it
+template <typename T> void read(const val& object, const char* name, T& value)
+{
+    if (object.hasOwnProperty(name))
+        value = object[name].as<T>();
+}
 
 template <typename T> val valuesOf(const cv::Mat& image)
 {

@@ -46,11 +46,11 @@ test('the pairs have rows to move, light to change and noise', () => {
     const matcher = hdp.HDPTreeMatcher.create(-5, 70, hdp.PRESET_FAST),
         { left, right } = pairs[2].images;
     matcher.compute(left, right);
-    const rows = matcher.getRowAlignment();
-    assert.equal(rows.result, true);
-    assert.ok(Math.abs(Math.abs(rows.model[0]) - 2) < 0.3, `${rows.model}`);
-    assert.equal(matcher.getLightAlignment().result, true);
-    assert.ok(matcher.getNoiseLevel() > 3);
+    const { rows, areRowsMoved, isLightChanged, noise } = matcher.getFindings();
+    assert.equal(areRowsMoved, true);
+    assert.ok(Math.abs(Math.abs(rows[0]) - 2) < 0.3, `${rows}`);
+    assert.equal(isLightChanged, true);
+    assert.ok(noise > 3);
     matcher.delete();
 });
 
@@ -59,12 +59,15 @@ test('setters take what getters return, and refuse what is out of range', () => 
     assert.ok(parameters.length > 30);
     const matcher = hdp.HDPTreeMatcher.create(0, 64, hdp.PRESET_QUALITY);
     for (const { name, method, brief, text } of parameters) {
-        const value = matcher[`get${method}`]();
-        matcher[`set${method}`](value);
-        assert.equal(matcher[`get${method}`](), value, name);
+        const get = () => (method ? matcher[`get${method}`]() : matcher.getParams()[name]),
+            value = get();
+        assert.notEqual(value, undefined, name);
+        if (method) matcher[`set${method}`](value);
+        else matcher.setParams({ [name]: value });
+        assert.equal(get(), value, name);
         assert.ok(brief.length > 10 && !/[\\@{}]/.test(text), `${name}: ${text}`);
     }
-    assert.throws(() => matcher.setP1(101), /P1 must be in 0..100, not 101/);
+    assert.throws(() => matcher.setParams({ P1: 101 }), /P1 must be in 0..100, not 101/);
     assert.throws(() => matcher.setTreeStrategy('oak'), /treeStrategy must be MST, ST or RT/);
     assert.throws(() => hdp.HDPTreeMatcher.create(0, 0, hdp.PRESET_FAST), /numDisparities must be > 0/);
     const { left } = pairs[0].images;
@@ -81,9 +84,9 @@ test('all results of a run', () => {
         confidence = matcher.getConfidence();
     assert.deepEqual([map.width, map.height, confidence.width, confidence.height], [640, 480, 640, 480]);
     assert.ok(confidence.data instanceof Uint8Array && confidence.data.some(value => value > 100));
-    assert.equal(matcher.getSearchRatios().length, 3);
-    const { stages, milliseconds } = matcher.getStageTimes();
-    assert.ok(stages.length > 5 && stages.length === milliseconds.length);
+    const { searchRatios, stages, stageTimes } = matcher.getFindings();
+    assert.equal(searchRatios.length, 3);
+    assert.ok(stages.length > 5 && stages.length === stageTimes.length);
     const { trees, intervals } = matcher.getForest();
     assert.ok(trees.data instanceof Int32Array && intervals.data.length === 2 * trees.data.length);
     assert.ok(matcher.getLayerPrior(0).length > 10);

@@ -269,11 +269,11 @@ test('what the matcher found, and a parameter that changes the map', async () =>
     await setNumber('P1', 3);
     await matched();
     assert.notDeepEqual(await download('pfm'), before);
-    assert.match(await page.textContent('#code-cpp'), /matcher->setP1\(3\);/);
-    assert.match(await page.textContent('#code-python'), /matcher\.setP1\(3\)/);
+    assert.match(await page.textContent('#code-cpp'), /params\.P1 = 3;/);
+    assert.match(await page.textContent('#code-python'), /params\.P1 = 3\nmatcher\.setParams/);
     await page.selectOption('#parameter-treeStrategy', 'RT');
     await matched();
-    assert.match(await page.textContent('#code-cpp'), /setTreeStrategy\(cv::stereo::createRandomTree\(\)\)/);
+    assert.match(await page.textContent('#code-cpp'), /params\.treeStrategy = cv::stereo::createRandomTree\(\);/);
     await page.click('[data-copy=code-cpp]');
     assert.equal(await page.evaluate(() => navigator.clipboard.readText()), await page.textContent('#code-cpp'));
     await page.click('#reset');

@@ -16,7 +16,8 @@
 #include "opencv2/hdpstereo/disparity_prediction.hpp"
 #include "opencv2/hdpstereo/tree_strategy.hpp"
 
-namespace cv { namespace stereo {
+namespace cv {
+namespace stereo {
 
 //! @addtogroup hdpstereo
 //! @{
@@ -555,6 +556,7 @@ public:
 
 //! @}
 
-}} // namespace cv::stereo
+} // namespace stereo
+} // namespace cv
 
 #endif

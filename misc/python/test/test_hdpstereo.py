@@ -69,12 +69,29 @@ PARAMETERS = {
 }
 
 
+def field(parameter):
+    return parameter if parameter in ('P1', 'P2') else parameter[0].lower() + parameter[1:]
+
+
+def change(matcher, **fields):
+    '''Sets fields of a matcher's Params.'''
+    params = matcher.getParams()
+    for name, value in fields.items():
+        setattr(params, name, value)
+    matcher.setParams(params)
+
+
 def get(matcher, parameter):
-    return getattr(matcher, 'get' + parameter)()
+    if hasattr(matcher, 'get' + parameter):
+        return getattr(matcher, 'get' + parameter)()
+    return getattr(matcher.getParams(), field(parameter))
 
 
 def set_(matcher, parameter, value):
-    getattr(matcher, 'set' + parameter)(value)
+    if hasattr(matcher, 'set' + parameter):
+        getattr(matcher, 'set' + parameter)(value)
+    else:
+        change(matcher, **{field(parameter): value})
 
 
 def parameters(matcher):
@@ -157,7 +174,11 @@ class hdpstereo_test(TestCase):
     def test_parameters(self):
         matcher = cv.stereo.HDPTreeMatcher.create(-3, 40, PRESETS['PAPER'])
         setters = set(name[3:] for name in dir(matcher) if name.startswith('set'))
-        self.assertEqual(setters, set(PARAMETERS) | set(['TreeStrategy', 'PredictionModel']), 'one is not tested')
+        self.assertEqual(set(), setters - set(PARAMETERS) - set(['TreeStrategy', 'Params']), 'one is not tested')
+        fields = set(name for name in dir(matcher.getParams()) if not name.startswith('_'))
+        only_matcher = set(['minDisparity', 'numDisparities', 'speckleWindowSize', 'speckleRange', 'disp12MaxDiff'])
+        self.assertEqual(fields, set(field(name) for name in PARAMETERS) - only_matcher |
+                         set(['treeStrategy', 'predictionModel']), 'one is not tested')
         for name, (default, other) in PARAMETERS.items():
             before = parameters(matcher)
             self.assertEqual(default, before[name], name)
@@ -185,6 +206,9 @@ class hdpstereo_test(TestCase):
             for parameter, value in parameters(expected).items():
                 set_(matcher, parameter, value)
             matcher.setTreeStrategy(expected.getTreeStrategy())
+            self.assertSame(expected.compute(self.left, self.right), matcher.compute(self.left, self.right))
+            matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
+            matcher.setParams(cv.stereo.HDPTreeMatcher.Params(preset))
             self.assertSame(expected.compute(self.left, self.right), matcher.compute(self.left, self.right))
 
     # ---- Images
@@ -345,32 +369,33 @@ class hdpstereo_test(TestCase):
         moved = np.roll(self.right, 2, axis=0)  # the right camera looks 2 rows higher
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
         matcher.compute(self.left, moved)
-        aligned, model = matcher.getRowAlignment()
-        self.assertTrue(aligned)
-        self.assertEqual(5, len(model))
-        self.assertAlmostEqual(2, model[0], delta=0.1)
+        findings = matcher.getFindings()
+        self.assertTrue(findings.areRowsMoved)
+        self.assertEqual(5, len(findings.rows))
+        self.assertAlmostEqual(2, findings.rows[0], delta=0.1)
         matcher.compute(self.left, self.right)
-        self.assertFalse(matcher.getRowAlignment()[0])
+        self.assertFalse(matcher.getFindings().areRowsMoved)
+        self.assertTrue(findings.areRowsMoved, 'what was found before stays as it was')
 
     def test_noise_level(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
-        self.assertEqual(0, matcher.getNoiseLevel())
+        self.assertEqual(0, matcher.getFindings().noise)
         rng = np.random.default_rng(1)
         noisy = [np.clip(np.rint(image + rng.normal(0, 8, image.shape)), 0, 255).astype(np.uint8)
                  for image in (self.left, self.right)]
         matcher.compute(*noisy)
-        self.assertGreater(matcher.getNoiseLevel(), 3)
+        self.assertGreater(matcher.getFindings().noise, 3)
 
     def test_light_alignment(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
         matcher.compute(self.left, self.right // 2)
-        aligned, model = matcher.getLightAlignment()
-        self.assertTrue(aligned)
+        self.assertTrue(matcher.getFindings().isLightChanged)
+        model = matcher.getFindings().light
         self.assertEqual(10, len(model))
         level = 0.25  # of the darker image
         self.assertAlmostEqual(0.5, level * model[0] + model[7] + level**2 * model[8] + level**3 * model[9], delta=0.03)
         matcher.compute(self.left, self.right)
-        self.assertFalse(matcher.getLightAlignment()[0])
+        self.assertFalse(matcher.getFindings().isLightChanged)
 
     def test_video(self):
         video = cv.stereo.HDPTreeMatcher.create(0, 32)
@@ -392,12 +417,12 @@ class hdpstereo_test(TestCase):
 
     def test_what_the_last_compute_did(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32, PRESETS['PAPER'])
-        self.assertEqual(0, len(matcher.getSearchRatios()))
+        self.assertEqual(0, len(matcher.getFindings().searchRatios))
         self.assertEqual((None, None), matcher.getForest())
         self.assertIsNone(matcher.getLayerDisparity(0))
-        self.assertEqual(0, len(matcher.getStageTimes()[0]))
+        self.assertEqual(0, len(matcher.getFindings().stages))
         disparity = matcher.compute(self.left, self.right)
-        ratios = matcher.getSearchRatios()
+        ratios = matcher.getFindings().searchRatios
         self.assertEqual(3, len(ratios))
         self.assertEqual(1, ratios[2])
         self.assertTrue(0 < ratios[0] < 1)
@@ -415,7 +440,7 @@ class hdpstereo_test(TestCase):
             self.assertEqual((np.float32, (height >> layer, width >> layer)), (found.dtype, found.shape))
         self.assertIsNone(matcher.getLayerDisparity(3))
         self.assertSame((disparity / 16.0).astype(np.float32), matcher.getLayerDisparity(0))
-        stages, milliseconds = matcher.getStageTimes()
+        stages, milliseconds = matcher.getFindings().stages, matcher.getFindings().stageTimes
         self.assertIn('cost aggregation', stages)
         self.assertEqual(len(stages), len(milliseconds))
         self.assertGreater(np.sum(milliseconds), 0)
@@ -434,7 +459,7 @@ class hdpstereo_test(TestCase):
                 for strategy in variants:
                     self.assertIsInstance(strategy, cv.stereo.TreeStrategy)
                     matcher = cv.stereo.HDPTreeMatcher.create(0, 32, PRESETS['PAPER'])
-                    matcher.setUsePrediction(prediction)
+                    change(matcher, usePrediction=prediction)
                     matcher.setTreeStrategy(strategy)
                     self.assertEqual(name, matcher.getTreeStrategy().getDefaultName())
                     disparity = matcher.compute(self.left, self.right)
@@ -464,21 +489,21 @@ class hdpstereo_test(TestCase):
 
     def test_own_model(self):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32, PRESETS['PAPER'])
-        self.assertIsNone(matcher.getPredictionModel())
+        self.assertIsNone(matcher.getParams().predictionModel)
         expected = matcher.compute(self.left, self.right)
 
         model = cv.stereo.DisparityPredictionModel.create()
         self.assertEqual(0, model.getNumLayers())
         model.addLayer([0.0, 1.5], [0.75, 4.0], [0.25, 0.75])
-        matcher.setPredictionModel(model)
+        change(matcher, predictionModel=model)
         self.assertRejected('predictionModel must have numLayers - 1 = 2 layers, not 1',
                             matcher.compute, self.left, self.right)
         model.addLayer([0.5], [6.0], [1.0])  # the matcher has the same model
-        self.assertEqual(2, matcher.getPredictionModel().getNumLayers())
+        self.assertEqual(2, matcher.getParams().predictionModel.getNumLayers())
         self.assertFalse(np.array_equal(expected, matcher.compute(self.left, self.right)))
         self.assertGreater(matcher.getLayerPrior(0).size, 0)
-        matcher.setPredictionModel(None)
-        self.assertIsNone(matcher.getPredictionModel())
+        change(matcher, predictionModel=None)
+        self.assertIsNone(matcher.getParams().predictionModel)
         self.assertSame(expected, matcher.compute(self.left, self.right))
 
     def train_layer(self):
@@ -514,7 +539,7 @@ class hdpstereo_test(TestCase):
         model.train(disparities, upper, maxComponents=1)
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32, PRESETS['PAPER'])
         expected = matcher.compute(self.left, self.right)
-        matcher.setPredictionModel(model)
+        change(matcher, predictionModel=model)
         self.assertFalse(np.array_equal(expected, matcher.compute(self.left, self.right)))
 
     def test_model_files(self):
@@ -534,8 +559,8 @@ class hdpstereo_test(TestCase):
         for name, (_, other) in PARAMETERS.items():
             set_(matcher, name, other)
         matcher.setTreeStrategy(cv.stereo.createSegmentTree(77))
-        matcher.setPredictionModel(
-            cv.stereo.DisparityPredictionModel.createPublished(cv.stereo.DisparityPredictionModel_PUBLISHED_SMALL))
+        change(matcher, predictionModel=cv.stereo.DisparityPredictionModel.createPublished(
+            cv.stereo.DisparityPredictionModel_PUBLISHED_SMALL))
         expected = matcher.compute(self.left, self.right)
         for extension in ('yml', 'xml', 'json'):
             filename = self.path('matcher.' + extension)
@@ -543,7 +568,7 @@ class hdpstereo_test(TestCase):
             loaded = read_matcher(filename)
             self.assertEqual(parameters(matcher), parameters(loaded))
             self.assertEqual('hdpstereo_SegmentTree', loaded.getTreeStrategy().getDefaultName())
-            self.assertEqual(2, loaded.getPredictionModel().getNumLayers())
+            self.assertEqual(2, loaded.getParams().predictionModel.getNumLayers())
             self.assertSame(expected, loaded.compute(self.left, self.right))
 
         storage = cv.FileStorage(self.path('written.yml'), cv.FileStorage_WRITE)
@@ -604,7 +629,7 @@ class hdpstereo_test(TestCase):
                 ('ScanlinePasses', 5, 'scanlinePasses must be in 1..4, not 5'),
                 ('DisparityDepth', cv.CV_8U, 'disparityDepth must be CV_16S or CV_32F, not 0'),
                 ('TreeStrategy', None, 'treeStrategy must not be empty')):
-            self.assertRejected(message, getattr(matcher, 'set' + setter), value)
+            self.assertRejected(message, set_, matcher, setter, value)
         self.assertRejected('numDisparities must be > 0, not -16', cv.stereo.HDPTreeMatcher.create, 0, -16)
         self.assertRejected('preset must be one of HDPTreeMatcher::PRESET_*, not 9',
                             cv.stereo.HDPTreeMatcher.create, 0, 16, 9)
@@ -619,7 +644,7 @@ class hdpstereo_test(TestCase):
                             cv.stereo.DisparityPredictionModel.load, self.path('none.yml'))
         self.assertEqual(0, model.getNumLayers())
         for bad in ('wide', [1], {}):  # not a number: an error of the bindings
-            self.assertRaises((TypeError, cv.error), matcher.setGamma, bad)
+            self.assertRaises((TypeError, cv.error), change, matcher, gamma=bad)
         self.assertEqual(before, parameters(matcher))
 
     def test_bad_images(self):
@@ -653,6 +678,16 @@ class hdpstereo_test(TestCase):
         self.assertSame(expected, matcher.compute(left, right))  # as usable as before
 
     # ---- In the place of cv.StereoSGBM
+
+    def test_create_like(self):
+        sgbm = cv.StereoSGBM.create(-2, 48, 5, P1=8 * 75, P2=32 * 75, disp12MaxDiff=1, speckleWindowSize=100,
+                                    speckleRange=2)
+        matcher = cv.stereo.HDPTreeMatcher.createLike(sgbm, PRESETS['QUALITY'])
+        expected = cv.stereo.HDPTreeMatcher.create(-2, 48, PRESETS['QUALITY'])
+        for name, value in (('Disp12MaxDiff', 1), ('SpeckleWindowSize', 100), ('SpeckleRange', 2)):
+            set_(expected, name, value)
+        self.assertEqual(parameters(expected), parameters(matcher))
+        self.assertRejected('sgbm must not be empty', cv.stereo.HDPTreeMatcher.createLike, None)
 
     def test_flow_of_stereo_match(self):
         # What OpenCV's samples/python/stereo_match.py does
