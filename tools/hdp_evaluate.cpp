@@ -46,14 +46,8 @@ static void writeText(const String& path, const String& text)
         fail("cannot write '" + path + "'");
 }
 
-static int run(const CommandLineParser& parser)
+static EvaluationSettings readSettings(const CommandLineParser& parser)
 {
-    if (useTunables(parser))
-        return 0;
-    if (!parser.has("@root"))
-        fail("a folder is needed, see --help");
-    setThreads(parser);
-    const int threads = getNumThreads();
     const Ptr<DisparityPredictionModel> model = parser.has("model")
                                                     ? DisparityPredictionModel::load(parser.get<String>("model"))
                                                     : Ptr<DisparityPredictionModel>();
@@ -65,6 +59,27 @@ static int run(const CommandLineParser& parser)
     settings.maps = parser.get<String>("maps");
     settings.hasReport = parser.has("report");
     settings.changes = selectChanges(parser);
+    return settings;
+}
+
+//! What the figures are of, if not of the pairs as they are
+static String changesText(const std::vector<HarmlessChange>& changes)
+{
+    String text;
+    for (const HarmlessChange& change : changes)
+        text += (text.empty() ? "Means over the changes " : ", ") + change.name;
+    return text;
+}
+
+static int run(const CommandLineParser& parser)
+{
+    if (useTunables(parser))
+        return 0;
+    if (!parser.has("@root"))
+        fail("a folder is needed, see --help");
+    setThreads(parser);
+    const int threads = getNumThreads();
+    const EvaluationSettings settings = readSettings(parser);
 
     std::vector<SceneResult> results;
     for (const Scene& scene : selectScenes(parser))
@@ -88,9 +103,8 @@ static int run(const CommandLineParser& parser)
     const int bad = evaluateScenes(settings, results);
 
     const std::vector<Table> tables = makeTables(settings.methods, results, settings.jobs);
-    String text, changes;
-    for (const HarmlessChange& change : settings.changes)
-        changes += (changes.empty() ? "Means over the changes " : ", ") + change.name;
+    String text;
+    const String changes = changesText(settings.changes);
     std::cout << changes << (changes.empty() ? "" : "\n\n");
     for (const Table& table : tables)
     {

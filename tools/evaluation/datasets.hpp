@@ -6,7 +6,8 @@
 //
 // - Middlebury 2005 and 2006 as published (SCENE/view1, view5, disp1, disp5; of the sets of 7 views, the images are in
 //   SCENE/Illum1/Exp0 and so on) or with plain names (SCENE/left, right, disp_left, disp_right), 2003 (im2, im6, disp2,
-//   disp6), 2014 (im0, im1, disp0, disp1, calib.txt) and MiddEval3 (im0, im1, disp0GT, disp1GT or mask0nocc, calib.txt);
+//   disp6), 2014 (im0, im1, disp0, disp1, calib.txt) and MiddEval3 (im0, im1, disp0GT, disp1GT or mask0nocc, calib.txt),
+//   or other pairs in one of these layouts, such as those of SceneFlow in MiddEval3's;
 // - MiddEval3 and ETH3D with plain names: left, right, disp_left in PFM, nonoccluded, calib.txt;
 // - KITTI 2015 (image_2, image_3, disp_occ_0, disp_noc_0: a folder each, with a file for every frame), 2012
 //   (colored_0, colored_1 or image_0, image_1, disp_occ, disp_noc) and videos (left, right, disp_lidar), or a folder

@@ -202,6 +202,14 @@ TEST(HDPStereo_Datasets, middlebury_2014_and_eval3)
     folder.write("trainingH/Piano/mask0nocc.png", mask);
     found = findScenes(folder.root);
     EXPECT_EQ(12 * 12, countNonZero(readPair(found[2]).judged));
+    EXPECT_FALSE(readPair(found[2]).rightTruth.empty());
+
+    // With the mask, no right truth is needed: MiddEval3 as published, and SceneFlow in its layout.
+    ASSERT_EQ(0, std::remove(folder.path("trainingH/Piano/disp1GT.pfm").c_str()));
+    const Pair masked = readPair(findScenes(folder.root)[2]);
+    EXPECT_EQ(12 * 12, countNonZero(masked.judged));
+    EXPECT_TRUE(masked.rightTruth.empty());
+    EXPECT_EQ(Pair::BAD, masked.protocol);
 
     for (const char* text : { "", "ndisp=\n", "ndisp=many\n", "ndisp=70x\n", "ndisp=0\n", "ndisp=-5\n", "ndisp=99999\n",
                               "ndisp=9999999999999999999999\n" })

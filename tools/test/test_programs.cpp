@@ -13,7 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 TEST(HDPStereo_Programs, help_and_wrong_arguments)
 {
@@ -504,6 +505,7 @@ TEST(HDPStereo_Programs, live)
     EXPECT_EQ(1, run(folder, "example_hdpstereo_hdp_live no/such/video.avi --no-gui").status);
 }
 
-}} // namespace opencv_test
+} // namespace
+} // namespace opencv_test
 
 #endif

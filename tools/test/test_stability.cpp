@@ -9,7 +9,8 @@
 
 #include "evaluation/stability.hpp"
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 using namespace hdp_tools;
 
@@ -283,4 +284,5 @@ TEST(HDPStereo_Stability, right_view_by_hand)
     expectIdentical(Mat_<float>({ 1, 6 }, { 2, 3, none, 0, none, none }), warped); // the nearer one of two
 }
 
-}} // namespace opencv_test
+} // namespace
+} // namespace opencv_test

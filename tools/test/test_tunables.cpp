@@ -9,7 +9,8 @@
 
 #ifdef __unix__
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 const char* const programs[] = { "hdp_evaluate", "hdp_parameters", "hdp_robustness", "hdp_stability" };
 
@@ -107,6 +108,7 @@ TEST(HDPStereo_Tunables, not_of_this_build)
 
 #endif
 
-}} // namespace opencv_test
+} // namespace
+} // namespace opencv_test
 
 #endif // __unix__
