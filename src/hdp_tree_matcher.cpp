@@ -209,8 +209,8 @@ private:
         return result_.isMatched && layer >= result_.plan.finest().layer && layer <= result_.plan.top().layer;
     }
 
-    //! From the images to the disparities of the finest layer. CONTRADICTED: the pair was matched as the next frame of a
-    //! video, and is none.
+    //! From the images to the disparities of the finest layer. CONTRADICTED: the pair was matched as the next frame of
+    //! a video, and is none.
     Verdict matchPair(const Mat& left, const Mat& right, const PairPlan& pairPlan)
     {
         const int finest = pairPlan.finest().layer;

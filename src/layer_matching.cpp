@@ -124,8 +124,8 @@ private:
         assignIntervals(in_.upper->disparity, size, shared_.intervals, own_.pixelIntv);
     }
 
-    //! What gives the edge weights. The median is that of the M+ systems, and of noisy pairs; as in the authors' program,
-    //! the cost does not see it.
+    //! What gives the edge weights. The median is that of the M+ systems, and of noisy pairs; as in the authors'
+    //! program, the cost does not see it.
     const Mat& guide()
     {
         if (!plan_.smoothsGuide)
@@ -192,8 +192,8 @@ private:
             });
     }
 
-    //! Scanlines over windows of candidates. The first pass takes them from the layer above, each other one from the pass
-    //! before.
+    //! Scanlines over windows of candidates. The first pass takes them from the layer above, each other one from the
+    //! pass before.
     void matchWindows()
     {
         const double windowed = std::min<double>(CandidateWindow::candidates, plan_.numDisparities);

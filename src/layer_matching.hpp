@@ -74,8 +74,8 @@ struct SharedScratch
     FrameMemory frame; // what the finest layer leaves to the next frame of a video
 };
 
-//! Section 3: from the disparities of the layer above to those of this layer. Returns what the frame is to the last one of
-//! a video, as joinLastFrame() does; FIRST on the layers above.
+//! Section 3: from the disparities of the layer above to those of this layer. Returns what the frame is to the last one
+//! of a video, as joinLastFrame() does; FIRST on the layers above.
 Verdict matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
                    LayerResult& result);
 

@@ -33,24 +33,27 @@ Errors errorsOf(const System& system, bool otherExposure)
     return errors;
 }
 
-//! A preset, and what its errors may be: a little more than was measured
-struct Limits
+//! What is allowed more than was measured
+const double margin = 1.05;
+
+//! A preset, and its errors as they were measured
+struct Measured
 {
     System preset;
-    double bad[3], mean; // with any exposure
-    double slanted;      // mean error on a slanted plane
+    double bad[3], mean; // the larger one with either exposure
+    double slanted;      // mean error on a slanted plane, of the worst seed
 };
 
-void PrintTo(const Limits& limits, std::ostream* out) { *out << limits.preset.name; }
+void PrintTo(const Measured& measured, std::ostream* out) { *out << measured.preset.name; }
 
-const Limits limits[] = {
-    { presetFast, { 7.2, 5, 3.4 }, 0.56, 0.27 },         // 6.38, 4.34, 2.86, 0.49, 0.240
-    { presetUltrafast, { 12.2, 4.3, 2.2 }, 0.53, 0.17 }, // 11.02, 3.77, 1.84, 0.46, 0.148
-    { presetQuality, { 7.2, 5.1, 3.6 }, 0.57, 0.25 },    // 6.58, 4.59, 3.23, 0.51, 0.219
-    { presetTree, { 10, 8.2, 6.9 }, 0.95, 0.2 },         // 9.13, 7.34, 6.08, 0.84, 0.178
+const Measured measured[] = {
+    { presetFast, { 4.073, 1.988, 0.886 }, 0.2041, 0.1087 },
+    { presetUltrafast, { 11.019, 3.773, 1.841 }, 0.4563, 0.1484 },
+    { presetQuality, { 3.778, 1.993, 1.002 }, 0.23, 0.0797 },
+    { presetTree, { 5.684, 3.651, 2.265 }, 0.3248, 0.1196 },
 };
 
-typedef testing::TestWithParam<Limits> HDPStereo_Preset;
+typedef testing::TestWithParam<Measured> HDPStereo_Preset;
 
 TEST_P(HDPStereo_Preset, error_on_synthetic_pairs)
 {
@@ -58,8 +61,8 @@ TEST_P(HDPStereo_Preset, error_on_synthetic_pairs)
     {
         const Errors errors = errorsOf(GetParam().preset, otherExposure);
         for (int i = 0; i < 3; ++i)
-            EXPECT_LE(errors.bad[i], GetParam().bad[i]) << i << ", other exposure " << otherExposure;
-        EXPECT_LE(errors.mean, GetParam().mean) << "other exposure " << otherExposure;
+            EXPECT_LE(errors.bad[i], margin * GetParam().bad[i]) << i << ", other exposure " << otherExposure;
+        EXPECT_LE(errors.mean, margin * GetParam().mean) << "other exposure " << otherExposure;
     }
 }
 
@@ -84,7 +87,7 @@ TEST_P(HDPStereo_Preset, sub_pixel_disparities_of_a_slanted_plane)
         change(*matcher, [&](Params& p) { p.useSubpixel = false; });
         const double whole = meanError(match(*matcher, pair.left, pair.right), pair.truth, pair.visible);
         // The whole disparity nearest to the truth is off by 0.25.
-        EXPECT_LE(subpixel, GetParam().slanted) << "seed " << seed;
+        EXPECT_LE(subpixel, margin * GetParam().slanted) << "seed " << seed;
         EXPECT_LE(subpixel, 0.75 * whole) << "seed " << seed;
     }
 }
@@ -122,6 +125,22 @@ TEST_P(HDPStereo_Preset, textured_surfaces_are_nearly_perfect)
     EXPECT_LE(meanError(disparity, truth, mask), isHalf ? 0.5 : 0.05);   // 0.031, 0.399, 0.021, 0.025
 }
 
-INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_Preset, testing::ValuesIn(limits));
+INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_Preset, testing::ValuesIn(measured));
+
+//! Real truth: percent of the pixels of OpenCV's Aloe pair that are wrong by 2 and more, occluded ones included
+TEST(HDPStereo_PresetsOnAloe, error)
+{
+    const Mat left = readSample("aloeL.jpg", IMREAD_COLOR), right = readSample("aloeR.jpg", IMREAD_COLOR);
+    const Mat truth8 = readSample("aloeGT.png", IMREAD_GRAYSCALE), known = truth8 > 0;
+    Mat truth;
+    truth8.convertTo(truth, CV_32F);
+    const std::pair<System, double> errors[] = {
+        { presetFast, 8.262 }, { presetQuality, 7.673 }, { presetUltrafast, 9.086 }, { presetTree, 9.519 }
+    };
+    for (const auto& preset : errors)
+        EXPECT_LE(badPixels(match(*createSystem(preset.first, 256), left, right), truth, known, 2),
+                  margin * preset.second)
+            << preset.first.name;
+}
 
 }} // namespace opencv_test

@@ -13,12 +13,9 @@
 //   export HDPSTEREO_WRITE_REFERENCE=<checkout>/testdata/cv/hdpstereo
 //   opencv_test_hdpstereo --gtest_filter='HDPStereo_ReferenceOutput*'
 //
-// The results of one build are always the same, for any number of threads. Compilers and instruction sets may add
-// floats in another order or with fused operations, so that a winner may change where two candidates are equal but for
-// rounding, and the layers below follow it: up to 0.2 % of the pixels was measured between GCC and Clang with and
-// without fused operations, 0.5 % may differ. Input that differs is another matter: if one pixel in a hundred is off by
-// a level, several percent of a map are others. So the aloe maps are skipped where the JPEG decoder gives other pixels
-// than libjpeg-turbo.
+// The maps are the same on every machine, for any instruction set and number of threads, so they are compared to the bit.
+// Input that differs is another matter: the aloe maps are skipped where the JPEG decoder gives other pixels than
+// libjpeg-turbo.
 
 #include "test_precomp.hpp"
 #include "helpers.hpp"
@@ -32,7 +29,6 @@ namespace opencv_test { namespace {
 //! Compares a matcher's map with its reference, or writes it.
 void checkReference(const std::string& name, HDPTreeMatcher& matcher, const Mat& left, const Mat& right)
 {
-    const double tolerance = 0.005;
     Mat map;
     if (matcher.getParams().useSubpixel)
         match(matcher, left, right).convertTo(map, CV_16U);
@@ -46,10 +42,7 @@ void checkReference(const std::string& name, HDPTreeMatcher& matcher, const Mat&
     }
     const Mat reference = cv::imread(cvtest::findDataFile("hdpstereo/" + name), IMREAD_UNCHANGED);
     ASSERT_FALSE(reference.empty());
-    ASSERT_EQ(map.type(), reference.type());
-    ASSERT_EQ(map.size(), reference.size());
-    const int different = countDifferent(reference, map);
-    EXPECT_LE(different, tolerance * map.total()) << name << ": " << 100. * different / map.total() << " % differ";
+    expectIdentical(reference, map);
 }
 
 //! FNV-1a of the pixels of a continuous image

@@ -4,8 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_DISPATCH_HPP
 #define OPENCV_HDPSTEREO_DISPATCH_HPP
 
-//! Defines dispatched::function(), which calls the function of a *.simd.hpp for the instruction set of this machine. After
-//! the include of STAGE.simd_declarations.hpp, which names the instruction sets.
+//! Defines dispatched::function(), which calls the function of a *.simd.hpp for the instruction set of this machine.
+//! After the include of STAGE.simd_declarations.hpp, which names the instruction sets.
 #define HDP_DISPATCH(function)                                                                                         \
     namespace dispatched {                                                                                             \
     template <typename... Args>                                                                                        \

@@ -8,8 +8,8 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! Where a parabola through three successive values has its minimum: from the middle one, in steps, at most half of one;
-//! 0 if it has none. Real: float or double, in which it is computed.
+//! Where a parabola through three successive values has its minimum: from the middle one, in steps, at most half of
+//! one; 0 if it has none. Real: float or double, in which it is computed.
 template <typename Real> Real parabolaOffset(Real before, Real middle, Real after)
 {
     const Real curvature = (before - middle) + (after - middle), half = Real(0.5);

@@ -14,7 +14,8 @@ namespace {
 // Bytes before and behind a row of the census that may be read; they mean nothing.
 const int censusMargin = 16;
 
-// Columns of a census row are computed in groups of this many, and rows from a copy of so many that stays in the caches.
+// Columns of a census row are computed in groups of this many, and rows from a copy of so many that stays in the
+// caches.
 const int censusColumns = 32, censusRows = 16;
 
 HDP_DISPATCH(leftCensusRow)

@@ -44,9 +44,9 @@ inline int countCensusBits(unsigned bits)
     return (int)((bits + (bits >> 8) + (bits >> 16)) & 31);
 }
 
-/** The census cost: the number of pixels, of every second one in the window as on a checkerboard, that are clearly darker
-than the centre in one image and not in the other. The census of a pixel has a bit for each of them, in planes of 8 bits: 3
-for a window of 7 x 7 pixels, 2 for 5, 1 for 3. */
+/** The census cost: the number of pixels, of every second one in the window as on a checkerboard, that are clearly
+darker than the centre in one image and not in the other. The census of a pixel has a bit for each of them, in planes of
+8 bits: 3 for a window of 7 x 7 pixels, 2 for 5, 1 for 3. */
 class CV_EXPORTS CensusCost CV_FINAL : public MatchingCost
 {
 public:

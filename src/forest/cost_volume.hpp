@@ -43,8 +43,8 @@ struct CV_EXPORTS CostVolume
     void fill(const CensusCost& cost, const Size& size, const DisparityInterval& interval);
     //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.
     void place(const DisparityForest& forest, size_t tree, const int* pixels);
-    //! Whether the cost of a disparity exceeds the lowest one of the pixel by more than mostContradiction. One beyond the
-    //! candidates counts as the nearest of them.
+    //! Whether the cost of a disparity exceeds the lowest one of the pixel by more than mostContradiction. One beyond
+    //! the candidates counts as the nearest of them.
     bool contradicts(int pixel, double disparity) const;
     /** Raises the costs of a pixel's other disparities: by a unit of cost per pixel of distance, up to a limit.
     @param pixel y * width + x
@@ -55,8 +55,8 @@ struct CV_EXPORTS CostVolume
 private:
     void provideCosts(); // for the rows
 
-    // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in the
-    // order of the trees.
+    // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in
+    // the order of the trees.
     int usualRows_ = 0;
     std::vector<unsigned> firstRows_; // of the others, by tree
 };

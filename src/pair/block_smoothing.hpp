@@ -26,10 +26,10 @@ others. Some rows tell.
 @return The grid. */
 CV_EXPORTS BlockGrid findBlocks(const Mat& grey);
 
-/** Makes ramps of the steps between blocks, if both images have some: as they are at the same columns of both, they match
-at disparities that are multiples of 8, whatever the scene is. A step is what levels change by between two columns, less
-the mean change beside them; if it is less than 4 times the mean, the four pixels on each side take 7/16, 5/16, 3/16 and
-1/16 of it, so that the slope becomes even. Larger steps are edges of the scene.
+/** Makes ramps of the steps between blocks, if both images have some: as they are at the same columns of both, they
+match at disparities that are multiples of 8, whatever the scene is. A step is what levels change by between two
+columns, less the mean change beside them; if it is less than 4 times the mean, the four pixels on each side take 7/16,
+5/16, 3/16 and 1/16 of it, so that the slope becomes even. Larger steps are edges of the scene.
 @param left See greyLevels().
 @param right The same.
 @return Whether there were blocks. */

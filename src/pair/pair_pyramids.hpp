@@ -44,7 +44,8 @@ struct PyramidPlan
 };
 
 /** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,
-see countUnusedBits(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well exposed.
+see countUnusedBits(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well
+exposed.
 @param left CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param right Of the same size and type.
 @param plan What to build.

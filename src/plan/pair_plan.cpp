@@ -13,8 +13,8 @@ namespace {
 
 typedef HDPTreeMatcher M;
 
-// Pixels. Images as wide as this get the values that the authors' program has for Middlebury's full size, others those for
-// its half size.
+// Pixels. Images as wide as this get the values that the authors' program has for Middlebury's full size, others those
+// for its half size.
 const int largeImageWidth = 1000;
 
 // Candidates. A top layer beyond the second one has no fewer: as many as a window of the scanlines.
@@ -56,7 +56,8 @@ int windowSide(const MatcherParameters& p)
     return p.matchingCost == M::COST_CENSUS ? std::min(std::max(side, 3), 7) : std::min(side, maxWindow);
 }
 
-//! Aggregation below the top layer. Without prediction there are no layers, and the plain tree algorithm matches the image.
+//! Aggregation below the top layer. Without prediction there are no layers, and the plain tree algorithm matches the
+//! image.
 int aggregationOf(const MatcherParameters& p) { return p.usePrediction ? p.aggregation : (int)M::AGGREGATION_TREES; }
 
 bool predictsIntervals(const MatcherParameters& p) { return aggregationOf(p) != M::AGGREGATION_SCANLINES; }

@@ -120,8 +120,8 @@ CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int typ
 CV_EXPORTS PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFindings& video);
 
 /** Number of pyramid layers for so many disparities, in images of any size: numLayers or more, until the top layer has
-maxTopDisparities or less or there are maxLayers. A layer that would leave it less than 16 is left out, but for the first
-two. See HDPTreeMatcher::Params::maxTopDisparities. */
+maxTopDisparities or less or there are maxLayers. A layer that would leave it less than 16 is left out, but for the
+first two. See HDPTreeMatcher::Params::maxTopDisparities. */
 CV_EXPORTS int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int maxLayers);
 
 }}} // namespace cv::stereo::hdp

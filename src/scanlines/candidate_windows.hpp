@@ -9,8 +9,8 @@
 namespace cv { namespace stereo { namespace hdp {
 
 /** The candidates of the pixels below a pixel of the upper layer: two runs of successive disparities. The first one is
-around the pixel's own disparity. The other one is around that of another surface the pixel may belong to, or follows the
-first one if there is none. */
+around the pixel's own disparity. The other one is around that of another surface the pixel may belong to, or follows
+the first one if there is none. */
 struct CandidateWindow
 {
     enum

@@ -77,8 +77,8 @@ struct ScanlineScratch
     std::vector<Column> columns;                               // of the layer above
     std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // CandidateWindow::candidates per such column
     std::vector<short> first[CandidateWindow::runs];           // by column
-    // Which lanes have the candidates of a run that begins i disparities after one of these, in the middle and i on: 255
-    // for those that it does not have
+    // Which lanes have the candidates of a run that begins i disparities after one of these, in the middle and i on:
+    // 255 for those that it does not have
     std::vector<uchar> orders[CandidateWindow::runs];
     std::vector<uchar> edges; // large penalties of a block, two per pixel
     // Of the winners of a block: their lanes, sums, each with those of the lanes before and behind, and costs
@@ -104,18 +104,18 @@ L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + l
 large(p, q) = max(min(small, large), large - floor(edgeSlope * |I(p) - I(q)| / 2)),
 where candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d
 in the window of p: those that p does not have are left out, and the last one of its first run and the first one of the
-second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less its own
-minimum, at most 255, the first of them if there are several; its sum and those of the candidates beside it, if p has
-disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction(): its limits are 15 and 25 times the number of
-directions.
+second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less
+its own minimum, at most 255, the first of them if there are several; its sum and those of the candidates beside it, if
+p has disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction(): its limits are 15 and 25 times the
+number of directions.
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
 start anew some rows before each of them.
 @param cost The layer's census cost.
 @param left The layer's grey levels, see LayerImages.
 @param numDisparities Of the layer.
-@param largest The largest disparity that a map of the layer may have. The winner may be beyond the ends of the range; its
-disparity is not.
+@param largest The largest disparity that a map of the layer may have. The winner may be beyond the ends of the range;
+its disparity is not.
 @param windows From predictWindows().
 @param penalties The penalties.
 @param hasFromBelow Whether there is the direction from below.

@@ -43,15 +43,15 @@ Only differences between the candidates of a pixel count, so large may stand for
 L(p, d) = (C(p, d) + large) - gain(d), and with its minimum m' over the candidates of p and the pixel r after it
 H(p, d) = max(large(p, r) - (L(p, d) - m'), 0).
 
-All of these are bytes, and the differences saturate at 0 by themselves. What aggregateScanlines() says, step by step, is
-oracle::Scanlines of test/oracles.hpp; the two are compared.
+All of these are bytes, and the differences saturate at 0 by themselves. What aggregateScanlines() says, step by step,
+is oracle::Scanlines of test/oracles.hpp; the two are compared.
 
-Rows are done in blocks of ByteLanes::groups, skewed: when group r is at column x of the block's row r, group r + 1 is at
-column x - 2 of the next row. So it finds what the group before left there two steps ago, and all groups enter a pixel of
-the layer above, which is two columns wide, at the same step. A step is a pair of columns, for group r those of pixel
-t - r of the layer above. Groups that are beside the image compute what nobody reads: all that is stored by column has a
-margin. The direction from below is that from above of a sweep upward, which has the lower row of a block in its first
-group. */
+Rows are done in blocks of ByteLanes::groups, skewed: when group r is at column x of the block's row r, group r + 1 is
+at column x - 2 of the next row. So it finds what the group before left there two steps ago, and all groups enter a
+pixel of the layer above, which is two columns wide, at the same step. A step is a pair of columns, for group r those of
+pixel t - r of the layer above. Groups that are beside the image compute what nobody reads: all that is stored by column
+has a margin. The direction from below is that from above of a sweep upward, which has the lower row of a block in its
+first group. */
 class Sweep
 {
 public:

@@ -89,8 +89,8 @@ public:
     const short* first(int run) const { return first_[run]; }
     //! With the large penalty, which is a part of all costs in a sweep
     const uchar* prior(int step) const { return ofStep(priors_, step); }
-    //! Orders of lanes, 255 for candidates that the window before does not have: from the left, from the right, and from
-    //! the row before
+    //! Orders of lanes, 255 for candidates that the window before does not have: from the left, from the right, and
+    //! from the row before
     const uchar* intoRight(int step) const { return ofStep(intoRight_, step); }
     const uchar* intoLeft(int step) const { return ofStep(intoLeft_, step); }
     const uchar* intoBelow(int step) const { return ofStep(intoBelow_, step); }

@@ -32,8 +32,8 @@ and if the left window has texture: flat areas match each other perfectly.
 @param cost The layer's census cost.
 @param size Of the layer.
 @param numDisparities Of the layer.
-@param matches Receives CV_16UC1, a disparity or noMatch per square of spacing x spacing pixels: that of the point in the
-middle of the square. */
+@param matches Receives CV_16UC1, a disparity or noMatch per square of spacing x spacing pixels: that of the point in
+the middle of the square. */
 CV_EXPORTS void findSparseMatches(const CensusCost& cost, Size size, int numDisparities, Mat& matches);
 
 }}} // namespace cv::stereo::hdp

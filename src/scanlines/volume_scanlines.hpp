@@ -56,9 +56,9 @@ L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + l
 large(p, q) = max(small, round(large * exp(-w(p, q) / gamma))),
 where disparities that are not candidates of q are left out. L = C where there is no q, or none with candidates.
 The winner has the lowest sum of the directions, the lowest disparity if there are several; its sum and those of both
-candidates beside it give the sub-pixel part, see winnerFraction(), whose limits are costs of 8 and 14 in each direction.
-Of the first candidate and of the last one, the fraction may lie towards the others: the sum beyond it is that of the
-slope between those next to it, or that which leaves the fraction at 0. Pixels without candidates get 0.
+candidates beside it give the sub-pixel part, see winnerFraction(), whose limits are costs of 8 and 14 in each
+direction. Of the first candidate and of the last one, the fraction may lie towards the others: the sum beyond it is
+that of the slope between those next to it, or that which leaves the fraction at 0. Pixels without candidates get 0.
 @param volume The costs C.
 @param weights w, CV_8UC2, see weighEdges().
 @param penalties The penalties.

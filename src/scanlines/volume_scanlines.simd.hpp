@@ -179,7 +179,8 @@ private:
     //! Of a disparity that is no candidate: more than any L, and four of them and a penalty are a 16-bit number.
     static const short none = 0x1f00;
 
-    //! Lets the L of the pixel before be read at candidates of another pixel and beside them; returns the large penalty.
+    //! Lets the L of the pixel before be read at candidates of another pixel and beside them; returns the large
+    //! penalty.
     static int enter(const Pixel& own, int large, const LastPixel& last, short* before)
     {
         const int first = own.first - 1, end = own.first + own.count + 1;

@@ -12,10 +12,10 @@ namespace cv { namespace stereo { namespace hdp {
 
 /** The fraction of the winner of scanlines, in pixels, from its sum and those beside it.
 
-With u = rise / slope, the tip of two lines of opposite slope through the three sums is at u / 2. That is too near to whole
-disparities where the minimum is sharp; there it is (0.65 sign(u) sqrt(|u|) + 0.35 u) / 2, which was fitted to slanted planes,
-see hdp_subpixel. Where it is blunt, the fraction is mostly noise, and the tip is better. Between both the share of the root
-is linear.
+With u = rise / slope, the tip of two lines of opposite slope through the three sums is at u / 2. That is too near to
+whole disparities where the minimum is sharp; there it is (0.65 sign(u) sqrt(|u|) + 0.35 u) / 2, which was fitted to
+slanted planes, see hdp_subpixel. Where it is blunt, the fraction is mostly noise, and the tip is better. Between both
+the share of the root is linear.
 @param rise The sum before the winner's, less the one after it; 0 for no fraction.
 @param slope The larger one of both, less the winner's, at least 1.
 @param blunt,sharp Up to which slope, and from which one on. */

@@ -30,8 +30,8 @@ struct FrameWarp
         return Point(std::min(std::max(x + s[0], 0), size.width - 1), std::min(std::max(y + s[1], 0), size.height - 1));
     }
 
-    //! Calls take(x, from, count) for all pixels of a row, in runs: count pixels from x on were side by side, the first of
-    //! them at from.
+    //! Calls take(x, from, count) for all pixels of a row, in runs: count pixels from x on were side by side, the first
+    //! of them at from.
     template <typename Take> void forEachRun(int y, const Take& take) const
     {
         const int width = size.width, lastX = width - 1, lastY = size.height - 1;

@@ -57,9 +57,9 @@ struct FramePrediction
     bool isMoving() const { return verdict == CONTINUED && !motion.isStill; }
 };
 
-/** Finds how the camera moved since the last frame, where everything was then, and what may be taken from there. A frame
-is the first one if nothing is remembered, at another size, with disparities of another key, and if it shows another
-scene.
+/** Finds how the camera moved since the last frame, where everything was then, and what may be taken from there. A
+frame is the first one if nothing is remembered, at another size, with disparities of another key, and if it shows
+another scene.
 @param left The left image of the finest layer that is matched, see greyLevels().
 @param key What this layer's disparities will stand for.
 @param last What the last frame left.
