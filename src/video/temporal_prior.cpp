@@ -34,7 +34,7 @@ void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction,
                      CostVolume& volume)
 {
     const Size size = last.disparity.size();
-    const int maxPenalty = areMeans ? TemporalPrior::maxPenaltyOfMeans : TemporalPrior::maxPenalty;
+    const CostPreference preference(areMeans ? TemporalPrior::maxPenaltyOfMeans : TemporalPrior::maxPenalty);
     parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
             for (int x = 0; x < volume.size.width; ++x)
@@ -44,8 +44,8 @@ void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction,
                 const int centreY = std::min(y * side + side / 2, size.height - 1);
                 float disparity;
                 if (predict(last, prediction, centreX, centreY, disparity) &&
-                    !(areMeans && volume.contradicts(own, disparity / side)))
-                    volume.prefer(own, disparity / side, maxPenalty);
+                    !(areMeans && CostPreference::isContradicted(own, disparity / side, volume)))
+                    preference.apply(own, disparity / side, volume);
             }
     });
 }
