@@ -147,7 +147,7 @@ private:
     {
         const DisparityForest& forest = shared_.forest;
         CostVolume& volume = shared_.volume;
-        aggregateMeans(forest, own_.cost(plan_.cost), plan_.trees.gamma, shared_.aggregation, volume);
+        aggregateMeans(forest, own_.census, plan_.trees.gamma, shared_.aggregation, volume);
         if (plan_.prefersLastFrame)
             preferLastFrame(true);
         aggregateVolume(volume, forest.weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);

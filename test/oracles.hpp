@@ -13,11 +13,11 @@
 #include "../src/map/disparity_confidence.hpp"
 #include "../src/forest/disparity_forest.hpp"
 #include "../src/forest/disparity_prediction.hpp"
+#include "../src/forest/tree_walk.hpp"
 #include "../src/scanlines/scanline_aggregation.hpp"
 #include "../src/scanlines/volume_scanlines.hpp"
 
-namespace opencv_test {
-namespace oracle {
+namespace opencv_test { namespace oracle {
 
 inline int clamped(int i, int size) { return std::max(0, std::min(i, size - 1)); }
 
@@ -544,6 +544,43 @@ inline std::vector<double> aggregated(const Adjacency& neighbours, int p, double
     return sums;
 }
 
+//! aggregateMeans() for a tree, in units of the volume. cost: M, rows pixels, columns disparities. Returns the means of
+//! the pixels of the walk (rows) and of so many disparities (columns).
+inline Mat_<int> treeMeans(const hdp::TreeWalk& walk, int size, const Mat_<double>& cost, double gamma, int first,
+                           int count)
+{
+    const int unit = 1 << 15, scale = 1 << 10; // of the shares and of the means
+    const auto rounded = [&](int product) { return (int)std::floor(product / (double)unit + 0.5); };
+    const auto share = [&](float part) { return std::min((int)std::floor(unit * part), unit - 1); };
+    std::vector<float> s(size), behind(size, 1.f), all(size);
+    for (int i = size - 1; i > 0; --i)
+    {
+        s[i] = walk.weights[i] > 0 ? (float)std::exp(-walk.weights[i] / gamma) : 1.f;
+        behind[walk.parents[i]] += s[i] * behind[i];
+    }
+    Mat_<int> means(size, std::max(count, 0));
+    for (int i = 0; i < size; ++i)
+        for (int k = 0; k < count; ++k)
+            means(i, k) = scale * (int)cost(walk.pixels[i], first + k);
+    for (int i = size - 1; i > 0; --i)
+        for (int k = 0, parent = walk.parents[i]; k < count; ++k)
+        {
+            const int difference = means(i, k) - scale * (int)cost(walk.pixels[parent], first + k);
+            means(parent, k) += rounded(share(s[i] * behind[i] / behind[parent]) * difference);
+        }
+    all[0] = behind[0];
+    for (int i = 1; i < size; ++i)
+    {
+        const int parent = walk.parents[i];
+        all[i] = s[i] * all[parent] + (1 - s[i] * s[i]) * behind[i];
+        for (int k = 0; k < count; ++k)
+            means(i, k) += rounded(share(s[i] * all[parent] / all[i]) * (means(parent, k) - means(i, k)));
+    }
+    for (int& mean : means)
+        mean = (int)std::floor(mean * hdp::CostVolume::scale / (double)scale + 0.5);
+    return means;
+}
+
 //! M of all pixels (rows) and disparities (columns)
 template <typename Formula> Mat_<double> costTable(const Formula& cost, Size size, int numDisparities)
 {
@@ -964,7 +1001,6 @@ double confidence(const hdp::ConfidenceMaps& maps, int numDisparities, const For
     return 255 * (isVisible ? 1 : 0.5) * std::sqrt(std::sqrt(distance / farFromSteps * unique) * agreement);
 }
 
-} // namespace oracle
-} // namespace opencv_test
+}} // namespace opencv_test::oracle
 
 #endif

@@ -6,8 +6,7 @@
 #include "oracles.hpp"
 #include "../src/video/temporal_prior.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace hdp;
 
@@ -99,7 +98,7 @@ TEST(HDPStereo_TemporalPrior, contradiction)
     for (bool areMeans : { false, true })
     {
         CostVolume volume = flatVolume(layerSize / side);
-        volume.costs[15] = (uchar)(flatCost - CostVolume::mostContradiction - 1);
+        volume.costs[15] = (uchar)(flatCost - CostPreference::contradiction - 1);
         const std::vector<uchar> before = volume.costs;
         preferLastFrame(video.last, video.next, side, areMeans, volume);
         for (int k = 0; k < candidates; ++k)
@@ -126,6 +125,7 @@ TEST(HDPStereo_TemporalPrior, hasPrior)
 TEST(HDPStereo_CostVolume, prefer)
 {
     const int largest = 12;
+    const CostPreference preference(largest);
     CostVolume volume = flatVolume(Size(3, 1));
     const auto costsOf = [&](int pixel) { return &volume.costs[volume.candidates[pixel].start()]; };
     const DisparityInterval none = { 1, 0 };
@@ -133,7 +133,7 @@ TEST(HDPStereo_CostVolume, prefer)
     costsOf(2)[0] = 250;
     const std::vector<uchar> before = volume.costs;
     for (int pixel = 0; pixel < 3; ++pixel)
-        volume.prefer(pixel, 7.25, largest);
+        preference.apply(pixel, 7.25, volume);
     for (int k = 0; k < candidates; ++k)
     {
         const int rise = std::min(cvRound(CostVolume::scale * std::abs(k - 7.25)), largest);
@@ -141,7 +141,7 @@ TEST(HDPStereo_CostVolume, prefer)
         EXPECT_EQ(before[2 * CostVolume::row + k], costsOf(1)[k]) << "of a pixel without candidates";
         EXPECT_EQ(std::min(before[4 * CostVolume::row + k] + rise, 255), costsOf(2)[k]);
     }
-    volume.prefer(0, 1e6, largest); // beyond the candidates, whose costs all rise by as much
+    preference.apply(0, 1e6, volume); // beyond the candidates, whose costs all rise by as much
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[0]);
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[candidates - 1]);
 }
@@ -150,14 +150,14 @@ TEST(HDPStereo_CostVolume, prefer)
 TEST(HDPStereo_CostVolume, prefer_of_many)
 {
     const int many = 9000, largest = 12;
-    const double disparity = 8123.25;
+    const float disparity = 8123.25f;
     CostVolume volume;
     volume.size = Size(1, 1);
     volume.rows = CostVolume::rowsOf({ 0, many - 1 });
     volume.costs.assign(volume.rows * CostVolume::row, (uchar)flatCost);
     const CostVolume::Candidates own = { 0, { 0, many - 1 } };
     volume.candidates.push_back(own);
-    volume.prefer(0, disparity, largest);
+    CostPreference(largest).apply(0, disparity, volume);
     for (int k = 0; k < many; ++k)
         ASSERT_EQ(flatCost + std::min(cvRound(CostVolume::scale * std::abs(k - disparity)), largest), volume.costs[k])
             << k;
@@ -169,15 +169,15 @@ TEST(HDPStereo_CostVolume, contradicts)
     const DisparityInterval none = { 1, 0 };
     volume.candidates[1].interval = none;
     uchar* const costs = &volume.costs[0];
-    costs[15] = (uchar)(flatCost - CostVolume::mostContradiction);
-    EXPECT_FALSE(volume.contradicts(0, 7.25));
-    costs[15] = (uchar)(flatCost - CostVolume::mostContradiction - 1);
-    EXPECT_TRUE(volume.contradicts(0, 7.25));
-    EXPECT_TRUE(volume.contradicts(0, 1e6)) << "beyond the candidates";
-    EXPECT_TRUE(volume.contradicts(0, -1e6)) << "beyond the candidates";
-    EXPECT_FALSE(volume.contradicts(0, 14.5));
-    EXPECT_TRUE(volume.contradicts(0, 14.4));
-    EXPECT_FALSE(volume.contradicts(1, 7.25)) << "a pixel without candidates";
+    costs[15] = (uchar)(flatCost - CostPreference::contradiction);
+    EXPECT_FALSE(CostPreference::isContradicted(0, 7.25f, volume));
+    costs[15] = (uchar)(flatCost - CostPreference::contradiction - 1);
+    EXPECT_TRUE(CostPreference::isContradicted(0, 7.25f, volume));
+    EXPECT_TRUE(CostPreference::isContradicted(0, 1e6, volume)) << "beyond the candidates";
+    EXPECT_TRUE(CostPreference::isContradicted(0, -1e6, volume)) << "beyond the candidates";
+    EXPECT_FALSE(CostPreference::isContradicted(0, 14.5f, volume));
+    EXPECT_TRUE(CostPreference::isContradicted(0, 14.4f, volume));
+    EXPECT_FALSE(CostPreference::isContradicted(1, 7.25f, volume)) << "a pixel without candidates";
 }
 
 //! In memory that held a larger volume before, too
@@ -201,7 +201,7 @@ TEST(HDPStereo_CostVolume, fill)
             ASSERT_LE(volume.rows * CostVolume::row, volume.costs.size());
             for (int pixel = 0; pixel < imageSize.area(); ++pixel)
             {
-                const CostVolume::Candidates& own = volume.candidates[pixel];
+                const CostVolume::Candidates own = volume.of(pixel);
                 ASSERT_EQ(all.size(), own.interval.size());
                 ASSERT_LE((size_t)own.firstRow + own.rows(), volume.rows);
                 const Point at(pixel % imageSize.width, pixel / imageSize.width);
@@ -212,5 +212,4 @@ TEST(HDPStereo_CostVolume, fill)
         }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

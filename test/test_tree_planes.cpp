@@ -6,8 +6,7 @@
 #include "../src/forest/tree_planes.hpp"
 #include "../src/forest/tree_walk.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int candidates = 24;
 const int flatCost = 60, winnerCost = 40; // in units of the volume
@@ -34,7 +33,7 @@ struct Layer
         std::fill(volume.costs.begin(), volume.costs.end(), (uchar)flatCost);
     }
 
-    uchar* costs(int x, int y) { return &volume.costs[volume.candidates[y * disparity.cols + x].start()]; }
+    uchar* costs(int x, int y) { return &volume.costs[volume.of(y * disparity.cols + x).start()]; }
 
     //! The disparity of a pixel with so low a cost
     void win(int x, int y, double value, int cost = winnerCost)
@@ -166,5 +165,4 @@ TEST(HDPStereo_TreePlanes, pixels_of_one_row)
         EXPECT_NEAR(flatCost + 10, layer.costs(x, 0)[cvRound(3 + 0.03 * x) + 3], 1) << x;
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

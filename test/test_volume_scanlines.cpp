@@ -16,8 +16,7 @@
 #define CV_CPU_OPTIMIZATION_NAMESPACE_END }
 #include "../src/scanlines/volume_scanlines.simd.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int unit = hdp::CostVolume::scale;
 const hdp::VolumePenalties usualPenalties = { 12 * unit, 50 * unit, 20 };
@@ -85,7 +84,7 @@ struct Layer
         }
         for (int p = 0; p < costs.rows; ++p)
         {
-            const hdp::CostVolume::Candidates& own = volume.candidates[p];
+            const hdp::CostVolume::Candidates own = volume.of(p);
             if (!own.interval.empty())
                 std::copy(costs[p] + own.interval.first, costs[p] + own.interval.last + 1,
                           volume.costs.data() + own.start());
@@ -204,20 +203,13 @@ TEST(HDPStereo_VolumeScanlines, lanes_without_vectors)
     {
         const Size size(14, 8); // one block of scanlines
         const Layer layer(rng, size, numDisparities, 256, numDisparities == 16);
-        hdp::VolumeProblem problem;
-        problem.costs = layer.volume.costs.data();
-        problem.candidates = layer.volume.candidates.data();
-        problem.weights = layer.weights.ptr();
-        problem.size = size;
-        problem.numDisparities = numDisparities;
-        problem.small = 30;
-        for (short& large : problem.large)
-            large = 300;
         const hdp::VolumePenalties penalties = { 30, 300, 1e9 };
         std::vector<short> sums(layer.volume.rows * hdp::CostVolume::row);
         Mat disparity(size, CV_16UC1);
-        problem.sums = sums.data();
-        problem.disparity = disparity.ptr<ushort>();
+        hdp::VolumeProblem problem = {
+            layer.volume, layer.weights.ptr(), 30, {}, sums.data(), disparity.ptr<ushort>()
+        };
+        std::fill_n(problem.large, 256, (short)300);
         std::vector<short> lines(problem.lineMemory(std::max(size.width, size.height)));
         hdp::opt_emulated::aggregateRows(problem, Range(0, size.height), lines.data());
         hdp::opt_emulated::aggregateColumns(problem, Range(0, size.width), lines.data());
@@ -225,5 +217,4 @@ TEST(HDPStereo_VolumeScanlines, lanes_without_vectors)
     }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

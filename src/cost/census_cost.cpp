@@ -79,9 +79,9 @@ void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, fl
     CV_CPU_DISPATCH(evaluateCensusCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-void CensusCost::evaluateScaled(const int* pixels, int count, int first, int scale, uchar* cost) const
+void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const
 {
-    CV_CPU_DISPATCH(scaleCensusCost, (planes_, pixels, count, first, scale, cost), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(countCensusCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const

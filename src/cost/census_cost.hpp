@@ -60,13 +60,8 @@ public:
 
     void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const CV_OVERRIDE;
 
-    /** Costs of scaledLanes candidates of each pixel in 8 bits; those past the last candidate mean nothing.
-    @param pixels As of evaluate().
-    @param count Their number.
-    @param first The first of the candidates.
-    @param scale What the costs are multiplied by, up to 10: the largest one is 24 bits.
-    @param cost Receives that of pixels[i] and candidate first + k at [i * scaledLanes + k]. */
-    void evaluateScaled(const int* pixels, int count, int first, int scale, uchar* cost) const;
+    //! The same in bytes
+    void evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const;
 
     //! The cost of one candidate of each pixel, CV_8UC1. disparity: CV_16UC1, a disparity map.
     void ofDisparities(const Mat& disparity, Mat& costs) const;
@@ -90,7 +85,6 @@ public:
     enum
     {
         greyByte = 3,
-        scaledLanes = 16,
         mostTolerance = 1023
     };
 

@@ -32,8 +32,8 @@ void rightCensusRow(const CensusWindow& window, const short* grey, int cols, uch
 //! CensusCost::evaluate()
 void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
 
-//! CensusCost::evaluateScaled()
-void scaleCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int scale, uchar* cost);
+//! The same in bytes
+void countCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, uchar* cost);
 
 //! CensusCost::ofDisparities() for row y
 void censusCostOfRow(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost);
@@ -165,12 +165,11 @@ void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int 
         evaluateCosts<lanes, 1, Word>(planes, pixels, size, first, store);
 }
 
-} // namespace
-
-void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost)
+template <typename T>
+void evaluateCosts(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, T* cost)
 {
     const auto store = [=](const uchar* bits, int number, int position) {
-        float* const to = cost + position;
+        T* const to = cost + position;
         HDP_VECTORIZED for (int k = 0; k < number; ++k) to[k] = bits[k];
     };
     switch (lanes)
@@ -186,13 +185,16 @@ void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count
     }
 }
 
-void scaleCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int scale, uchar* cost)
+} // namespace
+
+void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost)
 {
-    evaluateCosts<CensusCost::scaledLanes>(planes, pixels, count, first,
-                                           [=](const uchar* bits, int number, int position) {
-        uchar* const to = cost + position;
-        HDP_VECTORIZED for (int k = 0; k < number; ++k) to[k] = (uchar)(bits[k] * scale);
-    });
+    evaluateCosts(planes, pixels, count, first, lanes, cost);
+}
+
+void countCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, uchar* cost)
+{
+    evaluateCosts(planes, pixels, count, first, lanes, cost);
 }
 
 namespace {

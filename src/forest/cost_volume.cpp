@@ -5,7 +5,6 @@
 #include "cost_volume.hpp"
 
 #include "../base/vectorized.hpp"
-#include <cstring>
 #include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -13,17 +12,22 @@ namespace cv { namespace stereo { namespace hdp {
 void CostVolume::create(const DisparityForest& forest)
 {
     size = forest.links.size();
-    candidates.resize(forest.links.total());
     numDisparities = 1;
     rows = 0;
+    uniform_ = forest.trees[0].interval;
+    isUniform = !uniform_.empty();
     for (const DisparityTree& tree : forest.trees)
     {
         rows += (size_t)tree.size * rowsOf(tree.interval);
         if (!tree.interval.empty())
             numDisparities = std::max(numDisparities, tree.interval.last + 1);
+        isUniform &= tree.interval.first == uniform_.first && tree.interval.last == uniform_.last;
     }
-    usualRows_ = (int)(rows / candidates.size());
-    rows = candidates.size() * usualRows_;
+    usualRows_ = (int)(rows / size.area());
+    rows = (size_t)size.area() * usualRows_;
+    if (isUniform)
+        return provideCosts();
+    candidates.resize(size.area());
     firstRows_.resize(forest.trees.size());
     for (size_t t = 0; t < forest.trees.size(); ++t)
     {
@@ -37,12 +41,12 @@ void CostVolume::create(const DisparityForest& forest)
 
 void CostVolume::fill(const CensusCost& cost, const Size& layerSize, const DisparityInterval& interval)
 {
-    static_assert(+CensusCost::scaledLanes == +row, "A row of costs is computed at once.");
     size = layerSize;
     numDisparities = interval.last + 1;
     usualRows_ = rowsOf(interval);
     rows = (size_t)size.area() * usualRows_;
-    candidates.resize(size.area());
+    isUniform = true;
+    uniform_ = interval;
     provideCosts();
     parallel_for_(Range(0, size.height), [&](const Range& range) {
         std::vector<int> pixels(size.width);
@@ -51,17 +55,12 @@ void CostVolume::fill(const CensusCost& cost, const Size& layerSize, const Dispa
         {
             const int first = y * size.width;
             std::iota(pixels.begin(), pixels.end(), first);
-            for (int pixel : pixels)
-            {
-                const Candidates own = { (unsigned)pixel * usualRows_, interval };
-                candidates[pixel] = own;
-            }
             for (int r = 0; r < usualRows_; ++r)
             {
-                cost.evaluateScaled(pixels.data(), size.width, interval.first + r * row, scale, run.data());
-                uchar* to = &costs[candidates[first].start() + r * row];
+                cost.evaluate(pixels.data(), size.width, interval.first + r * row, row, run.data());
+                uchar* to = &costs[of(first).start() + r * row];
                 for (int x = 0; x < size.width; ++x, to += usualRows_ * row)
-                    std::memcpy(to, &run[x * row], row);
+                    HDP_VECTORIZED for (int k = 0; k < row; ++k) to[k] = (uchar)(scale * run[x * row + k]);
             }
         }
     });
@@ -75,6 +74,8 @@ void CostVolume::provideCosts()
 
 void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pixels)
 {
+    if (isUniform)
+        return;
     const int count = forest.trees[tree].size, ownRows = rowsOf(forest.trees[tree].interval);
     Candidates own = { firstRows_[tree], forest.trees[tree].interval };
     if (ownRows <= usualRows_)
@@ -88,36 +89,45 @@ void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pi
             candidates[pixels[i]] = own;
 }
 
-bool CostVolume::contradicts(int pixel, double disparity) const
+CostPreference::CostPreference(int largest)
 {
-    const Candidates& own = candidates[pixel];
-    const int count = own.interval.size(), nearest = (int)std::floor(disparity + 0.5) - own.interval.first;
-    if (count <= 0)
-        return false;
-    const uchar* const all = &costs[own.start()];
-    const uchar cost = all[clamped(nearest, 0, count - 1)];
-    uchar least = cost;
-    HDP_VECTORIZED for (int k = 0; k < count; ++k) least = std::min(least, all[k]);
-    return cost - least > mostContradiction;
+    CV_DbgAssert(0 <= largest && largest <= farthest * CostVolume::scale);
+    for (int fraction = 0; fraction < CostVolume::scale; ++fraction)
+        for (int k = 0; k < length; ++k)
+            rises_[fraction][k] = (uchar)std::min(std::abs((k - centre) * CostVolume::scale - fraction), largest);
 }
 
-void CostVolume::prefer(int pixel, double disparity, int largest)
+void CostPreference::apply(int pixel, float disparity, CostVolume& volume) const
 {
-    const Candidates& own = candidates[pixel];
-    const int d = cvRound(scale * disparity) - scale * own.interval.first;
-    const short most = (short)largest; // 16 bits, for more of them in a vector
-    uchar* raised = &costs[own.start()];
-    for (int r = 0; r < own.rows(); ++r, raised += row)
+    const CostVolume::Candidates own = volume.of(pixel);
+    uchar* costs = volume.costs.data() + own.start();
+    // In whole numbers from the first candidate on
+    const int d = cvRound(CostVolume::scale * disparity) - CostVolume::scale * own.interval.first;
+    const int whole = d >> 3, fraction = d & (CostVolume::scale - 1);
+    static_assert(+CostVolume::scale == 1 << 3, "whole numbers of candidates");
+    for (int r = 0; r < own.rows(); ++r, costs += CostVolume::row)
     {
         // Farther from the row, all of it rises by the largest
-        const short from = (short)clamped(d - r * row * scale, -largest, row * scale + largest);
-        HDP_VECTORIZED for (short k = 0; k < row; ++k)
-        {
-            const short distance = (short)(k * scale - from), opposite = (short)-distance;
-            const short rise = clamped(distance, opposite, most);
-            raised[k] = (uchar)std::min((short)(raised[k] + rise), (short)255);
-        }
+        const int first = std::min(std::max(r * CostVolume::row - whole, -centre), +farthest + 1);
+        const uchar* const rise = rises_[fraction] + centre + first;
+        HDP_VECTORIZED for (int k = 0; k < CostVolume::row; ++k) costs[k] =
+            (uchar)(std::min(costs[k], (uchar)(255 - rise[k])) + rise[k]);
     }
+}
+
+bool CostPreference::isContradicted(int pixel, float disparity, const CostVolume& volume)
+{
+    const CostVolume::Candidates own = volume.of(pixel);
+    const int count = own.interval.size(), nearest = cvFloor(disparity + 0.5f) - own.interval.first;
+    if (count <= 0)
+        return false;
+    const uchar* const costs = volume.costs.data() + own.start();
+    const uchar cost = costs[std::min(std::max(nearest, 0), count - 1)];
+    if (cost <= contradiction) // as are most
+        return false;
+    uchar lowest = cost;
+    HDP_VECTORIZED for (int k = 0; k < count; ++k) lowest = std::min(lowest, costs[k]);
+    return cost - lowest > contradiction;
 }
 
 }}} // namespace cv::stereo::hdp

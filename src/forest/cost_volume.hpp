@@ -14,9 +14,8 @@ struct CV_EXPORTS CostVolume
 {
     enum
     {
-        scale = 8,                    // of the costs, for their fractions
-        row = 16,                     // costs that are stored together
-        mostContradiction = 3 * scale // see contradicts()
+        scale = 8, // of the costs, for their fractions
+        row = 16   // costs that are stored together
     };
     struct Candidates // of a pixel
     {
@@ -33,9 +32,19 @@ struct CV_EXPORTS CostVolume
 
     Size size;
     int numDisparities = 0;             // all candidates are less
-    std::vector<Candidates> candidates; // of pixel y * width + x
+    bool isUniform = false;             // whether all pixels have the same candidates
+    std::vector<Candidates> candidates; // of pixel y * width + x, unless they are the same, see of()
     size_t rows = 0;                    // of costs
     std::vector<uchar> costs;           // that of disparity interval.first + k at [start() + k]; it only ever grows
+
+    //! Those of pixel y * width + x
+    Candidates of(int pixel) const
+    {
+        if (!isUniform)
+            return candidates[pixel];
+        const Candidates own = { (unsigned)pixel * usualRows_, uniform_ };
+        return own;
+    }
 
     //! Provides the memory for the trees of a forest.
     void create(const DisparityForest& forest);
@@ -43,22 +52,43 @@ struct CV_EXPORTS CostVolume
     void fill(const CensusCost& cost, const Size& size, const DisparityInterval& interval);
     //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.
     void place(const DisparityForest& forest, size_t tree, const int* pixels);
-    //! Whether the cost of a disparity exceeds the lowest one of the pixel by more than mostContradiction. One beyond
-    //! the candidates counts as the nearest of them.
-    bool contradicts(int pixel, double disparity) const;
-    /** Raises the costs of a pixel's other disparities: by a unit of cost per pixel of distance, up to a limit.
-    @param pixel y * width + x
-    @param disparity In pixels.
-    @param largest The most that a cost rises by, in units of the volume. */
-    void prefer(int pixel, double disparity, int largest);
 
 private:
     void provideCosts(); // for the rows
 
-    // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in
-    // the order of the trees.
+    DisparityInterval uniform_; // the candidates of all pixels
+    // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in the
+    // order of the trees.
     int usualRows_ = 0;
     std::vector<unsigned> firstRows_; // of the others, by tree
+};
+
+/** Raises the costs of a pixel's other disparities than a preferred one: by a unit of cost, CostVolume::scale, per pixel of
+distance, up to a limit. */
+class CV_EXPORTS CostPreference
+{
+public:
+    enum
+    {
+        contradiction = 3 * CostVolume::scale, // see isContradicted()
+        farthest = 6                           // pixels up to which costs may go on rising
+    };
+    //! largest: the most that a cost rises by, up to farthest pixels, in units of the volume
+    explicit CostPreference(int largest);
+
+    //! Raises the costs of pixel y * width + x; disparity in pixels.
+    void apply(int pixel, float disparity, CostVolume& volume) const;
+    //! Whether the cost of a disparity exceeds the lowest one of the pixel by more than the contradiction. A disparity
+    //! beyond the candidates counts as the nearest of them.
+    static bool isContradicted(int pixel, float disparity, const CostVolume& volume);
+
+private:
+    enum
+    {
+        centre = CostVolume::row + farthest + 1,
+        length = centre + farthest + 1 + CostVolume::row
+    };
+    uchar rises_[CostVolume::scale][length]; // by the fraction of the disparity, of the candidates around it
 };
 
 }}} // namespace cv::stereo::hdp

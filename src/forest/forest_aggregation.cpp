@@ -6,6 +6,7 @@
 #include "forest_aggregation.simd.hpp"
 #include "forest/forest_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
+#include "../base/dispatch.hpp"
 #include "../base/parabola.hpp"
 
 #include <cmath>
@@ -49,6 +50,9 @@ template <typename Take> void forEachRun(const Range& candidates, int treeSize, 
     }
 }
 
+HDP_DISPATCH(aggregateRun)
+HDP_DISPATCH(averageRun)
+
 //! Memory for the costs of a run
 float* provideCosts(int size, int lanes, std::vector<float>& costs)
 {
@@ -63,8 +67,7 @@ void takeRun(const TreeWalk& walk, int size, const AggregationProblem& problem, 
 {
     float* const costs = provideCosts(size, lanes, memory);
     problem.evaluate(walk.pixels.data(), size, run.start, lanes, costs);
-    CV_CPU_DISPATCH(aggregateRun, (walk, size, similarity.table, run, lanes, joins, costs, winners),
-                    CV_CPU_DISPATCH_MODES_ALL);
+    dispatched::aggregateRun(walk, size, similarity.table, run, lanes, joins, costs, winners);
 }
 
 //! Winner-takes-all over the matching cost
@@ -235,37 +238,51 @@ void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, con
 struct MeanAggregation
 {
     const DisparityForest& forest;
-    const MatchingCost& cost;
+    const CensusCost& cost;
     const EdgeSimilarity similarity;
     CostVolume& volume;
 
     size_t numberOf(const DisparityTree& tree) const { return &tree - forest.trees.data(); }
 
-    //! CostVolume::scale / sum of S(p, q) over the tree, by the same two passes as C
-    void findFactors(const TreeWalk& walk, int size, std::vector<float>& memory) const
+    //! The shares, from the sums of similarities in the same two passes
+    void weighNodes(const TreeWalk& walk, int size, MeanBuffers& buffers) const
     {
-        memory.assign(size, 1.f);
-        float* const sums = memory.data();
-        const int* const parents = walk.parents.data();
-        const uchar* const weights = walk.weights.data();
+        buffers.sums.assign(size, 1.f);
+        if (buffers.nodes.size() < (size_t)size)
+            buffers.nodes.resize(size);
+        float* const sums = buffers.sums.data();
+        MeanNode* const nodes = buffers.nodes.data();
         for (int i = size - 1; i > 0; --i)
-            sums[parents[i]] += similarity.table[weights[i]] * sums[i];
+        {
+            float& parent = sums[walk.parents[i]];
+            nodes[i].hasChildren = sums[i] > 1 ? -1 : 0;
+            nodes[i].hasSibling = parent > 1 ? -1 : 0;
+            parent += similarity.table[walk.weights[i]] * sums[i];
+        }
+        const auto share = [](float part) { return (short)std::min((int)(MeanNode::unit * part), MeanNode::unit - 1); };
+        for (int i = size - 1; i > 0; --i)
+            nodes[i].toParent = share(similarity.table[walk.weights[i]] * sums[i] / sums[walk.parents[i]]);
+        const MeanNode root = { 0, 0, (short)(sums[0] > 1 ? -1 : 0), 0 };
+        nodes[0] = root;
         for (int i = 1; i < size; ++i)
         {
-            const float s = similarity.table[weights[i]];
-            sums[i] = s * sums[parents[i]] + (1 - s * s) * sums[i];
+            const float s = similarity.table[walk.weights[i]], rest = s * sums[walk.parents[i]];
+            sums[i] = rest + (1 - s * s) * sums[i];
+            nodes[i].fromParent = share(rest / sums[i]);
         }
-        for (int i = 0; i < size; ++i)
-            sums[i] = CostVolume::scale / sums[i];
     }
 
-    void takeMeans(const TreeWalk& walk, int size, const std::vector<float>& factors, const Range& run, int lanes,
-                   std::vector<float>& memory) const
+    void takeMeans(const TreeWalk& walk, int size, const MeanNode* nodes, const Range& run, int lanes,
+                   MeanBuffers& buffers) const
     {
-        float* const costs = provideCosts(size, lanes, memory);
-        cost.evaluate(walk.pixels.data(), size, run.start, lanes, costs);
-        CV_CPU_DISPATCH(averageRun, (walk, size, similarity.table, run, lanes, factors.data(), costs, volume),
-                        CV_CPU_DISPATCH_MODES_ALL);
+        const size_t count = (size_t)size * lanes;
+        if (buffers.means.size() < count) // the last to grow, as in walkTree()
+        {
+            buffers.bits.resize(count);
+            buffers.means.resize(count);
+        }
+        cost.evaluate(walk.pixels.data(), size, run.start, lanes, buffers.bits.data());
+        dispatched::averageRun(walk, nodes, size, run, lanes, buffers.bits.data(), buffers.means.data(), volume);
     }
 
     void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
@@ -274,9 +291,9 @@ struct MeanAggregation
         volume.place(forest, numberOf(tree), scratch.walk.pixels.data());
         if (tree.interval.empty())
             return;
-        findFactors(scratch.walk, tree.size, scratch.factors);
+        weighNodes(scratch.walk, tree.size, scratch.means);
         forEachRun(Range(tree.interval.first, tree.interval.last + 1), tree.size, [&](const Range& run, int lanes) {
-            takeMeans(scratch.walk, tree.size, scratch.factors, run, lanes, scratch.costs);
+            takeMeans(scratch.walk, tree.size, scratch.means.nodes.data(), run, lanes, scratch.means);
         });
     }
 
@@ -287,7 +304,7 @@ struct MeanAggregation
         const TreeWalk& walk = (*whole).walk;
         walkTree(forest, tree, (*whole).walk);
         volume.place(forest, numberOf(tree), walk.pixels.data());
-        findFactors(walk, tree.size, (*whole).factors);
+        weighNodes(walk, tree.size, (*whole).means);
         const int first = tree.interval.first, end = tree.interval.last + 1;
         const int lanes = countLanes(end - first, tree.size);
         const int runs = (end - first + lanes - 1) / lanes, groups = std::min(runs, maxGroups);
@@ -296,7 +313,7 @@ struct MeanAggregation
             for (int i = runs * range.start / groups; i < runs * range.end / groups; ++i)
             {
                 const Range run(first + i * lanes, std::min(first + (i + 1) * lanes, end));
-                takeMeans(walk, tree.size, (*whole).factors, run, lanes, (*scratch).costs);
+                takeMeans(walk, tree.size, (*whole).means.nodes.data(), run, lanes, (*scratch).means);
             }
         };
         parallel_for_(Range(0, groups), takeGroups, groups);
@@ -338,7 +355,7 @@ void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, do
     takeWinners(forest, Matching(cost, subpixel), gamma, buffers, disparity);
 }
 
-void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, double gamma, AggregationBuffers& buffers,
+void aggregateMeans(const DisparityForest& forest, const CensusCost& cost, double gamma, AggregationBuffers& buffers,
                     CostVolume& volume)
 {
     volume.create(forest);

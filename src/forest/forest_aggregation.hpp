@@ -6,7 +6,6 @@
 
 #include <memory>
 #include "cost_volume.hpp"
-#include "../cost/matching_cost.hpp"
 #include "tree_walk.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -40,13 +39,35 @@ struct RunWinner
     int disparity;
 };
 
+//! What the means over a tree need to know of a pixel: shares are in units of 1 / MeanNode::unit.
+struct MeanNode
+{
+    short toParent, fromParent; // shares s(p) and t(p), see aggregateMeans()
+    short hasChildren;          // -1, or 0 if there are none, or none with a share
+    short hasSibling;           // -1, or 0 for the last child of its parent: there is no sum of others to be added to
+    enum
+    {
+        unit = 1 << 15,
+        meanScale = 1 << 10 // of the means of bits
+    };
+};
+
+//! Memory for the means over a tree, by position in its walk
+struct MeanBuffers
+{
+    std::vector<float> sums; // of similarities
+    std::vector<MeanNode> nodes;
+    std::vector<uchar> bits; // the costs of some candidates of each pixel
+    std::vector<short> means;
+};
+
 //! Memory of one thread for the trees it works on
 struct AggregationScratch
 {
     TreeWalk walk;
     std::vector<float> costs;
     std::vector<RunWinner> winners; // by position in the walk
-    std::vector<float> factors;     // from sums to means, as well
+    MeanBuffers means;
 };
 
 struct AggregationBuffers
@@ -91,13 +112,21 @@ CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCos
                                 AggregationBuffers& buffers, Mat& disparity);
 
 /** The weighted means of M over each tree, C(p, x) / sum over q in the tree of S(p, q). Unlike C they can be compared
-between pixels, of other trees as well.
+between pixels, of other trees as well. They are computed in whole numbers of 16 bits, in units of 1 / MeanNode::meanScale of a bit.
+With w(p) = 1 + sum over p's children c of S(p, c) w(c), and W(p) = S W(parent) + (1 - S^2) w(p), S = S(p, parent), W = w at
+the root, which are sums of S over the pixels behind p and over the whole tree, in floats, children from the last one of the
+walk on,
+s(p) = floor(unit S(p, parent) w(p) / w(parent)), t(p) = floor(unit S(p, parent) W(parent) / W(p)), unit = MeanNode::unit,
+both less than unit,
+U(p) = M(p) + sum over p's children c of round(s(c) (U(c) - M(p)) / unit), from the leaves to the root, and
+V(p) = U(p) + round(t(p) (V(parent) - U(p)) / unit), from the root to the leaves; V = U at the root.
+Halves are rounded up. So means of equal costs are these costs, and all means are in the range of the costs.
 @param forest The forest.
 @param cost The layer's matching cost.
 @param gamma Of the similarity.
 @param buffers Memory to work in.
-@param volume Receives the means, times CostVolume::scale, rounded and at most 255. */
-CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const MatchingCost& cost, double gamma,
+@param volume Receives V times CostVolume::scale, rounded. */
+CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const CensusCost& cost, double gamma,
                                AggregationBuffers& buffers, CostVolume& volume);
 
 }}} // namespace cv::stereo::hdp

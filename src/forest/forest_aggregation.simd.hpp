@@ -22,17 +22,17 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes, bool joins,
                   float* costs, RunWinner* winners);
 
-/** Aggregates the costs of a run of candidates over a tree, and stores the means.
+/** The means of a run of candidates over a tree, see aggregateMeans().
 @param walk The tree's walk.
-@param size Number of pixels of the tree.
-@param similarity As in aggregateRun().
+@param nodes Its shares.
+@param size As in aggregateRun().
 @param run The candidates.
 @param lanes As in aggregateRun().
-@param factors From C to the stored mean, by position in the walk.
-@param costs As in aggregateRun().
+@param bits M of pixel i and the k-th candidate at [i * lanes + k]. Others mean nothing.
+@param means Memory for as many.
 @param volume Receives the means. */
-void averageRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes,
-                const float* factors, float* costs, CostVolume& volume);
+void averageRun(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, int lanes, const uchar* bits,
+                short* means, CostVolume& volume);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -132,63 +132,109 @@ template <int lanes> void takeWinners(const float* costs, int size, const Range&
     }
 }
 
-template <int lanes> inline void roundMeans(const float* costs, float factor, uchar* means)
+//! The share of a difference, rounded; as the instruction that multiplies and rounds does it
+inline short shareOf(short difference, short share)
 {
-    HDP_FOR_LANES(k, lanes) means[k] = (uchar)std::min((int)(costs[k] * factor + 0.5f), 255);
+    static_assert(MeanNode::unit == 1 << 15, "bits that are shifted out");
+    return (short)((((int)difference * share >> 14) + 1) >> 1);
 }
 
+inline short meanOf(uchar bits) { return (short)(bits * MeanNode::meanScale); }
+
+//! From the leaves to the root: U, and the sums for those of the parents in place of theirs
 template <int lanes>
-void storeMeans(const float* costs, const int* pixels, int size, const float* factors, const Range& run,
-                CostVolume& volume)
+void averageUp(const int* parents, const MeanNode* nodes, int size, const uchar* bits, short* means)
 {
-    uchar* const stored = volume.costs.data();
-    for (int i = 0; i < size; ++i, costs += lanes)
+    for (int i = size - 1; i >= 0; --i)
     {
-        const CostVolume::Candidates& own = volume.candidates[pixels[i]];
-        const int at = run.start - own.interval.first;
-        uchar* const first = stored + own.start() + at;
-        if (at + lanes <= own.rows() * CostVolume::row) // the last ones are padding
+        const MeanNode& node = nodes[i];
+        const short toParent = node.toParent, hasChildren = node.hasChildren, hasSibling = node.hasSibling;
+        const uchar* const ownBits = bits + (size_t)i * lanes;
+        const uchar* const parentBits = bits + (size_t)parents[i] * lanes;
+        short* const own = means + (size_t)i * lanes;
+        short* const parent = means + (size_t)parents[i] * lanes;
+        short mean[lanes];
+        HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
         {
-            roundMeans<lanes>(costs, factors[i], first);
-            continue;
+            mean[k] = (short)(meanOf(ownBits[k]) + (own[k] & hasChildren));
+            own[k] = mean[k];
         }
-        uchar means[lanes];
-        roundMeans<lanes>(costs, factors[i], means);
-        std::memcpy(first, means, run.size());
+        if (i > 0)
+            HDP_VECTORIZED for (int k = 0; k < lanes; ++k) parent[k] =
+                (short)((parent[k] & hasSibling) + shareOf((short)(mean[k] - meanOf(parentBits[k])), toParent));
     }
 }
 
-//! Both passes; calls take(begin, end) for blocks of nodes whose C is complete.
-template <int lanes, typename Take>
-void aggregate(const TreeWalk& walk, int size, const float* similarity, float* costs, const Take& take)
+//! From the root to the leaves: V, rounded
+template <int lanes> inline void averageDown(const short* parent, short fromParent, short* own, uchar* rounded)
 {
-    passUp<lanes>(walk, size, similarity, costs);
-    for (int begin = 0; begin < size; begin += block)
+    const int unit = MeanNode::meanScale / CostVolume::scale;
+    HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
     {
-        const int end = std::min(begin + block, size);
-        passDown<lanes>(walk, begin, end, similarity, costs);
-        take(begin, end);
+        const short mean = (short)(own[k] + shareOf((short)(parent[k] - own[k]), fromParent));
+        own[k] = mean;
+        rounded[k] = (uchar)((ushort)(mean + unit / 2) / unit);
     }
 }
 
-template <int lanes>
-void aggregate(const TreeWalk& walk, int size, const float* similarity, const Range& run, bool joins, float* costs,
-               RunWinner* winners)
+//! averageRun()
+template <int lanes> struct AverageTask
 {
-    aggregate<lanes>(walk, size, similarity, costs, [&](int begin, int end) {
-        if (winners)
-            takeWinners<lanes>(costs + (size_t)begin * lanes, end - begin, run, joins, winners + begin);
-    });
-}
+    static void run(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, const uchar* bits,
+                    short* means, CostVolume& volume)
+    {
+        const int* const parents = walk.parents.data();
+        averageUp<lanes>(parents, nodes, size, bits, means);
+        uchar* const stored = volume.costs.data();
+        for (int i = 0; i < size; ++i)
+        {
+            const CostVolume::Candidates candidates = volume.of(walk.pixels[i]);
+            const int at = run.start - candidates.interval.first;
+            const short* const parent = means + (size_t)parents[i] * lanes;
+            short* const own = means + (size_t)i * lanes;
+            uchar* const to = stored + candidates.start() + at;
+            if (at + lanes <= candidates.rows() * CostVolume::row) // the last ones are padding
+            {
+                averageDown<lanes>(parent, nodes[i].fromParent, own, to);
+                continue;
+            }
+            uchar rounded[lanes];
+            averageDown<lanes>(parent, nodes[i].fromParent, own, rounded);
+            std::memcpy(to, rounded, run.size());
+        }
+    }
+};
 
-template <int lanes>
-void average(const TreeWalk& walk, int size, const float* similarity, const Range& run, const float* factors,
-             float* costs, CostVolume& volume)
+//! aggregateRun()
+template <int lanes> struct AggregateTask
 {
-    aggregate<lanes>(walk, size, similarity, costs, [&](int begin, int end) {
-        storeMeans<lanes>(costs + (size_t)begin * lanes, walk.pixels.data() + begin, end - begin, factors + begin, run,
-                          volume);
-    });
+    static void run(const TreeWalk& walk, int size, const float* similarity, const Range& run, bool joins, float* costs,
+                    RunWinner* winners)
+    {
+        passUp<lanes>(walk, size, similarity, costs);
+        for (int begin = 0; begin < size; begin += block)
+        {
+            const int end = std::min(begin + block, size);
+            passDown<lanes>(walk, begin, end, similarity, costs);
+            if (winners)
+                takeWinners<lanes>(costs + (size_t)begin * lanes, end - begin, run, joins, winners + begin);
+        }
+    }
+};
+
+template <template <int> class Task, typename... Args> void runTask(int lanes, Args&&... args)
+{
+    switch (lanes)
+    {
+    case 4:
+        return Task<4>::run(args...);
+    case 8:
+        return Task<8>::run(args...);
+    case 16:
+        return Task<16>::run(args...);
+    default:
+        return Task<32>::run(args...);
+    }
 }
 
 } // namespace
@@ -196,33 +242,13 @@ void average(const TreeWalk& walk, int size, const float* similarity, const Rang
 void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes, bool joins,
                   float* costs, RunWinner* winners)
 {
-    switch (lanes)
-    {
-    case 4:
-        return aggregate<4>(walk, size, similarity, run, joins, costs, winners);
-    case 8:
-        return aggregate<8>(walk, size, similarity, run, joins, costs, winners);
-    case 16:
-        return aggregate<16>(walk, size, similarity, run, joins, costs, winners);
-    default:
-        return aggregate<32>(walk, size, similarity, run, joins, costs, winners);
-    }
+    runTask<AggregateTask>(lanes, walk, size, similarity, run, joins, costs, winners);
 }
 
-void averageRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes,
-                const float* factors, float* costs, CostVolume& volume)
+void averageRun(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, int lanes, const uchar* bits,
+                short* means, CostVolume& volume)
 {
-    switch (lanes)
-    {
-    case 4:
-        return average<4>(walk, size, similarity, run, factors, costs, volume);
-    case 8:
-        return average<8>(walk, size, similarity, run, factors, costs, volume);
-    case 16:
-        return average<16>(walk, size, similarity, run, factors, costs, volume);
-    default:
-        return average<32>(walk, size, similarity, run, factors, costs, volume);
-    }
+    runTask<AverageTask>(lanes, walk, nodes, size, run, bits, means, volume);
 }
 
 #endif

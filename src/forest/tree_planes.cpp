@@ -35,51 +35,62 @@ typedef Vec3d Plane;
 
 Vec3d basisOf(int pixel, int width) { return Vec3d(1, pixel % width, pixel / width); }
 
-//! The pixels of a tree that its plane is looked for with
+//! The pixels of a tree that its plane is looked for with, in eight groups of every eighth one
 class TreeSamples
 {
 public:
     TreeSamples(const TreeWalk& walk, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
-        : minRise_(), interval_(tree.interval), size_(tree.size), begin_(0, volume.size.width, volume.size.height)
+        : interval_(tree.interval), size_(tree.size), begin_(0, volume.size.width, volume.size.height)
     {
         const ushort* const winners = disparity.ptr<ushort>();
-        const int step = std::max(tree.size / samples, 1);
-        for (int i = 0; i < tree.size; i += step)
+        const int step = std::max(tree.size / samples, 1), candidates = interval_.size();
+        count_ = (tree.size + step - 1) / step;
+        costs_.resize(count_ * candidates);
+        for (int group = 0, own = 0; group < groups; ++group)
         {
-            const int pixel = walk.pixels[i];
-            const double winner = winners[pixel] / (double)subpixelScale;
-            const uchar* const costs = &volume.costs[volume.candidates[pixel].start()];
-            Sample sample = { costs, basisOf(pixel, volume.size.width), winner, 0 };
-            sample.cost = costAt(sample, winner);
-            minRise_[samples_.size() % phases] += *std::min_element(costs, costs + interval_.size()) - sample.cost;
-            samples_.push_back(sample);
-            for (int term = 1; term < 3; ++term)
+            minRise_[group] = 0;
+            firsts_[group] = own;
+            for (int i = group * step; i < tree.size; i += groups * step, ++own)
             {
-                begin_[term] = std::min(begin_[term], sample.basis[term]);
-                end_[term] = std::max(end_[term], sample.basis[term]);
+                const int pixel = walk.pixels[i];
+                const Vec3d basis = basisOf(pixel, volume.size.width);
+                const uchar* const costs = &volume.costs[volume.of(pixel).start()];
+                std::copy(costs, costs + candidates, &costs_[own * candidates]);
+                x_.push_back((float)basis[1]);
+                y_.push_back((float)basis[2]);
+                disparity_.push_back(winners[pixel] / (float)subpixelScale);
+                cost_.push_back(costs[candidateAt(disparity_.back())]);
+                int lowest = cost_.back(), sum = 0;
+                for (int k = 0; k < candidates; ++k)
+                {
+                    lowest = std::min(lowest, (int)costs[k]);
+                    sum += costs[k];
+                }
+                minRise_[group] += lowest - cost_.back();
+                contrast_ += sum - candidates * cost_.back();
+                for (int term = 1; term < 3; ++term)
+                {
+                    begin_[term] = std::min(begin_[term], basis[term]);
+                    end_[term] = std::max(end_[term], basis[term]);
+                }
             }
         }
+        firsts_[groups] = count_;
+        candidates_.resize(count_);
     }
 
     //! Whether the costs tell anything
-    bool haveContrast() const
-    {
-        const int candidates = interval_.size();
-        int64 sum = 0; // of the differences from the winner's cost
-        for (const Sample& sample : samples_)
-            sum += std::accumulate(sample.costs, sample.costs + candidates, 0) - candidates * sample.cost;
-        return sum >= minContrast * candidates * samples_.size();
-    }
+    bool haveContrast() const { return contrast_ >= minContrast * interval_.size() * count_; }
 
     //! The plane of least rise among those through three samples, fitted to the disparities near it
     Plane findPlane() const
     {
-        RNG rng(samples_.size());
-        Plane best(samples_[0].disparity, 0, 0);
+        RNG rng(count_);
+        Plane best(disparity_[0], 0, 0);
         double least = score(best, DBL_MAX);
         for (int i = 0; i < triples; ++i)
         {
-            const Sample &a = any(rng), &b = any(rng), &c = any(rng);
+            const int a = rng.uniform(0, count_), b = rng.uniform(0, count_), c = rng.uniform(0, count_);
             Plane plane;
             if (!findThrough(a, b, c, plane))
                 continue;
@@ -99,34 +110,41 @@ public:
     double rise(const Plane& plane) const
     {
         int sum = 0;
-        for (int phase = 0; phase < phases; ++phase)
-            sum += riseOf(plane, phase);
-        return sum / (double)samples_.size();
+        for (int group = 0; group < groups; ++group)
+            sum += riseOf(plane, group);
+        return sum / (double)count_;
     }
 
     double shareOn(const Plane& plane) const
     {
         int count = 0;
-        for (const Sample& sample : samples_)
-            count += std::abs(plane.dot(sample.basis) - sample.disparity) <= onDistance;
-        return count / (double)samples_.size();
+        for (int i = 0; i < count_; ++i)
+            count += std::abs(plane.dot(basis(i)) - disparity_[i]) <= onDistance;
+        return count / (double)count_;
     }
 
 private:
-    struct Sample
-    {
-        const uchar* costs; // of the candidates
-        Vec3d basis;
-        double disparity;
-        int cost; // of the disparity
-    };
+    Vec3d basis(int sample) const { return Vec3d(1, x_[sample], y_[sample]); }
 
-    //! By how much the plane raises the costs of every eighth sample, in sum
-    int riseOf(const Plane& plane, int phase) const
+    //! The candidate next to a disparity
+    int candidateAt(float disparity) const
     {
+        const float first = interval_.first, last = interval_.last;
+        return (int)(std::min(std::max(disparity, first), last) - first + 0.5f);
+    }
+
+    //! By how much the plane raises the costs of a group, in sum
+    int riseOf(const Plane& plane, int group) const
+    {
+        const int begin = firsts_[group], end = firsts_[group + 1], stride = interval_.size();
+        const float offset = (float)plane[0], slopeX = (float)plane[1], slopeY = (float)plane[2];
+        const float *const x = x_.data(), *const y = y_.data();
+        int* const candidates = candidates_.data();
+        HDP_VECTORIZED for (int i = begin; i < end; ++i) candidates[i] =
+            candidateAt(offset + slopeX * x[i] + slopeY * y[i]);
         int sum = 0;
-        for (size_t i = phase; i < samples_.size(); i += phases)
-            sum += std::min(costAt(samples_[i], plane.dot(samples_[i].basis)) - samples_[i].cost, +maxPixelRise);
+        for (int i = begin; i < end; ++i)
+            sum += std::min(costs_[i * stride + candidates[i]] - cost_[i], +maxPixelRise);
         return sum;
     }
 
@@ -136,12 +154,12 @@ private:
     {
         const Vec3d extent = end_ - begin_;
         const double tilt = tiltCost * (std::abs(plane[1]) * extent[1] + std::abs(plane[2]) * extent[2]);
-        int sum = std::accumulate(minRise_, minRise_ + phases, 0);
+        int sum = std::accumulate(minRise_, minRise_ + groups, 0);
         double least = 0;
-        for (int phase = 0; phase < phases; ++phase)
+        for (int group = 0; group < groups; ++group)
         {
-            sum += riseOf(plane, phase) - minRise_[phase];
-            least = sum / (double)samples_.size() + tilt;
+            sum += riseOf(plane, group) - minRise_[group];
+            least = sum / (double)count_ + tilt;
             if (least >= limit)
                 break;
         }
@@ -153,52 +171,53 @@ private:
     {
         Matx33d squares = Matx33d::eye() * 1e-6; // for pixels of one line
         Vec3d sum = squares * plane;
-        for (const Sample& sample : samples_)
-            if (std::abs(plane.dot(sample.basis) - sample.disparity) <= fitDistance)
+        for (int i = 0; i < count_; ++i)
+            if (std::abs(plane.dot(basis(i)) - disparity_[i]) <= fitDistance)
             {
-                squares += sample.basis * sample.basis.t();
-                sum += sample.basis * sample.disparity;
+                squares += basis(i) * basis(i).t();
+                sum += basis(i) * disparity_[i];
             }
         return squares.solve(sum, DECOMP_CHOLESKY);
     }
 
-    const Sample& any(RNG& rng) const { return samples_[rng.uniform(0, (int)samples_.size())]; }
-
-    bool findThrough(const Sample& a, const Sample& b, const Sample& c, Plane& plane) const
+    //! The plane through three samples
+    bool findThrough(int a, int b, int c, Plane& plane) const
     {
-        const Vec3d p = b.basis - a.basis, q = c.basis - a.basis;
-        const double area = p[1] * q[2] - q[1] * p[2], rise = b.disparity - a.disparity,
-                     secondRise = c.disparity - a.disparity;
+        const Vec3d p = basis(b) - basis(a), q = basis(c) - basis(a);
+        const double area = p[1] * q[2] - q[1] * p[2], rise = disparity_[b] - disparity_[a],
+                     secondRise = disparity_[c] - disparity_[a];
         if (std::abs(area) < minBase * size_)
             return false;
         plane[1] = (rise * q[2] - secondRise * p[2]) / area;
         plane[2] = (secondRise * p[1] - rise * q[1]) / area;
-        plane[0] = a.disparity - plane[1] * a.basis[1] - plane[2] * a.basis[2];
+        plane[0] = disparity_[a] - plane[1] * x_[a] - plane[2] * y_[a];
         return std::abs(plane[1]) <= maxSlope && std::abs(plane[2]) <= maxSlope;
     }
 
-    int costAt(const Sample& sample, double disparity) const
-    {
-        const int first = interval_.first, last = interval_.last;
-        return sample.costs[cvRound(clamped(disparity, (double)first, (double)last)) - first];
-    }
-
-    static const int phases = 8; // of the samples
-    int minRise_[phases];        // the lowest that riseOf() may be
+    static const int groups = 8;
     const DisparityInterval interval_;
     const int size_;    // of the tree
     Vec3d begin_, end_; // of its columns and rows
-    std::vector<Sample> samples_;
+    int count_;
+    int firsts_[groups + 1];   // samples of the groups
+    int minRise_[groups];      // the lowest that riseOf() may be
+    int64 contrast_ = 0;       // the sum of all candidates' costs, less the costs of the disparities
+    std::vector<uchar> costs_; // of the candidates of each sample
+    std::vector<float> x_, y_, disparity_;
+    std::vector<int> cost_;               // of the disparity
+    mutable std::vector<int> candidates_; // memory of riseOf()
 };
 
 void prefer(const Plane& plane, const TreeWalk& walk, const DisparityTree& tree, CostVolume& volume)
 {
+    const CostPreference preference(maxPenalty);
+    const double rowsPerPixel = 1. / volume.size.width;
     for (int i = 0; i < tree.size; ++i)
     {
-        const int pixel = walk.pixels[i];
-        const double disparity = plane.dot(basisOf(pixel, volume.size.width));
-        if (!volume.contradicts(pixel, disparity))
-            volume.prefer(pixel, disparity, maxPenalty);
+        const int pixel = walk.pixels[i], y = rowOf(pixel, rowsPerPixel), x = pixel - y * volume.size.width;
+        const float disparity = (float)(plane[0] + plane[1] * x + plane[2] * y);
+        if (!CostPreference::isContradicted(pixel, disparity, volume))
+            preference.apply(pixel, disparity, volume);
     }
 }
 

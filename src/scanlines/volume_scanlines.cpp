@@ -18,7 +18,7 @@ namespace {
 // all threads.
 const int blockRows = 8;
 
-int blockColumns(int width) { return clamped(width / 16, 16, +VolumeProblem::maxScanlines); }
+int blockColumns(int width) { return std::min(std::max(width / 16, 32), +VolumeProblem::maxScanlines); }
 
 HDP_DISPATCH(aggregateRows)
 HDP_DISPATCH(aggregateColumns)
@@ -46,18 +46,11 @@ void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumeP
         buffers.sums.resize(volume.rows * CostVolume::row);
     disparity.create(size, CV_16U);
 
-    VolumeProblem problem;
-    problem.costs = volume.costs.data();
-    problem.candidates = volume.candidates.data();
-    problem.weights = weights.ptr();
-    problem.size = size;
-    problem.numDisparities = volume.numDisparities;
-    problem.small = (short)penalties.small;
+    VolumeProblem problem = { volume, weights.ptr(),       (short)penalties.small,
+                              {},     buffers.sums.data(), disparity.ptr<ushort>() };
     const EdgeSimilarity similarity(penalties.gamma);
     for (int w = 0; w < 256; ++w)
         problem.large[w] = (short)std::max(penalties.small, cvRound(penalties.large * similarity.table[w]));
-    problem.sums = buffers.sums.data();
-    problem.disparity = disparity.ptr<ushort>();
 
     runBlocks(problem, size.height, blockRows, buffers.lines,
               [&](const Range& rows, short* lines) { dispatched::aggregateRows(problem, rows, lines); });

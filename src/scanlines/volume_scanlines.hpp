@@ -29,25 +29,23 @@ struct VolumeScanlineBuffers
 //! What is aggregated, see aggregateVolume(), and where to
 struct VolumeProblem
 {
-    const uchar* costs;
-    const CostVolume::Candidates* candidates;
+    const CostVolume& volume;
     const uchar* weights;
-    Size size;
-    int numDisparities;
     short small, large[256]; // penalties; large: by the edge's weight
     short* sums;             // of the directions, in the order of the costs
     ushort* disparity;
 
     enum
     {
-        maxScanlines = 32,       // that are followed side by side
+        maxScanlines = 64,       // that are followed side by side
         margin = CostVolume::row // before and behind the candidates of a pixel, for the first and the last one to have
                                  // neighbours
     };
     //! Memory for a pixel, by disparity: an interval may begin at the last one.
-    int lineLength() const { return margin + numDisparities + CostVolume::row + margin; }
-    //! Memory for scanlines that are followed side by side: two pixels of each, and the sums of one
-    int lineMemory(int scanlines) const { return (2 * scanlines + 1) * lineLength(); }
+    int lineLength() const { return margin + volume.numDisparities + CostVolume::row + margin; }
+    //! Memory for scanlines that are followed side by side: two pixels of each, the sums of one, and a
+    //! line for the padding
+    int lineMemory(int scanlines) const { return (2 * scanlines + 2) * lineLength(); }
 };
 
 /** Semi-global matching over the candidates of each pixel, from the left, from the right, from above and from below.

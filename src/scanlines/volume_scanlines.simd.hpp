@@ -74,6 +74,15 @@ struct WordLanes
         return v_eq(v, b.v);
 #endif
     }
+    //! Those of b where a is greater than limit, and its own elsewhere
+    WordLanes replaced(const WordLanes& a, const WordLanes& limit, const WordLanes& b) const
+    {
+#if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9
+        return v_select(a.v > limit.v, b.v, v);
+#else
+        return v_select(v_gt(a.v, limit.v), b.v, v);
+#endif
+    }
 };
 
 /** Follows a block of scanlines side by side, pixel by pixel: so one does not wait for the minimum of another.
@@ -97,20 +106,50 @@ public:
         MIDDLE, // adds to them
         LAST    // takes the winners, of scanlines that are side by side in memory
     };
+    //! What the compiler knows of the candidates: all pixels have those of so many rows of costs, or
+    enum Rows
+    {
+        ANY = 0, // all have the same ones
+        OWN = -1 // each pixel has its own
+    };
 
     LineBlock(const VolumeProblem& problem, int scanlines, int length, short* lines)
-        : padding_(), p_(problem), scanlines_(scanlines), length_(length), lineLength_(problem.lineLength()),
+        : p_(problem), scanlines_(scanlines), length_(length), lineLength_(problem.lineLength()),
           before_(lines + margin), here_(before_ + scanlines * (ptrdiff_t)lineLength_),
-          total_(lines + 2 * scanlines * (ptrdiff_t)lineLength_)
+          total_(lines + 2 * scanlines * (ptrdiff_t)lineLength_), padding_(total_ + 2 * lineLength_ - margin)
     {
-        std::fill(padding_ + WordLanes::count, padding_ + 2 * WordLanes::count, +none);
+        std::fill(total_ + lineLength_, padding_, (short)0);
+        std::fill(padding_, padding_ + margin, +none);
+        for (int k = 0; k < WordLanes::count; ++k)
+            lanes_[k] = (short)k;
     }
 
     template <int role> void follow(const Direction& direction)
     {
+        if (!p_.volume.isUniform)
+            return follow<role, OWN>(direction);
+        switch (p_.volume.of(0).rows())
+        {
+        case 1:
+            return follow<role, 1>(direction);
+        case 2:
+            return follow<role, 2>(direction);
+        case 4:
+            return follow<role, 4>(direction);
+        default:
+            return follow<role, ANY>(direction);
+        }
+    }
+
+private:
+    template <int role, int rows> void follow(const Direction& direction)
+    {
+        const bool isUniform = rows != OWN;
         // Local, as stores may alias all else
-        const CostVolume::Candidates* const candidates = p_.candidates;
-        const uchar *const weights = p_.weights, *const costs = p_.costs;
+        const CostVolume& volume = p_.volume;
+        const CostVolume::Candidates all = volume.of(0);
+        const int stride = all.rows() * CostVolume::row;
+        const uchar *const weights = p_.weights, *const costs = volume.costs.data();
         short *const sums = p_.sums, *const total = total_;
         ushort* const disparity = p_.disparity;
         const ptrdiff_t lineLength = lineLength_;
@@ -119,6 +158,8 @@ public:
         short *before = before_, *here = here_;
         LastPixel last[VolumeProblem::maxScanlines];
         Winners winners;
+        if (isUniform)
+            beginLines(all.interval);
 
         for (int i = 0; i < length; ++i)
         {
@@ -126,27 +167,31 @@ public:
             ptrdiff_t pixel = first;
             for (int k = 0; k < scanlines; ++k, pixel += direction.across)
             {
-                const DisparityInterval interval = candidates[pixel].interval;
-                const int rows = candidates[pixel].rows();
-                if (rows == 0)
+                const CostVolume::Candidates candidates = isUniform ? all : volume.of((int)pixel);
+                const DisparityInterval interval = candidates.interval;
+                if (!isUniform && interval.empty())
                 {
                     last[k] = LastPixel();
                     if (role == LAST)
-                        winners.setNone(k);
+                        winners.set(k, 0, 0, 1);
                     continue;
                 }
-                const size_t start = candidates[pixel].start();
+                const size_t start = isUniform ? (size_t)pixel * stride : candidates.start();
                 int large = p_.large[weights[i > 0 ? 2 * pixel + direction.edge : 0]];
-                const Pixel own = { interval.first, interval.size(), (int)alignSize(interval.size(), WordLanes::count),
-                                    costs + start,  sums + start,    role == LAST ? total : sums + start };
-                if (!last[k].reaches(own))
+                const Pixel own = {
+                    interval.first,
+                    interval.size(),
+                    rows > 0 ? rows * CostVolume::row : (int)alignSize(interval.size(), WordLanes::count),
+                    costs + start,
+                    sums + start,
+                    role == LAST ? total : sums + start
+                };
+                if (!isUniform && !last[k].reaches(own))
                     large = enter(own, large, last[k], before + k * lineLength);
-                const int lowest =
-                    rows == 1
-                        ? step<role, true>(own, small, large, before + k * lineLength, here + k * lineLength, last[k])
-                        : step<role, false>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
+                const Lowest lowest =
+                    step<role, rows>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
                 if (role == LAST)
-                    findWinner(total, interval, lowest, k, winners);
+                    setWinner(total, interval, lowest, k, winners);
             }
             if (role == LAST)
                 takeDisparities(winners, scanlines, disparity + first);
@@ -154,7 +199,6 @@ public:
         }
     }
 
-private:
     struct Pixel
     {
         int first, size, count; // candidates, and their number with the padding
@@ -179,8 +223,16 @@ private:
     //! Of a disparity that is no candidate: more than any L, and four of them and a penalty are a 16-bit number.
     static const short none = 0x1f00;
 
-    //! Lets the L of the pixel before be read at candidates of another pixel and beside them; returns the large
-    //! penalty.
+    //! Of the same candidates everywhere: the margins stay as they are. Before the first pixels L = C, whatever the
+    //! penalties.
+    void beginLines(const DisparityInterval& candidates)
+    {
+        std::fill(before_ - margin, here_ - margin + scanlines_ * (ptrdiff_t)lineLength_, +none);
+        for (int k = 0; k < scanlines_; ++k)
+            std::fill_n(before_ + k * (ptrdiff_t)lineLength_ + candidates.first, candidates.size(), (short)0);
+    }
+
+    //! Lets the L of the pixel before be read at candidates of another pixel and beside them; returns the large penalty.
     static int enter(const Pixel& own, int large, const LastPixel& last, short* before)
     {
         const int first = own.first - 1, end = own.first + own.count + 1;
@@ -197,40 +249,60 @@ private:
         return large;
     }
 
-    //! L of a pixel, from that of the pixel before; returns the lowest sum.
-    template <int role, bool isShort>
-    CV_ALWAYS_INLINE int step(const Pixel& own, const WordLanes& small, int large, const short* before, short* here,
-                              LastPixel& last) const
+    struct Lowest // of the sums of a pixel
+    {
+        int sum, position; // of the first of them
+    };
+
+    //! L of a pixel, from that of the pixel before; finds the lowest sum in the last direction.
+    template <int role, int rows>
+    CV_ALWAYS_INLINE Lowest step(const Pixel& own, const WordLanes& small, int large, const short* before, short* here,
+                                 LastPixel& last) const
     {
         const WordLanes least = WordLanes::repeat(last.minimum), jump = WordLanes::repeat(last.minimum + large),
                         noCandidate = WordLanes::repeat(none);
-        const int count = isShort ? +CostVolume::row : own.count;
         before += own.first;
         here += own.first;
-        WordLanes minimum = noCandidate, lowestSum = WordLanes::repeat(SHRT_MAX);
+        WordLanes minimum = noCandidate, lowestSum = WordLanes::repeat(SHRT_MAX), position = lowestSum;
+        const int count = rows > 0 ? rows * CostVolume::row : own.count;
+        const short* const padding = padding_ - own.size;
         for (int d = 0; d < count; d += WordLanes::count)
         {
             const WordLanes beside = WordLanes::load(before + d - 1).min(WordLanes::load(before + d + 1)) + small;
             const WordLanes best = WordLanes::load(before + d).min(beside).min(jump);
             WordLanes l = WordLanes::load(own.costs + d) + (best - least);
-            if (d + WordLanes::count > own.size)
-                l = l.max(WordLanes::load(padding_ + WordLanes::count - std::max(own.size - d, 0)));
+            if (rows <= 0 || d >= (rows - 1) * CostVolume::row)
+                l = l.max(WordLanes::load(padding + d));
             l.store(here + d);
             minimum = minimum.min(l);
             const WordLanes sum = role == FIRST ? l : WordLanes::load(own.sums + d) + l;
             sum.store(own.into + d);
-            if (role == LAST)
-                lowestSum = lowestSum.min(sum);
+            if (role != LAST)
+                continue;
+            position = position.replaced(lowestSum, sum, WordLanes::repeat(d));
+            lowestSum = lowestSum.min(sum);
         }
-        for (int d = 0; d < margin; d += WordLanes::count)
+        if (rows == OWN)
         {
-            noCandidate.store(here - margin + d);
-            noCandidate.store(here + count + d);
+            for (int d = 0; d < margin; d += WordLanes::count)
+            {
+                noCandidate.store(here - margin + d);
+                noCandidate.store(here + count + d);
+            }
+            last.first = own.first;
+            last.end = own.first + count;
         }
-        last.first = own.first;
-        last.end = own.first + count;
         last.minimum = minimum.minimum();
-        return role == LAST ? lowestSum.minimum() : 0;
+        Lowest lowest = { 0, 0 };
+        if (role == LAST)
+        {
+            lowest.sum = lowestSum.minimum();
+            // Where the lowest sum is higher than that: no position
+            lowest.position = (position + WordLanes::load(lanes_))
+                                  .replaced(lowestSum, WordLanes::repeat(lowest.sum), WordLanes::repeat(SHRT_MAX))
+                                  .minimum();
+        }
+        return lowest;
     }
 
     //! Of a pixel of each scanline: the winner, and what winnerFraction() is given
@@ -245,26 +317,19 @@ private:
             rise[k] = (short)sumsRise;
             slope[k] = (short)sumsSlope;
         }
-        void setNone(int k) { set(k, 0, 0, 1); }
     };
 
-    //! The first candidate with the lowest sum
-    static void findWinner(const short* sums, const DisparityInterval& interval, int lowest, int scanline,
-                           Winners& winners)
+    static void setWinner(const short* sums, const DisparityInterval& interval, const Lowest& lowest, int scanline,
+                          Winners& winners)
     {
-        const WordLanes searched = WordLanes::repeat(lowest);
-        int first = 0;
-        while (!v_check_any(WordLanes::load(sums + first).equals(searched)))
-            first += WordLanes::count;
-        const int k = first + v_scan_forward(WordLanes::load(sums + first).equals(searched));
-        const int last = interval.size() - 1;
+        const int k = lowest.position, last = interval.size() - 1;
         if (last < 2)
             return winners.set(scanline, interval.first + k, 0, 1);
         // Beyond the first and the last candidate: the slope beside them, or that which leaves the tip at the end
-        const int before = k > 0 ? sums[k - 1] : lowest + std::max(sums[2] - sums[1], sums[1] - lowest);
+        const int sum = lowest.sum, before = k > 0 ? sums[k - 1] : sum + std::max(sums[2] - sums[1], sums[1] - sum);
         const int after =
-            k < last ? sums[k + 1] : lowest + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - lowest);
-        winners.set(scanline, interval.first + k, before - after, std::max(std::max(before, after) - lowest, 1));
+            k < last ? sums[k + 1] : sum + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - sum);
+        winners.set(scanline, interval.first + k, before - after, std::max(std::max(before, after) - sum, 1));
     }
 
     static void takeDisparities(const Winners& winners, int scanlines, ushort* disparity)
@@ -282,18 +347,19 @@ private:
     {
         margin = VolumeProblem::margin
     };
-    short padding_[2 * WordLanes::count]; // zeros, then none
+    short lanes_[WordLanes::count]; // 0, 1, ..
     const VolumeProblem& p_;
     const int scanlines_, length_, lineLength_;
     short *const before_, *const here_; // L of a pixel of each scanline, by disparity
     short* const total_;                // the sums of a pixel over all directions
+    short* const padding_;              // none, behind zeros for all candidates
 };
 
 } // namespace
 
 void aggregateRows(const VolumeProblem& problem, const Range& rows, short* lines)
 {
-    const int width = problem.size.width;
+    const int width = problem.volume.size.width;
     const ptrdiff_t first = rows.start * (ptrdiff_t)width;
     const LineBlock::Direction fromLeft = { first, 1, width, -2 }, fromRight = { first + width - 1, -1, width, 0 };
     LineBlock block(problem, rows.size(), width, lines);
@@ -303,7 +369,7 @@ void aggregateRows(const VolumeProblem& problem, const Range& rows, short* lines
 
 void aggregateColumns(const VolumeProblem& problem, const Range& columns, short* lines)
 {
-    const ptrdiff_t width = problem.size.width, height = problem.size.height, last = (height - 1) * width;
+    const ptrdiff_t width = problem.volume.size.width, height = problem.volume.size.height, last = (height - 1) * width;
     const LineBlock::Direction fromAbove = { columns.start, width, 1, 1 - 2 * width },
                                fromBelow = { columns.start + last, -width, 1, 1 };
     LineBlock block(problem, columns.size(), (int)height, lines);

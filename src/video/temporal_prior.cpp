@@ -38,6 +38,7 @@ void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction,
                      CostVolume& volume)
 {
     const Size size = last.disparity.size();
+    const CostPreference preference(areMeans ? maxPenaltyOfMeans : maxPenalty);
     parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
             for (int x = 0; x < volume.size.width; ++x)
@@ -47,8 +48,8 @@ void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction,
                 const int centreY = std::min(y * side + side / 2, size.height - 1);
                 float disparity;
                 if (predict(last, prediction, centreX, centreY, disparity) &&
-                    !(areMeans && volume.contradicts(own, disparity / side)))
-                    volume.prefer(own, disparity / side, areMeans ? maxPenaltyOfMeans : maxPenalty);
+                    !(areMeans && CostPreference::isContradicted(own, disparity / side, volume)))
+                    preference.apply(own, disparity / side, volume);
             }
     });
 }

@@ -14,7 +14,7 @@ namespace cv { namespace stereo { namespace hdp {
 CV_EXPORTS bool hasPrior(const FrameMemory& last, const FramePrediction& prediction);
 
 /** P(D_t | D_(t-1)): raises the costs of disparities other than the one that the last frame predicts, see
-CostVolume::prefer(). Where the image stands still and looks moved as well, with different disparities, it predicts
+CostPreference. Where the image stands still and looks moved as well, with different disparities, it predicts
 none.
 @param last The last frame.
 @param prediction What predictFrame() found; see hasPrior().
