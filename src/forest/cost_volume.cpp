@@ -25,17 +25,24 @@ void CostVolume::create(const DisparityForest& forest)
     }
     usualRows_ = (int)(rows / size.area());
     rows = (size_t)size.area() * usualRows_;
+    firsts_.resize(forest.trees.size());
     if (isUniform)
-        return provideCosts();
-    candidates.resize(size.area());
-    firstRows_.resize(forest.trees.size());
+        pixels_.resize(size.area());
+    else
+        candidates.resize(size.area());
+    unsigned first = isUniform ? 0 : (unsigned)rows;
     for (size_t t = 0; t < forest.trees.size(); ++t)
     {
         const DisparityTree& tree = forest.trees[t];
-        firstRows_[t] = (unsigned)rows;
-        if (rowsOf(tree.interval) > usualRows_)
-            rows += (size_t)tree.size * rowsOf(tree.interval);
+        const int ownRows = rowsOf(tree.interval);
+        firsts_[t] = first;
+        if (isUniform)
+            first += tree.size;
+        else if (ownRows > usualRows_)
+            first += (unsigned)(tree.size * ownRows);
     }
+    if (!isUniform)
+        rows = first;
     provideCosts();
 }
 
@@ -74,10 +81,13 @@ void CostVolume::provideCosts()
 
 void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pixels)
 {
-    if (isUniform)
-        return;
     const int count = forest.trees[tree].size, ownRows = rowsOf(forest.trees[tree].interval);
-    Candidates own = { firstRows_[tree], forest.trees[tree].interval };
+    if (isUniform)
+    {
+        std::copy(pixels, pixels + count, &pixels_[firsts_[tree]]);
+        return;
+    }
+    Candidates own = { firsts_[tree], forest.trees[tree].interval };
     if (ownRows <= usualRows_)
         for (int i = 0; i < count; ++i)
         {

@@ -50,6 +50,8 @@ struct CV_EXPORTS CostVolume
     void create(const DisparityForest& forest);
     //! Takes the costs as they are, of the same candidates for all pixels.
     void fill(const CensusCost& cost, const Size& size, const DisparityInterval& interval);
+    //! Pixels y * width + x of tree number t, as place() got them, if all have the same candidates
+    const int* pixelsOf(size_t t) const { return &pixels_[firsts_[t]]; }
     //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.
     void place(const DisparityForest& forest, size_t tree, const int* pixels);
 
@@ -60,7 +62,8 @@ private:
     // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in the
     // order of the trees.
     int usualRows_ = 0;
-    std::vector<unsigned> firstRows_; // of the others, by tree
+    std::vector<unsigned> firsts_; // by tree: rows of the others, or pixels
+    std::vector<int> pixels_;      // in the order of the trees, if all have the same candidates
 };
 
 /** Raises the costs of a pixel's other disparities than a preferred one: by a unit of cost, CostVolume::scale, per pixel of

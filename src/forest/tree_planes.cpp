@@ -7,7 +7,6 @@
 #include "../base/disparity_units.hpp"
 #include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
-#include "tree_walk.hpp"
 #include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -39,7 +38,7 @@ Vec3d basisOf(int pixel, int width) { return Vec3d(1, pixel % width, pixel / wid
 class TreeSamples
 {
 public:
-    TreeSamples(const TreeWalk& walk, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
+    TreeSamples(const int* pixels, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
         : interval_(tree.interval), size_(tree.size), begin_(0, volume.size.width, volume.size.height)
     {
         const ushort* const winners = disparity.ptr<ushort>();
@@ -52,7 +51,7 @@ public:
             firsts_[group] = own;
             for (int i = group * step; i < tree.size; i += groups * step, ++own)
             {
-                const int pixel = walk.pixels[i];
+                const int pixel = pixels[i];
                 const Vec3d basis = basisOf(pixel, volume.size.width);
                 const uchar* const costs = &volume.costs[volume.of(pixel).start()];
                 std::copy(costs, costs + candidates, &costs_[own * candidates]);
@@ -60,12 +59,9 @@ public:
                 y_.push_back((float)basis[2]);
                 disparity_.push_back(winners[pixel] / (float)subpixelScale);
                 cost_.push_back(costs[candidateAt(disparity_.back())]);
-                int lowest = cost_.back(), sum = 0;
-                for (int k = 0; k < candidates; ++k)
-                {
-                    lowest = std::min(lowest, (int)costs[k]);
-                    sum += costs[k];
-                }
+                uchar lowest = 255;
+                HDP_VECTORIZED for (int k = 0; k < candidates; ++k) lowest = std::min(lowest, costs[k]);
+                const int sum = std::accumulate(costs, costs + candidates, 0);
                 minRise_[group] += lowest - cost_.back();
                 contrast_ += sum - candidates * cost_.back();
                 for (int term = 1; term < 3; ++term)
@@ -76,7 +72,7 @@ public:
             }
         }
         firsts_[groups] = count_;
-        candidates_.resize(count_);
+        at_.resize(count_);
     }
 
     //! Whether the costs tell anything
@@ -139,12 +135,14 @@ private:
         const int begin = firsts_[group], end = firsts_[group + 1], stride = interval_.size();
         const float offset = (float)plane[0], slopeX = (float)plane[1], slopeY = (float)plane[2];
         const float *const x = x_.data(), *const y = y_.data();
-        int* const candidates = candidates_.data();
-        HDP_VECTORIZED for (int i = begin; i < end; ++i) candidates[i] =
-            candidateAt(offset + slopeX * x[i] + slopeY * y[i]);
+        const uchar* const costs = costs_.data() + begin * stride;
+        const int* const cost = cost_.data() + begin;
+        int* const at = at_.data();
+        HDP_VECTORIZED for (int i = begin; i < end; ++i) at[i - begin] =
+            (i - begin) * stride + candidateAt(offset + slopeX * x[i] + slopeY * y[i]);
         int sum = 0;
-        for (int i = begin; i < end; ++i)
-            sum += std::min(costs_[i * stride + candidates[i]] - cost_[i], +maxPixelRise);
+        for (int i = 0; i < end - begin; ++i)
+            sum += std::min(costs[at[i]] - cost[i], +maxPixelRise);
         return sum;
     }
 
@@ -171,12 +169,24 @@ private:
     {
         Matx33d squares = Matx33d::eye() * 1e-6; // for pixels of one line
         Vec3d sum = squares * plane;
+        double ones = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, d = 0, xd = 0, yd = 0;
         for (int i = 0; i < count_; ++i)
-            if (std::abs(plane.dot(basis(i)) - disparity_[i]) <= fitDistance)
-            {
-                squares += basis(i) * basis(i).t();
-                sum += basis(i) * disparity_[i];
-            }
+        {
+            const double ownX = x_[i], ownY = y_[i], own = disparity_[i];
+            const double isNear = std::abs(plane[0] + plane[1] * ownX + plane[2] * ownY - own) <= fitDistance;
+            const double nearX = isNear * ownX, nearY = isNear * ownY;
+            ones += isNear;
+            x += nearX;
+            y += nearY;
+            xx += nearX * ownX;
+            xy += nearX * ownY;
+            yy += nearY * ownY;
+            d += isNear * own;
+            xd += nearX * own;
+            yd += nearY * own;
+        }
+        squares += Matx33d(ones, x, y, x, xx, xy, y, xy, yy);
+        sum += Vec3d(d, xd, yd);
         return squares.solve(sum, DECOMP_CHOLESKY);
     }
 
@@ -204,17 +214,17 @@ private:
     int64 contrast_ = 0;       // the sum of all candidates' costs, less the costs of the disparities
     std::vector<uchar> costs_; // of the candidates of each sample
     std::vector<float> x_, y_, disparity_;
-    std::vector<int> cost_;               // of the disparity
-    mutable std::vector<int> candidates_; // memory of riseOf()
+    std::vector<int> cost_;       // of the disparity
+    mutable std::vector<int> at_; // memory of riseOf()
 };
 
-void prefer(const Plane& plane, const TreeWalk& walk, const DisparityTree& tree, CostVolume& volume)
+void prefer(const Plane& plane, const int* pixels, int count, CostVolume& volume)
 {
     const CostPreference preference(maxPenalty);
     const double rowsPerPixel = 1. / volume.size.width;
-    for (int i = 0; i < tree.size; ++i)
+    for (int i = 0; i < count; ++i)
     {
-        const int pixel = walk.pixels[i], y = rowOf(pixel, rowsPerPixel), x = pixel - y * volume.size.width;
+        const int pixel = pixels[i], y = rowOf(pixel, rowsPerPixel), x = pixel - y * volume.size.width;
         const float disparity = (float)(plane[0] + plane[1] * x + plane[2] * y);
         if (!CostPreference::isContradicted(pixel, disparity, volume))
             preference.apply(pixel, disparity, volume);
@@ -225,24 +235,24 @@ void prefer(const Plane& plane, const TreeWalk& walk, const DisparityTree& tree,
 
 int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVolume& volume)
 {
-    std::vector<const DisparityTree*> trees;
-    for (const DisparityTree& tree : forest.trees)
-        if (tree.size >= minPixels && !tree.interval.empty())
-            trees.push_back(&tree);
+    CV_DbgAssert(volume.isUniform);
+    std::vector<size_t> trees;
+    for (size_t t = 0; t < forest.trees.size(); ++t)
+        if (forest.trees[t].size >= minPixels)
+            trees.push_back(t);
     std::vector<uchar> hasPlane(trees.size());
     parallel_for_(Range(0, (int)trees.size()), [&](const Range& range) {
-        TreeWalk walk;
         for (int t = range.start; t < range.end; ++t)
         {
-            const DisparityTree& tree = *trees[t];
-            walkTree(forest, tree, walk);
-            const TreeSamples of(walk, tree, disparity, volume);
+            const DisparityTree& tree = forest.trees[trees[t]];
+            const int* const pixels = volume.pixelsOf(trees[t]);
+            const TreeSamples of(pixels, tree, disparity, volume);
             if (!of.haveContrast())
                 continue;
             const Plane plane = of.findPlane();
             hasPlane[t] = of.rise(plane) < maxRise && of.shareOn(plane) >= minShare;
             if (hasPlane[t])
-                prefer(plane, walk, tree, volume);
+                prefer(plane, pixels, tree.size, volume);
         }
     });
     return (int)std::count(hasPlane.begin(), hasPlane.end(), 1);

@@ -128,14 +128,14 @@ public:
     {
         if (!p_.volume.isUniform)
             return follow<role, OWN>(direction);
-        switch (p_.volume.of(0).rows())
+        switch (p_.volume.of(0).rows()) // of 17, 33 and 65 candidates, as top layers have
         {
-        case 1:
-            return follow<role, 1>(direction);
         case 2:
             return follow<role, 2>(direction);
-        case 4:
-            return follow<role, 4>(direction);
+        case 3:
+            return follow<role, 3>(direction);
+        case 5:
+            return follow<role, 5>(direction);
         default:
             return follow<role, ANY>(direction);
         }
