@@ -5,6 +5,7 @@
 #include "layer_matching.hpp"
 
 #include "base/grey_levels.hpp"
+#include "base/tunable.hpp"
 #include "forest/disparity_prediction.hpp"
 #include "forest/tree_planes.hpp"
 #include "map/left_right_check.hpp"
@@ -19,11 +20,11 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-// Pixels. Side of the median between two passes of the scanlines.
-const int passMedianSize = 5;
-
-// Pixels. Largest difference of a stable disparity in the left-right check of the non-local refinement.
-const int stableMaxDiff = 1;
+HDP_TUNABLE(int, passMedianSize, 5, "pixels",
+            "side of the median between passes of the scanlines: larger loses thin structures, smaller keeps outliers");
+HDP_TUNABLE(int, guideMedianSize, 3, "pixels", "side of the guide's median, as in the M+ systems: larger blurs edges");
+HDP_TUNABLE(int, stableMaxDiff, 1, "pixels",
+            "in the left-right check of the non-local refinement: 0 fails by rounding, more passes what is occluded");
 
 //! Carries out the plan of a layer. result.winners are the layer's disparities from the winner-takes-all to the median.
 class LayerMatching
@@ -130,7 +131,7 @@ private:
     {
         if (!plan_.smoothsGuide)
             return in_.images.guide;
-        medianBlur(in_.images.guide, own_.guide, 3);
+        medianBlur(in_.images.guide, own_.guide, guideMedianSize);
         return own_.guide;
     }
 

@@ -47,7 +47,7 @@ struct Prediction
 Mat predict(const Prediction& prediction, int numDisparities)
 {
     hdp::WindowBuffers buffers;
-    buffers.smallest[0].create(3, 3, CV_16UC1); // of another size
+    buffers.min[0].create(3, 3, CV_16UC1); // of another size
     Mat windows(7, 2, CV_16UC4);
     const hdp::WindowPrediction all = { prediction.upper, prediction.unfiltered, prediction.matches };
     hdp::predictWindows(all, numDisparities, buffers, windows);

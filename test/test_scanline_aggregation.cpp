@@ -169,8 +169,12 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
             const hdp::CensusCost cost = layer.cost();
             for (bool hasFromBelow : { false, true })
             {
-                const hdp::ScanlineProblem problem = { &cost,           &layer.left,    size,           numDisparities,
-                                                       layer.largest(), &layer.windows, usualPenalties, hasFromBelow };
+                const float directions = hasFromBelow ? 4 : 3;
+                const hdp::ScanlineProblem problem = {
+                    &cost,          &layer.left,     size,
+                    numDisparities, layer.largest(), &layer.windows,
+                    usualPenalties, hasFromBelow,    { 15 * directions, 25 * directions }
+                };
                 const hdp::ScanlineStripe stripe = { Range(0, size.height), Range(0, size.height) };
                 std::vector<uchar> followed((size.height + 1) * hdp::ScanlineScratch::followedBytes(size.width));
                 Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);

@@ -12,6 +12,16 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
+// Steps. The weights hardly change after these.
+const int fitIterations = 6;
+
+// Standard deviations. The residual at which the weight of a sample is a half: wrong samples pull more at a larger one;
+// at a smaller one, right samples are lost.
+const double outlierResidual = 2;
+
+// Standard deviations of a normal distribution in its median absolute deviation
+const double deviationOfMedian = 1.4826;
+
 //! What a linear model of some terms is fitted to: value = coefficients . basis
 template <int terms> struct FitSample
 {
@@ -58,14 +68,12 @@ template <int terms>
 RobustFit<terms> fitRobustly(const std::vector<FitSample<terms>>& samples, const FitPrior<terms>& prior,
                              const Vec<double, terms>& start)
 {
-    const int iterations = 6;
-    const double outlier = 2; // residual, in standard deviations, at which the weight of a sample is a half
     RobustFit<terms> fit;
     fit.coefficients = start;
-    for (int iteration = 0; iteration < iterations; ++iteration)
+    for (int iteration = 0; iteration < fitIterations; ++iteration)
     {
         const std::vector<double> residuals = fitResiduals(samples, fit.coefficients);
-        const double scale = std::max(1.4826 * medianOf(residuals), 1.); // at least the deviations that are expected
+        const double scale = std::max(deviationOfMedian * medianOf(residuals), 1.); // no less than expected
         Matx<double, terms, terms> information;
         Vec<double, terms> sum;
         for (int i = 0; i < terms; ++i)
@@ -76,7 +84,7 @@ RobustFit<terms> fitRobustly(const std::vector<FitSample<terms>>& samples, const
         for (size_t s = 0; s < samples.size(); ++s)
         {
             const FitSample<terms>& sample = samples[s];
-            const double relative = residuals[s] / (scale * outlier), deviation = scale * sample.deviation;
+            const double relative = residuals[s] / (scale * outlierResidual), deviation = scale * sample.deviation;
             const double weight = 1 / ((1 + relative * relative) * deviation * deviation);
             for (int i = 0; i < terms; ++i)
             {

@@ -6,6 +6,7 @@
 #include "disparity_confidence.simd.hpp"
 #include "map/disparity_confidence.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/tunable.hpp"
 #include "left_right_check.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -14,8 +15,16 @@ namespace {
 
 typedef DisparityConfidence Constants;
 
-// Computed at a time: columns of the distances in columns; rows of the rest, plus half a window on both sides
-const int stripeColumns = 64, stripeRows = 128;
+HDP_TUNABLE(int, visibleMaxDiff, 1, "pixels",
+            "in the left-right check: 0 fails by rounding, more passes what the right image does not show");
+HDP_TUNABLE(int, maxUpper, 8, "pixels",
+            "that a difference from the layer above counts as: few pixels do not decide for a window");
+HDP_TUNABLE(int, maxMedian, 4, "pixels", "the same of differences from the map before the median");
+HDP_TUNABLE(int, costUnits, 512, "units",
+            "per cost of 1 that other costs than the census are rounded to: sums are of whole numbers");
+HDP_TUNABLE(int, stripeColumns, 64, "pixels", "of the distances in columns, for a thread: fewer share cache lines");
+HDP_TUNABLE(int, stripeRows, 128, "rows",
+            "of the rest, for a thread: fewer compute the rows between stripes more often");
 
 int countStripes(int size, int stripe) { return (size + stripe - 1) / stripe; }
 
@@ -49,10 +58,10 @@ void distancesInColumns(const Mat& disparity, Mat& distance)
 @param map A disparity map.
 @param other Another one of its size, or that of the layer above.
 @param isUpper Whether it is that.
-@param largest What larger differences count as, in pixels.
+@param max What larger differences count as, in pixels.
 @param window Side of the windows, in cells.
 @param sums Receives the sums. */
-void sumDifferences(const Mat& map, const Mat& other, bool isUpper, int largest, int window, Mat& sums)
+void sumDifferences(const Mat& map, const Mat& other, bool isUpper, int max, int window, Mat& sums)
 {
     const Size size((map.cols + 1) / 2, (map.rows + 1) / 2);
     Mat cells(size, CV_16U);
@@ -66,7 +75,7 @@ void sumDifferences(const Mat& map, const Mat& other, bool isUpper, int largest,
                 rows[i] = map.ptr<ushort>(row);
                 others[i] = other.ptr<ushort>(isUpper ? std::min(y, other.rows - 1) : row);
             }
-            dispatched::differenceCells(rows, others, isUpper ? 2 : 1, map.cols, other.cols, largest * subpixelScale,
+            dispatched::differenceCells(rows, others, isUpper ? 2 : 1, map.cols, other.cols, max * subpixelScale,
                                         cells.ptr<ushort>(y));
         }
     });
@@ -146,7 +155,7 @@ private:
         lanes = 8
     };
 
-    static int units(float cost) { return cvRound(cost * Constants::costUnits); }
+    static int units(float cost) { return cvRound(cost * costUnits); }
 
     const MatchingCost& cost_;
     const Mat& disparity_;
@@ -163,12 +172,12 @@ void computeConfidence(const ConfidenceMaps& maps, int numDisparities, const Cos
     const int width = disparity.cols, window = Constants::window, radius = window / 2, far = Constants::farFromSteps;
     Mat distance, visible, fromUpper, byMedian;
     distancesInColumns(disparity, distance);
-    sumDifferences(disparity, maps.unfiltered, false, Constants::largestMedian, Constants::medianWindow, byMedian);
+    sumDifferences(disparity, maps.unfiltered, false, maxMedian, Constants::medianWindow, byMedian);
     if (maps.upper.empty())
         fromUpper = Mat::zeros(byMedian.size(), CV_32S);
     else
-        sumDifferences(disparity, maps.upper, true, Constants::largestUpper, Constants::upperWindow, fromUpper);
-    findStable(disparity, Constants::visibleMaxDiff, visible);
+        sumDifferences(disparity, maps.upper, true, maxUpper, Constants::upperWindow, fromUpper);
+    findStable(disparity, visibleMaxDiff, visible);
     confidence.create(disparity.size(), CV_8U);
     parallel_for_(Range(0, countStripes(disparity.rows, stripeRows)), [&](const Range& stripes) {
         Costs costs(cost, disparity, numDisparities);

@@ -8,22 +8,22 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of disparityConfidence(). None of them is critical.
+//! The constants of disparityConfidence() that the compiler needs. None of them is critical.
 struct DisparityConfidence
 {
     enum
     {
-        farFromSteps = 64,  // pixels from the nearest step of the disparities; more do not count
-        window = 21,        // side of the square that costs are averaged over, in pixels
-        alternative = 2,    // distance, in pixels, of the candidates that the winner is compared with
-        visibleMaxDiff = 1, // of the left-right check, in pixels
-        hiddenDivisor = 2,  // what the confidence of a pixel that fails it is divided by
-        costUnits = 512,    // costs are rounded to one of these, if they are no census costs
-        upperWindow = 31,   // side of the square that P is averaged over, in cells of 2 x 2 pixels
-        medianWindow = 7,   // the same of M
-        largestUpper = 8,   // pixels; larger differences from the layer above count as this
-        largestMedian = 4,  // the same of differences from the map before the median
-        halved = 4          // 1 / pixel: a mean difference of 1 / halved pixels halves the confidence
+        stepHalves = 3,    // half pixels; disparities at a step differ by more: 2 are slopes, 4 leaves steps out
+        farFromSteps = 64, // pixels from the nearest step: wrong patches are smaller, and more cost time
+        window = 21,       // pixels; side of the square that costs are averaged over: a smaller one has noise, a larger
+                           // one sees beyond wrong patches
+        alternative = 2,   // pixels from the winner to the candidates it is compared with: nearer ones cost the same by
+                           // slopes, farther ones may be other matches
+        hiddenDivisor = 2, // of the confidence of a pixel that fails the left-right check: some of them are right
+        upperWindow = 31,  // cells of 2 x 2 pixels; side of the square that P is averaged over: a smaller one
+                           // misses the middle of wrong patches
+        medianWindow = 7,  // the same of M; smaller, as the median changes single pixels
+        halved = 4         // 1 / pixel: a mean difference of 1 / halved pixels halves the confidence
     };
 };
 
@@ -79,9 +79,9 @@ means of both over a window of 21 x 21 pixels, borders replicated; 0 without alt
 of whole numbers: other costs than that of the census are rounded to 1/512.
 
 P is 1 / (1 + 4 p), where p is the mean difference, in pixels, from twice the disparity that the layer above has there,
-at most 8 per pixel; M is 1 / (1 + 4 m), where m is the mean change by the median, at most 4 per pixel. Means are those
-over 31 x 31 and 7 x 7 cells of 2 x 2 pixels, the pixel's own in the middle. Borders are replicated. P is 1 without a
-layer above.
+no more than 8 per pixel; M is 1 / (1 + 4 m), where m is the mean change by the median, no more than 4 per pixel. Means
+are those over 31 x 31 and 7 x 7 cells of 2 x 2 pixels, the pixel's own in the middle. Borders are replicated. P is 1
+without a layer above.
 
 v is 1 for a pixel that passes the left-right check, see findStable(), or else 1/2.
 @param maps The maps.

@@ -55,10 +55,10 @@ void slideWindow(const int* entering, int width, int* kept, int* sums);
 @param scale 1, or 2 for the layer above: what its disparities count.
 @param width Of the map's rows.
 @param otherWidth Of the other map's.
-@param largest What larger differences count as.
+@param max What larger differences count as.
 @param cells Receives the row. */
 void differenceCells(const ushort* const* rows, const ushort* const* others, int scale, int width, int otherWidth,
-                     int largest, ushort* cells);
+                     int max, ushort* cells);
 
 /** P M of disparityConfidence().
 @param fromUpper,byMedian Sums over windows, one per cell.
@@ -91,7 +91,7 @@ typedef DisparityConfidence Constants;
 void distanceFromAbove(const ushort* above, const ushort* row, const ushort* below, int width, const Range& columns,
                        const uchar* distanceAbove, uchar* distance)
 {
-    const ushort noStep = 3 * subpixelScale / 2, far = Constants::farFromSteps;
+    const ushort noStep = Constants::stepHalves * subpixelScale / 2, far = Constants::farFromSteps;
     const auto measure = [=](int x, int left, int right) {
         const ushort inColumn = std::max(difference(row[x], above[x]), difference(row[x], below[x])),
                      inRow = std::max(difference(row[x], row[left]), difference(row[x], row[right]));
@@ -126,10 +126,10 @@ void squaredDistanceRow(const uchar* distance, int width, short* padded, short* 
         std::memcpy(nearest, inColumns, sizeof(nearest));
         for (int first = 1; first < far; first += group)
         {
-            short largest = 0;
+            short max = 0;
             for (int k = 0; k < block; ++k)
-                largest = std::max(largest, nearest[k]);
-            if (first * first >= largest) // columns as far as these are not nearer
+                max = std::max(max, nearest[k]);
+            if (first * first >= max) // columns as far as these are not nearer
                 break;
             for (int dx = first; dx < first + group; ++dx)
             {
@@ -199,7 +199,7 @@ namespace {
 
 //! A cell that has a pixel of the layer above, or 2 x 2 pixels of a map of the same size
 template <int scale>
-inline ushort differenceCell(const ushort* const* rows, const ushort* const* others, int cell, ushort largest)
+inline ushort differenceCell(const ushort* const* rows, const ushort* const* others, int cell, ushort max)
 {
     int sum = 0;
     HDP_UNROLLED for (int i = 0; i < 2; ++i)
@@ -207,30 +207,30 @@ inline ushort differenceCell(const ushort* const* rows, const ushort* const* oth
         HDP_UNROLLED for (int j = 0; j < 2; ++j)
         {
             const ushort other = (ushort)(scale * others[i][scale == 2 ? cell : 2 * cell + j]);
-            sum += std::min(difference(rows[i][2 * cell + j], other), largest);
+            sum += std::min(difference(rows[i][2 * cell + j], other), max);
         }
     }
     return (ushort)sum;
 }
 
 template <int scale>
-void wholeCells(const ushort* const* rows, const ushort* const* others, int count, ushort largest, ushort* cells)
+void wholeCells(const ushort* const* rows, const ushort* const* others, int count, ushort max, ushort* cells)
 {
     const ushort* const r[2] = { rows[0], rows[1] };
     const ushort* const o[2] = { others[0], others[1] };
-    HDP_VECTORIZED for (int x = 0; x < count; ++x) cells[x] = differenceCell<scale>(r, o, x, largest);
+    HDP_VECTORIZED for (int x = 0; x < count; ++x) cells[x] = differenceCell<scale>(r, o, x, max);
 }
 
 } // namespace
 
 void differenceCells(const ushort* const* rows, const ushort* const* others, int scale, int width, int otherWidth,
-                     int largest, ushort* cells)
+                     int max, ushort* cells)
 {
     const int whole = std::min(width / 2, otherWidth);
     if (scale == 2)
-        wholeCells<2>(rows, others, whole, (ushort)largest, cells);
+        wholeCells<2>(rows, others, whole, (ushort)max, cells);
     else
-        wholeCells<1>(rows, others, whole, (ushort)largest, cells);
+        wholeCells<1>(rows, others, whole, (ushort)max, cells);
     for (int cell = whole; 2 * cell < width; ++cell) // what is left
     {
         int sum = 0;
@@ -238,7 +238,7 @@ void differenceCells(const ushort* const* rows, const ushort* const* others, int
             for (int x = 2 * cell; x < 2 * cell + 2; ++x)
             {
                 const int column = std::min(x, width - 1), other = std::min(column / scale, otherWidth - 1);
-                sum += std::min(std::abs(rows[i][column] - scale * others[i][other]), largest);
+                sum += std::min(std::abs(rows[i][column] - scale * others[i][other]), max);
             }
         cells[cell] = (ushort)sum;
     }

@@ -8,17 +8,20 @@
 #include "map/occlusion_filling.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
 #include "../base/grey_levels.hpp"
+#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
+
+HDP_TUNABLE(int, maxBlack, 2, "grey levels", "of blank columns, as JPEG leaves them: more takes dark scenes for blank");
 
 HDP_DISPATCH(fillOccludedRow)
 
 //! The number of columns, from the left border on, that are black
 int countBlank(const ushort* grey, int width)
 {
-    const int black = 2 * greyScale; // at most, as JPEG leaves it
+    const int black = maxBlack * greyScale;
     return (int)(std::find_if(grey, grey + width, [=](ushort level) { return level > black; }) - grey);
 }
 

@@ -8,6 +8,24 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
+//! The constants of fillOccluded()
+struct OcclusionFilling
+{
+    enum
+    {
+        minSurface = 4,    // columns of a surface at the border of the right image: fewer are there by chance
+        nearBorder = 3,    // columns of the right image, from 1 on, that are its border: matches there are off by some
+        pixelsPerBest = 7, // left of a surface that begins at the border farther inside, of which one may be the best
+                           // match of its column: a smaller number takes other surfaces for it
+        pixelsPerVisible = 8, // left of a surface that hides them, of which one may be visible: some match by chance
+        pixelsPerShown = 4,   // the same, of which one may not be behind nearer ones: a smaller number takes things
+                              // farther inside for the border
+        minSlopeColumns = 8,  // of the surface at the border, to tell its slope: fewer tell noise
+        maxSlopeColumns = 32  // of it, to be as many as are filled: more are bent
+    };
+    static_assert(pixelsPerVisible % pixelsPerShown == 0, "mapToRight() divides them");
+};
+
 //! Memory for a row of fillOccluded(), by pixel; by column of the right image where it is said
 struct OcclusionScratch
 {
@@ -31,7 +49,8 @@ pixels that map to one column of the right image the one with the lowest residua
 another one, and those that map to no column, are not. Nor are single pixels between two that are not, nor what is left
 of a surface that begins at the border of the right image: the last run of four pixels it shows, without steps, of which
 the first one is in column 0, 1 or 2; or one that is nearer than what is before it, if nearer pixels hide three quarters
-of that from the right image, or it maps to no column, and an eighth at most is visible in columns that are not blank.
+of that from the right image, or it maps to no column, and no more than an eighth is visible in columns that are not
+blank.
 The surface is continued to the left border, half as steep as its first columns are.
 @param disparity CV_16UC1, a disparity map; changed.
 @param residual Matching costs, CV_8UC1.

@@ -18,20 +18,7 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int bl
 
 namespace {
 
-const int minSurface = 4; // columns of a surface at the border of the right image
-const int nearBorder = 3; // columns of the right image, from 1 on, that count as its border
-
-// A surface begins at the border, too, if of the pixels on its left one in minPerBest at most is the best match of its
-// column.
-const int minPerBest = 7;
-
-// A surface hides what is on its left if one pixel in minPerVisible at most is visible, and one in minPerShown at most
-// is not hidden by nearer ones.
-const int minPerVisible = 8, minPerShown = 4;
-static_assert(minPerVisible % minPerShown == 0, "mapToRight() divides them");
-
-// Columns of the surface at the border that tell its slope: as many as are filled, within these limits
-const int minSlopeColumns = 8, maxSlopeColumns = 32;
+typedef OcclusionFilling O;
 
 //! The first byte from begin on that has this value, or end
 inline int findByte(const uchar* bytes, int begin, int end, uchar value)
@@ -65,9 +52,10 @@ inline RowLimits mapToRight(const ushort* disparity, const uchar* residual, int 
         const int column = std::max(x + 1 - wholeDisparity(disparity[x]), 0);
         columns[x] = column;
         maxDisparity = std::max(maxDisparity, (int)disparity[x]);
-        border = std::max(border, column <= nearBorder ? x + 1 : 0);
+        border = std::max(border, column <= O::nearBorder ? x + 1 : 0);
         // The columns that pixels on the left of x can have: of the visible ones, and of those that are not hidden
-        const bool leavesFew = minPerVisible * (column - blank) <= (1 + minPerVisible / minPerShown) * x;
+        const bool leavesFew =
+            O::pixelsPerVisible * (column - blank) <= (1 + O::pixelsPerVisible / O::pixelsPerShown) * x;
         hiding = std::max(hiding, leavesFew ? x + 1 : 0);
         keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
     }
@@ -99,18 +87,19 @@ inline int findBorder(const ushort* disparity, const OcclusionScratch& scratch, 
     const uchar* isBest = scratch.isBest.data();
     const int* columns = scratch.columns.data();
     int border = 0, bestBefore = 0;
-    for (int begin = findByte(isBest, 0, width, 1); begin < width && (begin < end || minPerBest * bestBefore < width);)
+    for (int begin = findByte(isBest, 0, width, 1);
+         begin < width && (begin < end || O::pixelsPerBest * bestBefore < width);)
     {
         const int runEnd = findByte(isBest, begin, width, 0);
         for (int x = begin; x < runEnd; ++x)
         {
-            const bool isAtBorder = columns[x] <= nearBorder;
-            if (!isAtBorder && (x > begin || minPerBest * bestBefore > x))
+            const bool isAtBorder = columns[x] <= O::nearBorder;
+            if (!isAtBorder && (x > begin || O::pixelsPerBest * bestBefore > x))
                 break;
             int surfaceEnd = x + 1;
-            while (surfaceEnd < std::min(x + minSurface, runEnd) && !isStep(disparity, surfaceEnd))
+            while (surfaceEnd < std::min(x + O::minSurface, runEnd) && !isStep(disparity, surfaceEnd))
                 ++surfaceEnd;
-            if (surfaceEnd == x + minSurface)
+            if (surfaceEnd == x + O::minSurface)
                 border = x;
         }
         bestBefore += runEnd - begin;
@@ -133,20 +122,21 @@ inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch,
     if (last <= border)
         return border;
 
-    const int end = std::min(2 * last + minSurface, width); // surfaces farther on are not so near that they hide much
+    // Surfaces farther on are not so near that they hide much.
+    const int end = std::min(2 * last + O::minSurface, width);
     uchar* visibility = scratch.visibility.data();
     testVisibility(disparity, columns, end, width, subpixelScale, scratch.nearest.data(), visibility);
     const auto isHidden = [=](int x) { return visibility[x] != VISIBLE; };
     int visibleBefore = 0, hiddenBefore = 0;
-    for (int x = 0; x <= last && x + minSurface <= end; ++x)
+    for (int x = 0; x <= last && x + O::minSurface <= end; ++x)
     {
-        const bool hides = minPerVisible * visibleBefore <= x && minPerShown * (x - hiddenBefore) <= x;
+        const bool hides = O::pixelsPerVisible * visibleBefore <= x && O::pixelsPerShown * (x - hiddenBefore) <= x;
         if (hides && x > border && (isHidden(x - 1) || isStep(disparity, x)))
         {
             int next = x;
-            while (next < x + minSurface && !isHidden(next) && (next == x || !isStep(disparity, next)))
+            while (next < x + O::minSurface && !isHidden(next) && (next == x || !isStep(disparity, next)))
                 ++next;
-            if (next == x + minSurface)
+            if (next == x + O::minSurface)
                 border = x;
         }
         hiddenBefore += isHidden(x);
@@ -158,12 +148,12 @@ inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch,
 //! Continues the surface that begins at this pixel to the left border, half as steep as it is: most surfaces are bent.
 inline void continueSurface(ushort* disparity, const uchar* isShown, int begin, int width, int maxDisparity)
 {
-    const int last = std::min(width, begin + clamped(begin, minSlopeColumns, maxSlopeColumns));
+    const int last = std::min(width, begin + clamped(begin, +O::minSlopeColumns, +O::maxSlopeColumns));
     int end = begin + 1;
     while (end < last && isShown[end] && !isStep(disparity, end))
         ++end;
     const int half = (end - begin) / 2;
-    if (2 * half < minSlopeColumns)
+    if (2 * half < O::minSlopeColumns)
         return std::fill(disparity, disparity + begin, disparity[begin]);
     int rise = 0; // between the halves, times half
     for (int x = begin; x < begin + half; ++x)

@@ -5,21 +5,30 @@
 #include "thin_structures.hpp"
 
 #include "../base/disparity_units.hpp"
+#include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-//! Whether one of count disparities before the median is nearer than after it by ThinStructures::minDistance
+HDP_TUNABLE(int, radius, 3, "pixels", "of the window, that of the largest median: more sees other structures");
+HDP_TUNABLE(int, minShare, 30, "percent of the window",
+            "of the structure: less restores noise, more only what is thick");
+HDP_TUNABLE(int, minDistance, 5, "pixels",
+            "in front of what the median left: nearer ones are rather noise of a surface");
+HDP_TUNABLE(int, maxDifference, 1, "pixels", "inside the structure: 0 fails by rounding, more joins noise");
+HDP_TUNABLE(int, columns, 64, "pixels", "that are looked at together: hardly a group has any");
+
+//! Whether one of count disparities before the median is nearer than after it by minDistance
 bool isAnyNearer(const ushort* before, const ushort* after, int count)
 {
-    const ushort minDistance = ThinStructures::minDistance * subpixelScale;
+    const ushort minRise = (ushort)(minDistance * subpixelScale);
     ushort any = 0;
     HDP_VECTORIZED for (int x = 0; x < count; ++x)
     {
         const ushort nearer = (ushort)(std::max(before[x], after[x]) - after[x]);
-        any |= (ushort)(nearer >= minDistance);
+        any |= (ushort)(nearer >= minRise);
     }
     return any != 0;
 }
@@ -27,38 +36,37 @@ bool isAnyNearer(const ushort* before, const ushort* after, int count)
 //! Whether enough pixels around this one have its disparity
 bool isInStructure(const Mat& disparity, int y, int x)
 {
-    const int radius = ThinStructures::window / 2, maxDifference = ThinStructures::maxDifference * subpixelScale;
-    const Range rows(std::max(y - radius, 0), std::min(y + radius + 1, disparity.rows));
-    const Range columns(std::max(x - radius, 0), std::min(x + radius + 1, disparity.cols));
+    const int reach = radius, maxStep = maxDifference * subpixelScale;
+    const Range rows(std::max(y - reach, 0), std::min(y + reach + 1, disparity.rows));
+    const Range inside(std::max(x - reach, 0), std::min(x + reach + 1, disparity.cols));
     const int own = disparity.at<ushort>(y, x);
     int count = 0;
     for (int v = rows.start; v < rows.end; ++v)
     {
         const ushort* row = disparity.ptr<ushort>(v);
-        for (int u = columns.start; u < columns.end; ++u)
-            count += std::abs(row[u] - own) <= maxDifference;
+        for (int u = inside.start; u < inside.end; ++u)
+            count += std::abs(row[u] - own) <= maxStep;
     }
-    return 100 * count >= ThinStructures::minShare * rows.size() * columns.size();
+    return 100 * count >= minShare * rows.size() * inside.size();
 }
 
 } // namespace
 
 void restoreThinStructures(const Mat& unfiltered, Mat& disparity)
 {
-    const int minDistance = ThinStructures::minDistance * subpixelScale;
+    const int minRise = minDistance * subpixelScale;
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
             const ushort* before = unfiltered.ptr<ushort>(y);
             ushort* row = disparity.ptr<ushort>(y);
-            for (int begin = 0; begin < disparity.cols; begin += ThinStructures::columns)
+            for (int begin = 0; begin < disparity.cols; begin += columns)
             {
-                // Hardly a group of columns has any.
-                const int end = std::min(begin + ThinStructures::columns, disparity.cols);
+                const int end = std::min(begin + columns, disparity.cols);
                 if (!isAnyNearer(before + begin, row + begin, end - begin))
                     continue;
                 for (int x = begin; x < end; ++x)
-                    if (before[x] - row[x] >= minDistance && isInStructure(unfiltered, y, x))
+                    if (before[x] - row[x] >= minRise && isInStructure(unfiltered, y, x))
                         row[x] = before[x];
             }
         }

@@ -8,22 +8,9 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of restoreThinStructures()
-struct ThinStructures
-{
-    enum
-    {
-        window = 7,        // side of the square, in pixels
-        minShare = 30,     // percent of its pixels that are of the structure
-        minDistance = 5,   // in front of what the median left, in pixels
-        maxDifference = 1, // inside the structure, in pixels
-        columns = 64       // that are looked at together
-    };
-};
-
 /** Gives back what the median removed although it is more than noise: a pixel takes its disparity from before the
-median if this is nearer by minDistance, and if minShare of the pixels in the window around it, as far as that is inside
-the image, had the same disparity but for maxDifference.
+median if this is clearly nearer, and if many of the pixels in the window around it, as far as that is inside the
+image, had about the same disparity.
 @param unfiltered The map before the median, CV_16UC1.
 @param disparity The map after the median. */
 CV_EXPORTS void restoreThinStructures(const Mat& unfiltered, Mat& disparity);

@@ -5,6 +5,7 @@
 #include "block_smoothing.hpp"
 
 #include "image_levels.hpp"
+#include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -12,23 +13,27 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 const int side = BlockGrid::side;
-const int rowsThatTell = 32;
-const int flatChange = greyScale / 2;   // the largest, from pixel to pixel beside a step
-const int largestStep = 20 * greyScale; // others are no steps between blocks, however strong the compression is
-const double leastRatio = 5;            // of the mean step between blocks to the mean of the other ones
-const int leastSteps = 64;              // between blocks, for a mean
-const double leastStep = 0.25 * greyScale;
-const int smoothedSteps = 4; // times the mean
+
+HDP_TUNABLE(int, rowsThatTell, 32, "rows", "that are looked at: more cost time and find the same blocks");
+HDP_TUNABLE(double, flatChange, 0.5, "grey levels", "maximum from pixel to pixel beside a step: more is texture");
+HDP_TUNABLE(int, maxStep, 20, "grey levels", "larger ones are edges of the scene, however strong the compression is");
+HDP_TUNABLE(double, minRatio, 5, "mean of the steps inside blocks",
+            "of the mean step between them: less finds blocks by chance, more overlooks weak ones");
+HDP_TUNABLE(int, minSteps, 64, "steps", "between blocks, for a mean: fewer find blocks by chance");
+HDP_TUNABLE(double, minStep, 0.25, "grey levels", "mean between blocks: less than a unit of the levels is no step");
+HDP_TUNABLE(int, smoothedSteps, 4, "mean steps between blocks",
+            "that are taken away: larger ones are edges of the scene");
 
 //! Adds what a row's pixels tell of the steps before them, by columns.
 void addSteps(const ushort* row, int width, ushort* steps, ushort* counts)
 {
+    const ushort maxChange = (ushort)(flatChange * greyScale), max = (ushort)(maxStep * greyScale);
     HDP_VECTORIZED for (int x = 3; x < width - 2; ++x)
     {
         const ushort step = difference(row[x - 1], row[x]);
         const ushort before = std::max(difference(row[x - 3], row[x - 2]), difference(row[x - 2], row[x - 1])),
                      after = std::max(difference(row[x], row[x + 1]), difference(row[x + 1], row[x + 2]));
-        const int isFlat = (before <= flatChange) & (after <= flatChange) & (step <= largestStep);
+        const int isFlat = (before <= maxChange) & (after <= maxChange) & (step <= max);
         steps[x] = (ushort)(steps[x] + (isFlat ? step : 0));
         counts[x] = (ushort)(counts[x] + isFlat);
     }
@@ -62,7 +67,7 @@ void smoothSteps(const BlockGrid& grid, Mat& grey)
 
 BlockGrid findBlocks(const Mat& grey)
 {
-    const int rows = std::min(grey.rows, rowsThatTell);
+    const int rows = std::min<int>(grey.rows, rowsThatTell);
     std::vector<ushort> steps(grey.cols), counts(grey.cols);
     for (int i = 0; i < rows; ++i)
         addSteps(grey.ptr<ushort>((2 * i + 1) * grey.rows / (2 * rows)), grey.cols, steps.data(), counts.data());
@@ -80,7 +85,7 @@ BlockGrid findBlocks(const Mat& grey)
     {
         const double step = sums[i] / (double)std::max(numbers[i], 1),
                      others = (sum - sums[i]) / (double)std::max(number - numbers[i], 1);
-        if (numbers[i] >= leastSteps && step >= leastStep && step >= leastRatio * others)
+        if (numbers[i] >= minSteps && step >= minStep * greyScale && step >= minRatio * others)
         {
             grid.begin = i;
             grid.step = step;

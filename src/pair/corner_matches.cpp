@@ -6,6 +6,7 @@
 #include "corner_matches.simd.hpp"
 #include "pair/corner_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/tunable.hpp"
 #include "image_pyramid.hpp"
 #include "point_tracker.hpp"
 
@@ -15,15 +16,30 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-const double minCorrelation = 0.8;     // of a match on the coarse layer
-const double rivalCorrelation = 0.1;   // share by which a rival has to be farther from a correlation of 1 than the best
-const double rivalDistance = 0.01;     // what it has to be farther from it beside that share
-const double minContrast = 6;          // standard deviation of a left window, in its values
-const double maxMove = 2;              // of a match that is tracked on a layer, in pixels
-const double maxResidual = 0.5;        // mean square difference of a tracked match, as a share of the left variance
-const double minDeterminant = 1e-3;    // of a structure tensor, as a share of the product of its diagonal
-const double wholePixelVariance = 0.1; // of the row of a match to whole pixels, in square pixels
-const int fractions = 32;              // of a pixel, at which tracked windows may begin
+// Corners
+HDP_TUNABLE(int, maxCorners, 500, "corners", "one per cell of a grid: more cost time, fewer leave gaps in models");
+HDP_TUNABLE(int, minSpacing, 10, "pixels of the image", "side of a cell: windows of nearer corners see the same");
+HDP_TUNABLE(int, minCoarseSpacing, 4, "pixels of the coarse layer", "the same there, however small the image is");
+HDP_TUNABLE(int, cornerStep, 2, "pixels", "from one that is looked at to the next: neighbours are about as good");
+HDP_TUNABLE(int, maxCoarseArea, 45000, "pixels", "of the coarse layer: more cost time, fewer have too few corners");
+
+// Search on the coarse layer
+HDP_TUNABLE(double, minCorrelation, 0.8, "correlation", "of a match: less lets wrong ones in, more loses noisy images");
+HDP_TUNABLE(double, rivalCorrelation, 0.1, "share of the best one's distance from 1",
+            "by which a rival has to be farther from it: more loses repeated texture, less lets wrong ones in");
+HDP_TUNABLE(double, rivalDistance, 0.01, "correlation", "beside that share: near 1, noise decides");
+HDP_TUNABLE(int, rivalReach, 2, "pixels", "around the best match, in which there are no rivals: its own peak is there");
+HDP_TUNABLE(double, minContrast, 6, "levels of 1023", "standard deviation of a left window: in less, noise is matched");
+HDP_TUNABLE(double, wholePixelVariance, 0.1, "square pixels",
+            "of the row of a match to whole pixels: 1/12 by rounding");
+
+// Tracking on a layer
+HDP_TUNABLE(int, iterations, 3, "steps", "of Lucas and Kanade: more cost time, fewer do not arrive");
+HDP_TUNABLE(double, maxMove, 2, "pixels", "of a match: one that goes farther has lost its corner");
+HDP_TUNABLE(double, maxResidual, 0.5, "share of the left variance",
+            "mean square difference: more lets wrong matches in, less loses noisy images");
+HDP_TUNABLE(double, minDeterminant, 1e-3, "share of the product of the diagonal",
+            "of a structure tensor: below, the window moves freely along an edge");
 
 HDP_DISPATCH(structureTensors)
 HDP_DISPATCH(windowSums)
@@ -36,7 +52,7 @@ void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matche
 {
     const int margin = CornerMatching::searchSide / 2 + CornerMatching::searchRadius;
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
-    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / CornerMatching::points)), spacing);
+    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / maxCorners)), spacing);
     const Size grid(inside.width / cell, inside.height / cell);
     const int count = grid.width * cell, radius = CornerMatching::tensorSide / 2;
     const auto scoreRow = [&](int y, const std::vector<int>& columns, double* scores) {
@@ -50,9 +66,8 @@ void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matche
             *scores++ = mean - std::sqrt(half * half + (double)xy[x] * xy[x]);
         }
     };
-    const int step = 2; // from a pixel that is looked at to the next, as neighbours are about as good
     std::vector<Point> corners;
-    bestOfCells(grid, cell, step, -1, scoreRow, corners);
+    bestOfCells(grid, cell, cornerStep, -1, scoreRow, corners);
     matches.assign(corners.size(), CornerMatch());
     for (size_t i = 0; i < corners.size(); ++i)
         matches[i].left = inside.tl() + corners[i];
@@ -75,7 +90,7 @@ void measureWindows(const Mat& image, SearchWindows& windows)
 bool isUnique(const std::vector<float>& values, int columns, int best)
 {
     const double rival = 1 - (1 - values[best]) * (1 + rivalCorrelation) - rivalDistance;
-    const int beside = 2, rows = (int)values.size() / columns, x = best % columns, y = best / columns;
+    const int beside = rivalReach, rows = (int)values.size() / columns, x = best % columns, y = best / columns;
     int rivals = 0;
     for (const float value : values)
         rivals += value > rival;
@@ -133,6 +148,7 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
 {
     match.isValid = false;
     const int width = CornerMatching::trackWidth, height = CornerMatching::trackHeight, n = width * height;
+    const int fractionBits = CornerMatching::fractionBits, fractions = 1 << fractionBits;
     const Point first = match.left - Point(width / 2, height / 2);
     const Rect inside(1, 1, left.cols - 2, left.rows - 2); // has gradients
     if (!inside.contains(first) || !inside.contains(first + Point(width - 1, height - 1)))
@@ -157,7 +173,7 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     for (int iteration = 0;; ++iteration)
     {
         const int x = cvRound(place.x * fractions), y = cvRound(place.y * fractions);
-        const Point whole(x >> 5, y >> 5);
+        const Point whole(x >> fractionBits, y >> fractionBits);
         if (whole.x < 0 || whole.y < 0 || whole.x + width >= right.cols || whole.y + height >= right.rows)
             return;
         int sums[5];
@@ -168,7 +184,7 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
             return;
         const double gain = std::sqrt(variance / rightVariance);
         residual = 2 * (variance - gain * ((double)sums[2] * n - sum * sums[0])) / ((double)n * n);
-        if (iteration == CornerMatching::iterations)
+        if (iteration == iterations)
             break;
         // Sums of the gradient times (gain * R - L), both without their means
         const double ex = 0.5 * (gain * (sums[3] - sumX * sums[0] / n) - productX);
@@ -187,11 +203,11 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     match.isValid = true;
 }
 
-//! The first layer of a pyramid that has no more than CornerMatching::coarseArea pixels
+//! The first layer of a pyramid that has no more than maxCoarseArea pixels
 int coarseLayer(Size size)
 {
     int layer = 0;
-    while ((size.width >> layer) * (size.height >> layer) > CornerMatching::coarseArea)
+    while ((size.width >> layer) * (size.height >> layer) > maxCoarseArea)
         ++layer;
     return layer;
 }
@@ -227,10 +243,10 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
     buildPyramid(left, coarse.layer + 1, coarse.left);
     buildPyramid(right, coarse.layer + 1, coarse.right);
     const Mat &coarseLeft = coarse.left[coarse.layer], &coarseRight = coarse.right[coarse.layer];
-    if (std::min(coarseLeft.rows, coarseLeft.cols) < CornerMatching::minSide)
+    if (std::min(coarseLeft.rows, coarseLeft.cols) < 2 * (CornerMatching::searchSide + CornerMatching::searchRadius))
         return;
-    const int spacing = std::max(CornerMatching::spacing >> coarse.layer, (int)CornerMatching::minSpacing);
-    findCornerMatches(coarseLeft, coarseRight, layerDisparities(numDisparities, coarse.layer, true), spacing,
+    const int cell = std::max<int>(minSpacing >> coarse.layer, minCoarseSpacing);
+    findCornerMatches(coarseLeft, coarseRight, layerDisparities(numDisparities, coarse.layer, true), cell,
                       coarse.windows, coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
 }

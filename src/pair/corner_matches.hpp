@@ -8,22 +8,19 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of findCornerMatches() and trackCornerMatches()
+//! The constants of findCornerMatches() and trackCornerMatches() that the compiler needs
 struct CornerMatching
 {
     enum
     {
-        points = 500,     // maximum number of corners, one per cell of a grid
-        spacing = 10,     // minimum side of a cell, in pixels of the image: windows of nearer corners see the same
-        minSpacing = 4,   // minimum side of a cell, in pixels of the coarse layer
-        tensorSide = 7,   // of the window that tells how much of a corner a pixel is
-        searchRadius = 2, // rows above and below that are searched on the coarse layer
-        searchSide = 9,   // of the window there
-        trackWidth = 16,  // of the window on the finer layers
-        trackHeight = 13,
-        iterations = 3,
-        minSide = 2 * (searchSide + searchRadius), // of the coarse layer
-        coarseArea = 45000                         // maximum of that layer, in pixels
+        tensorSide = 7,   // pixels; window of the structure tensor: a smaller one takes noise for corners, a larger one
+                          // finds corners beside its middle
+        searchSide = 9,   // pixels; window on the coarse layer: a smaller one has more rivals, a larger one has two
+                          // surfaces, and its sums have more than 32 bits
+        searchRadius = 2, // rows above and below that are searched on the coarse layer: more cost time and give rivals
+        trackWidth = 16,  // pixels; window on the finer layers: as many as a vector has
+        trackHeight = 13, // pixels; odd, to have a middle row, and about as large as the width: more has two surfaces
+        fractionBits = 5  // a tracked window begins at a multiple of 1 / 32 pixel: weights of 2 x 2 pixels have 16 bits
     };
 };
 

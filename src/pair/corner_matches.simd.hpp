@@ -50,7 +50,7 @@ void cutWindow(const ushort* left, size_t step, short* values, short* gradientX,
 /** One window of the right image for trackCornerMatches(): its sums with the left one.
 @param right The pixel above and left of the first one's place.
 @param step From a row to the next, in pixels.
-@param fx Fraction of the place in 1/32 of a pixel.
+@param fx Fraction of the place, in 1 / 2^fractionBits of a pixel.
 @param fy
 @param left The left window, without gaps.
 @param gradientX Of the left window.
@@ -210,16 +210,17 @@ void cutWindow(const ushort* left, size_t step, short* values, short* gradientX,
 void trackingSums(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
                   const short* gradientY, int sums[5])
 {
-    const short w11 = (short)(fx * fy), w10 = (short)(fy * 32 - w11), w01 = (short)(fx * 32 - w11),
-                w00 = (short)(1024 - w11 - w10 - w01);
+    const int bits = CornerMatching::fractionBits, half = 1 << (2 * bits - 1);
+    const short w11 = (short)(fx * fy), w10 = (short)((fy << bits) - w11), w01 = (short)((fx << bits) - w11),
+                w00 = (short)(2 * half - w11 - w10 - w01);
     short values[windowPixels];
     for (int y = 0; y < CornerMatching::trackHeight; ++y)
     {
         const ushort *const a = right + y * step, *const b = a + step;
         short* const row = values + y * CornerMatching::trackWidth;
         HDP_VECTORIZED for (int x = 0; x < CornerMatching::trackWidth; ++x) row[x] =
-            (short)((w00 * (short)a[x] + w01 * (short)a[x + 1] + w10 * (short)b[x] + w11 * (short)b[x + 1] + 512) >>
-                    10);
+            (short)((w00 * (short)a[x] + w01 * (short)a[x + 1] + w10 * (short)b[x] + w11 * (short)b[x + 1] + half) >>
+                    (2 * bits));
     }
     int sum = 0, square = 0, product = 0, productX = 0, productY = 0;
     HDP_VECTORIZED for (int i = 0; i < windowPixels; ++i)

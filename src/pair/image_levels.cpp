@@ -6,6 +6,7 @@
 #include "image_levels.simd.hpp"
 #include "pair/image_levels.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -13,8 +14,15 @@ namespace {
 
 HDP_DISPATCH(greyRow)
 
-const int fewestBits = 8, mostBits = 16;
-const int pixelsPerBright = 1024; // of so many pixels one may be too bright, as highlights and defective ones are
+const int minBits = 8, maxBits = 16; // of a level
+
+HDP_TUNABLE(int, pixelsPerBright, 1024, "pixels",
+            "of which one may be too bright: highlights and defects are fewer, parts of the scene more");
+HDP_TUNABLE(int, pixelsPerLamp, 128, "pixels",
+            "of a dark pair, of which one may become white: as few are lamps and what they shine on");
+HDP_TUNABLE(int, maxUnusedBits, 2, "bits",
+            "by which a dark pair is brightened: more would make noise look like texture");
+HDP_TUNABLE(int, rowsThatTell, 64, "rows", "of a dark pair, about: more cost time and tell the same");
 
 //! Calls convert(from, to, width) for each row.
 template <typename From, typename To, typename Convert>
@@ -30,31 +38,31 @@ void convertRows(const Mat& image, Mat& converted, const Convert& convert)
 
 int countBits(const Mat& left, const Mat& right)
 {
-    int bits = fewestBits;
+    int bits = minBits;
     if (left.depth() == CV_8U)
         return bits;
-    Mat tooBright(left.rows, mostBits - fewestBits, CV_32S); // pixels of each row, for each number of bits
+    Mat tooBright(left.rows, maxBits - minBits, CV_32S); // pixels of each row, for each number of bits
     parallel_for_(Range(0, left.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
             const ushort *l = left.ptr<ushort>(y), *r = right.ptr<ushort>(y);
             for (int i = 0; i < tooBright.cols; ++i)
             {
-                const int limit = 1 << (fewestBits + i);
+                const int limit = 1 << (minBits + i);
                 int count = 0;
                 HDP_VECTORIZED for (int x = 0; x < left.cols; ++x) count += (l[x] >= limit) + (r[x] >= limit);
                 tooBright.at<int>(y, i) = count;
             }
         }
     });
-    while (bits < mostBits && sum(tooBright.col(bits - fewestBits))[0] > 2. * left.total() / pixelsPerBright)
+    while (bits < maxBits && sum(tooBright.col(bits - minBits))[0] > 2. * left.total() / pixelsPerBright)
         ++bits;
     return bits;
 }
 
 Mat byteLevels(const Mat& image, int bits, Mat& buffer)
 {
-    const int channels = image.channels(), times = fewestBits - bits;
+    const int channels = image.channels(), times = minBits - bits;
     if (image.depth() == CV_16U)
     {
         buffer.create(image.size(), CV_8UC1);
@@ -84,7 +92,7 @@ Mat byteLevels(const Mat& image, int bits, Mat& buffer)
 
 void greyLevels(const Mat& image, int bits, Mat& grey)
 {
-    const int times = fewestBits - bits;
+    const int times = minBits - bits;
     grey.create(image.size(), CV_16U);
     if (image.depth() == CV_16U)
     {
@@ -108,9 +116,9 @@ void greyLevels(const Mat& image, int bits, Mat& grey)
 
 int countUnusedBits(const Mat& left, const Mat& right)
 {
-    const int most = 2, pixelsPerLamp = 128, step = std::max(left.rows / 64, 1); // some rows tell
+    const int step = std::max(left.rows / rowsThatTell, 1);
     int unused = 0;
-    for (; unused < most; ++unused)
+    for (; unused < maxUnusedBits; ++unused)
     {
         const int limit = 256 * greyScale >> (unused + 1);
         int64 bright = 0, all = 0;

@@ -11,7 +11,7 @@ namespace cv { namespace stereo { namespace hdp {
 
 // All parameters in intensity levels are for images of 8 bits. Images of 16 bits are brought to the same range.
 
-/** Number of bits in use in a pair: 8 for images of 8 bits. For CV_16UC1, the fewest from 8 to 16 that are enough for
+/** Number of bits in use in a pair: 8 for images of 8 bits. For CV_16UC1, the minimum from 8 to 16 that is enough for
 all pixels of both images but one in 1024; what is brighter is white. Images of 8 bits times 2^k are then these images
 again, if more than one pixel in 1024 has a level of 128 or more. */
 CV_EXPORTS int countBits(const Mat& left, const Mat& right);
@@ -32,7 +32,7 @@ on it.
 @param grey Receives CV_16UC1. */
 CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey);
 
-/** How many upper bits a dark pair leaves unused: the most, up to 2, with which all pixels but one in 128 are below
+/** How many upper bits a dark pair leaves unused: the maximum, up to 2, with which all pixels but one in 128 are below
 white when their levels are doubled as often. As few are lamps and what they shine on. More than 2 would make noise look
 like texture.
 @param left,right See greyLevels(). */

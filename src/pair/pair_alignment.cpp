@@ -6,6 +6,7 @@
 
 #include "image_levels.hpp"
 #include "image_pyramid.hpp"
+#include "../base/tunable.hpp"
 
 #include "opencv2/imgproc.hpp"
 
@@ -13,10 +14,13 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
+HDP_TUNABLE(double, smoothingDeviation, 0.5, "pixels",
+            "of a noisy pair's Gaussian: more loses texture, less keeps noise");
+
 //! Both images by a small Gaussian
 void smooth(LayerImages& images, LayerImages& smoothed)
 {
-    const double deviation = 0.5; // in pixels
+    const double deviation = smoothingDeviation;
     GaussianBlur(images.left, smoothed.left, Size(3, 3), deviation, deviation, BORDER_REPLICATE);
     GaussianBlur(images.right, smoothed.right, Size(3, 3), deviation, deviation, BORDER_REPLICATE);
     images.left = smoothed.left;

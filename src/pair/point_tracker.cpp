@@ -5,14 +5,22 @@
 #include "point_tracker.hpp"
 
 #include "../base/parabola.hpp"
+#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-typedef PointTracking T;
-
-const int halfSide = T::side / 2;
+HDP_TUNABLE(int, maxCoarsestWidth, 160, "pixels",
+            "of the level that a search begins at: on a larger one it reaches less far, on a smaller one points merge");
+HDP_TUNABLE(int, spacing, 4, "pixels of that level", "of the points: fewer tell less of the motion, more cost time");
+HDP_TUNABLE(int, halfSide, 4, "pixels of any level",
+            "half of the squares that are compared: smaller have more rivals, larger see two surfaces");
+HDP_TUNABLE(int, searchRadius, 8, "pixels of that level", "of trackPoints() there: more costs time and finds rivals");
+HDP_TUNABLE(int, refinementRadius, 2, "pixels of the level",
+            "of all other searches: 1 is what the level before rounds away, and 1 is for its errors");
+HDP_TUNABLE(int, minTexture, 3, "grey levels from a pixel to the next",
+            "in both directions, on average over a square: in less, noise is tracked");
 
 //! Whether the square around a pixel, and another pixel on each side, are in the image
 bool isInside(const Mat& image, Point at)
@@ -23,12 +31,13 @@ bool isInside(const Mat& image, Point at)
 //! Sum of absolute differences of the squares around two pixels
 int difference(const Mat& before, Point from, const Mat& now, Point to)
 {
+    const int side = 2 * halfSide;
     int sum = 0;
     for (int dy = -halfSide; dy < halfSide; ++dy)
     {
         const uchar* a = before.ptr(from.y + dy) + from.x - halfSide;
         const uchar* b = now.ptr(to.y + dy) + to.x - halfSide;
-        for (int k = 0; k < T::side; ++k)
+        for (int k = 0; k < side; ++k)
             sum += std::abs(a[k] - b[k]);
     }
     return sum;
@@ -128,15 +137,15 @@ void bestOfCells(Size grid, int cell, int step, double minScore, const RowScores
 int trackingLevels(int width)
 {
     int levels = 1;
-    while (width >> (levels - 1) > T::coarsestWidth)
+    while (width >> (levels - 1) > maxCoarsestWidth)
         ++levels;
     return levels;
 }
 
 void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points)
 {
-    const int top = (int)before.size() - 1, cell = T::spacing << top, minTexture = T::minTexture * T::side * T::side;
-    const Size grid(before[top].cols / T::spacing, before[top].rows / T::spacing);
+    const int top = (int)before.size() - 1, cell = spacing << top, minSum = 4 * minTexture * halfSide * halfSide;
+    const Size grid(before[top].cols / spacing, before[top].rows / spacing);
     std::vector<Point> places;
     const auto scoreRow = [&](int y, const std::vector<int>& columns, double* scores) {
         for (int x : columns)
@@ -146,7 +155,7 @@ void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& poi
             *scores++ = isTracked ? texture(before[0], place) : 0;
         }
     };
-    bestOfCells(grid, cell, cell / 2, minTexture - 1, scoreRow, places);
+    bestOfCells(grid, cell, cell / 2, minSum - 1, scoreRow, places);
     points.clear();
     for (const Point& place : places)
         if (place != nowhere)
@@ -158,9 +167,9 @@ void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, st
     const int top = (int)before.size() - 1;
     forEachPoint(points, [&](TrackedPoint& point) {
         const Point from = point.before;
-        Point match = search(before, now, top, from, onLevel(from, top), T::searchRadius);
+        Point match = search(before, now, top, from, onLevel(from, top), searchRadius);
         for (int level = top - 1; level >= 0 && match != nowhere; --level)
-            match = search(before, now, level, from, 2 * match, T::refinementRadius);
+            match = search(before, now, level, from, 2 * match, refinementRadius);
         point.now = match != nowhere ? refine(before[0], from, now[0], match) : point.before;
     });
 }
@@ -173,7 +182,7 @@ void trackNearby(const std::vector<Mat>& before, const std::vector<Mat>& now, st
         Point match(cvFloor(point.now.x + 0.5), cvFloor(point.now.y + 0.5));
         for (int level : { coarse, 0 })
             if (match != nowhere && isInside(before[level], onLevel(from, level)))
-                match = (1 << level) * search(before, now, level, from, onLevel(match, level), T::refinementRadius);
+                match = (1 << level) * search(before, now, level, from, onLevel(match, level), refinementRadius);
         point.now = match.x >= 0 ? refine(before[0], from, now[0], match) : point.before;
     });
 }

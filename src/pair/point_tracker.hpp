@@ -11,20 +11,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of choosePoints(), trackPoints() and trackNearby()
-struct PointTracking
-{
-    enum
-    {
-        coarsestWidth = 160,  // maximum width of the level that the search begins at, in pixels
-        spacing = 4,          // of the points, in pixels of that level
-        side = 8,             // of the squares that are compared, in pixels of any level
-        searchRadius = 8,     // of trackPoints() on the coarsest level, in its pixels
-        refinementRadius = 2, // of all other searches, in pixels of their level
-        minTexture = 3        // grey levels from a pixel to the next, in both directions, on average over a square
-    };
-};
-
 //! No point of an image
 const Point nowhere(-1, -1);
 

@@ -29,6 +29,9 @@ HDP_TUNABLE(double, slopeChange, 1e-3, "rows per pixel", "of a slope from border
 HDP_TUNABLE(double, minMove, 0.12, "pixels", "root of the mean square of a model that is applied");
 HDP_TUNABLE(double, certainty, 2, "deviations", "of the model, taken from its move: noise is no reason to move rows");
 
+HDP_TUNABLE(double, noiseFall, 1.7, "factor from a layer to the next",
+            "white noise would halve; that of cameras, which neighbours share, falls less");
+
 typedef RowModel::Coefficients Coefficients;
 
 HDP_DISPATCH(mixRows)
@@ -104,14 +107,13 @@ MeanSquares meanSquares(const RowFit& fit, Size size)
     return means;
 }
 
-//! The largest move at a corner of the image
-double largestMove(const RowModel& model, Size size)
+//! The maximum move at a corner of the image
+double maxMoveAtCorners(const RowModel& model, Size size)
 {
-    double largest = 0;
+    double max = 0;
     for (int i = 0; i < 4; ++i)
-        largest =
-            std::max(largest, std::abs(model.at(Point2d((i % 2 - 0.5) * size.width, (i / 2 - 0.5) * size.height))));
-    return largest;
+        max = std::max(max, std::abs(model.at(Point2d((i % 2 - 0.5) * size.width, (i / 2 - 0.5) * size.height))));
+    return max;
 }
 
 //! The matches of a layer where they are to be tracked in the next finer one: rows are those of the model.
@@ -168,6 +170,17 @@ template <typename T> void alignRow(const Mat& right, const RowModel& model, int
 
 } // namespace
 
+double LayerNoise::ofLayer(int other) const
+{
+    const double fall = noiseFall;
+    double noise = deviation;
+    for (int l = layer; l < other; ++l)
+        noise /= fall;
+    for (int l = layer; l > other; --l)
+        noise *= fall;
+    return noise;
+}
+
 bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model, LayerNoise& noise)
 {
     model = RowModel();
@@ -201,7 +214,7 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         enterFinerLayer(fitted, layer, size, matches);
         trackCornerMatches(coarse.left[layer - 1], coarse.right[layer - 1], matches);
     }
-    if (ofBest.deviation == DBL_MAX || largestMove(best, size) > maxOffset)
+    if (ofBest.deviation == DBL_MAX || maxMoveAtCorners(best, size) > maxOffset)
         return false;
     model = best;
     return ofBest.move - certainty * certainty * ofBest.deviation > minMove * minMove;

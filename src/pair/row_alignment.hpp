@@ -51,27 +51,18 @@ struct LayerNoise
     double deviation; // standard deviation, in levels of 255
     int layer;        // that it was measured in
 
-    //! Of another layer. White noise would halve from layer to layer; that of cameras, of neighbours alike, falls less.
-    double ofLayer(int other) const
-    {
-        const double fall = 1.7;
-        double noise = deviation;
-        for (int l = layer; l < other; ++l)
-            noise /= fall;
-        for (int l = layer; l > other; --l)
-            noise *= fall;
-        return noise;
-    }
+    //! The deviation in another layer
+    CV_EXPORTS double ofLayer(int other) const;
 };
 
 /** Finds how the rows of the right image lie against those of the left one, from matches that are followed from the
 coarse layer to the finest one.
 @param coarse What matchCoarsely() found.
 @param finestLayer The last layer that matches are followed to; one of 600000 pixels is fine enough.
-@param maxOffset Largest difference of a pixel's rows that is believed, in pixels of the image.
+@param maxOffset Maximum difference of a pixel's rows that is believed, in pixels of the image.
 @param model Receives the model, zero if the matches do not tell.
 @param noise Receives the noise of the last layer that was looked at, 0 if unknown: what remains between the windows of
-matches, in the tenth of them where it is the least.
+matches, in the tenth of them with the lowest one.
 @return Whether the model is certain, and moves rows by enough to be applied. */
 CV_EXPORTS bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model,
                              LayerNoise& noise);

@@ -17,7 +17,7 @@ namespace {
 
 typedef HDPTreeMatcher M;
 
-const int maxPenalty = hdp::ScanlinePenalties::largest;
+const int maxPenalty = hdp::ScanlinePenalties::max;
 
 bool isIn(int value, int first, int last) { return first <= value && value <= last; }
 bool isNotNegative(double value) { return std::isfinite(value) && value >= 0; }

@@ -5,6 +5,7 @@
 #include "pair_plan.hpp"
 
 #include "../base/grey_levels.hpp"
+#include "../base/tunable.hpp"
 #include "../pair/image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -13,41 +14,42 @@ namespace {
 
 typedef HDPTreeMatcher M;
 
-// Pixels. Images as wide as this get the values that the authors' program has for Middlebury's full size, others those
-// for its half size.
-const int largeImageWidth = 1000;
+HDP_TUNABLE(int, largeImageWidth, 1000, "pixels",
+            "from which on images get what the authors' program has for Middlebury's full size, not its half size");
 
 // Candidates. A top layer beyond the second one has no fewer: as many as a window of the scanlines.
 const int minTopDisparities = CandidateWindow::candidates;
 
-// Pixels. The largest window that a cost is averaged over.
+// Pixels. The maximum side of a window that a cost is averaged over.
 const int maxWindow = 31;
 
-// Standard deviations of the noise. What differs by less is not darker: more loses texture, less takes noise for it.
-const double toleratedNoise = 0.45;
+HDP_TUNABLE(double, toleratedNoise, 0.45, "standard deviations of the noise",
+            "what differs by less is not darker: more loses texture, less takes noise for it");
+HDP_TUNABLE(int, coarseLayer, 2, "layer",
+            "from which on the census has a tolerance of 1 at least: rounded means and faint shading are no texture");
 
-// From this layer on the census has a tolerance of 1 at least: the rounding of means and faint shading are no texture.
-const int coarseLayer = 2;
+// Means over trees
+HDP_TUNABLE(double, meanGamma, 0.2, "gamma of the trees' sums",
+            "of means that scanlines get: these carry costs farther by themselves, and more blurs borders");
+HDP_TUNABLE(double, meanP1, 0.5, "P1",
+            "means are smoother than costs: more flattens slanted surfaces, less keeps noise");
+HDP_TUNABLE(double, meanP2, 1.3, "P2",
+            "the large penalty: more drags surfaces across borders, less keeps errors of trees");
+HDP_TUNABLE(double, edgeGamma, 0.7, "gamma of the trees' sums",
+            "of the large penalty: more drags surfaces across edges, less breaks textured ones");
+HDP_TUNABLE(double, refinementGamma, 0.25, "gamma of the trees' sums",
+            "of the non-local refinement: with the same one it blurs slanted surfaces");
 
-// Gamma of the means that scanlines get, relative to that of the trees' own sums: scanlines carry costs farther.
-const double meanGamma = 0.2;
-
-// The large penalty over means, relative to P2, and its gamma, relative to that of the trees.
-const double meanP2 = 1.3, edgeGamma = 0.7;
-
-// Layers of scanlines below a top layer that does without trees because the last frame predicts it. They repair what
-// trees would have carried to bare surfaces; one layer cannot.
-const int repairingLayers = 2;
-
-// Halves of a bit per grey level, see ScanlinePenalties::edgeSlope. On the finest layer edges are those of surfaces; on
-// coarser layers, and in noise, they are weaker evidence.
-const int finestSlope = 5, usualSlope = 3;
-
-// What ScanlinePenalties::prior is in the first pass and in later ones, which trust the disparities of the pass before.
-const int firstPrior = 1, laterPrior = 2;
-
-// Gamma of the non-local refinement, relative to that of the sums: with the same one it blurs slanted surfaces.
-const double refinementGamma = 0.25;
+// Scanlines over windows
+HDP_TUNABLE(int, repairingLayers, 2, "layers",
+            "below a top layer without trees, to repair what these would have carried to bare surfaces: one cannot");
+HDP_TUNABLE(int, finestSlope, 5, "halves of a bit per grey level",
+            "by which the large penalty falls on the finest layer, where edges are those of surfaces");
+HDP_TUNABLE(int, usualSlope, 3, "halves of a bit per grey level",
+            "on coarser layers, and in noise: edges are weaker evidence there");
+HDP_TUNABLE(int, firstPrior, 1, "bits per 2 pixels",
+            "from the layer above, which may be wrong: more cannot be repaired, less loses bare surfaces");
+HDP_TUNABLE(int, laterPrior, 2, "bits per 2 pixels", "from the pass before, which knows more than the layer above");
 
 //! The side of the matching cost's window. Values that are not odd and positive count as with cv::StereoSGBM.
 int windowSide(const MatcherParameters& p)
@@ -168,11 +170,11 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
     return trees;
 }
 
-//! Means of costs are smoother, and so is what the last frame predicts: half of P1.
+//! For means of trees, and for costs with what the last frame predicts, which are as smooth
 VolumePenalties planVolume(const MatcherParameters& p)
 {
     const int scale = CostVolume::scale, large = cvRound(scale * meanP2 * p.P2);
-    return { scale * p.P1 / 2, std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
+    return { cvRound(scale * meanP1 * p.P1), std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
 }
 
 //! The direction from below costs half as much as the others together: at full size it waits for the second pass.
@@ -216,8 +218,8 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     return plan;
 }
 
-//! Less is as often noise as texture. Where several frames of a moving camera are joined, their noise averages out, and
-//! faint texture is worth more; where nothing moves, the disparities of the last frame are kept anyway.
+//! What differs by less is as often noise as texture. Where several frames of a moving camera are joined, their noise
+//! averages out, and faint texture is worth more; where nothing moves, disparities of the last frame are kept anyway.
 int censusTolerance(int layer, const LayerNoise& noise, const VideoFindings& video)
 {
     if (video.verdict == CONTINUED && !video.isStill && layer < coarseLayer)

@@ -6,13 +6,18 @@
 #include "candidate_windows.simd.hpp"
 #include "scanlines/candidate_windows.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-// The surface beyond a discontinuity is looked for in the pixels of the upper layer up to this far away.
-const int neighborhood = 3;
+HDP_TUNABLE(int, neighborhood, 3, "pixels of the upper layer",
+            "in which the surface beyond a discontinuity is: in more there is often a third one");
+HDP_TUNABLE(int, discontinuity, 5, "pixels",
+            "between different surfaces: less is in one window with them, more is in neither");
+HDP_TUNABLE(int, maxStripes, 16, "stripes", "for as many threads: more filter the rows between them twice");
+HDP_TUNABLE(int, minStripeHeight, 16, "rows of the upper layer", "for the same reason");
 
 HDP_DISPATCH(predictRow)
 
@@ -31,11 +36,11 @@ void predictWindows(const WindowPrediction& prediction, int numDisparities, Wind
 {
     const Mat maps[2] = { prediction.upper, prediction.unfiltered };
     const Mat& upper = prediction.upper;
-    const int stripes = std::max(1, std::min(16, upper.rows / 16));
+    const int stripes = std::max(1, std::min<int>(maxStripes, upper.rows / minStripeHeight));
     for (int i = 0; i < 2; ++i)
     {
-        buffers.smallest[i].create(upper.size(), CV_16U);
-        buffers.largest[i].create(upper.size(), CV_16U);
+        buffers.min[i].create(upper.size(), CV_16U);
+        buffers.max[i].create(upper.size(), CV_16U);
     }
     windows.create(upper.size(), CV_16UC4);
     const Mat kernel = Mat::ones(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U);
@@ -46,20 +51,20 @@ void predictWindows(const WindowPrediction& prediction, int numDisparities, Wind
             const Range rows(upper.rows * i / stripes, upper.rows * (i + 1) / stripes);
             for (int map = 0; map < 2; ++map)
             {
-                Mat minima = buffers.smallest[map].rowRange(rows), maxima = buffers.largest[map].rowRange(rows);
+                Mat minima = buffers.min[map].rowRange(rows), maxima = buffers.max[map].rowRange(rows);
                 erode(maps[map].rowRange(rows), minima, kernel); // a stripe sees its neighbours' rows
                 dilate(maps[map].rowRange(rows), maxima, kernel);
             }
             const auto rowOf = [&](int map, int y) {
-                const DisparityRow row = { maps[map].ptr<ushort>(y), buffers.smallest[map].ptr<ushort>(y),
-                                           buffers.largest[map].ptr<ushort>(y) };
+                const DisparityRow row = { maps[map].ptr<ushort>(y), buffers.min[map].ptr<ushort>(y),
+                                           buffers.max[map].ptr<ushort>(y) };
                 return row;
             };
             for (int y = rows.start; y < rows.end; ++y)
             {
                 spreadMatches(prediction.matches, y, matches);
                 dispatched::predictRow(rowOf(0, y), rowOf(1, y), matches.data(), upper.cols, numDisparities,
-                                       windows.ptr<ushort>(y));
+                                       discontinuity, windows.ptr<ushort>(y));
             }
         }
     });
@@ -77,9 +82,9 @@ void halveDisparity(const Mat& disparity, Mat& upper)
             for (int x = 0; x < upper.cols; ++x)
             {
                 const int a = above[2 * x], b = above[2 * x + 1], c = below[2 * x], d = below[2 * x + 1];
-                const int least = std::min(std::min(a, b), std::min(c, d));
-                const int most = std::max(std::max(a, b), std::max(c, d));
-                middle[x] = (ushort)((a + b + c + d - least - most) / 4);
+                const int min = std::min(std::min(a, b), std::min(c, d));
+                const int max = std::max(std::max(a, b), std::max(c, d));
+                middle[x] = (ushort)((a + b + c + d - min - max) / 4);
             }
         }
     });

@@ -16,7 +16,7 @@ struct CandidateWindow
     enum
     {
         runs = 2,
-        runLength = 8,
+        runLength = 8, // candidates; half a vector of bytes
         candidates = runs * runLength,
         beyondRange = 1 // candidates beyond each end of the range, as neighbours of the last one for its fraction
     };
@@ -34,16 +34,16 @@ struct WindowPrediction
     const Mat& matches;    // of the layer itself, see findSparseMatches()
 };
 
-//! Memory of predictWindows(): the smallest and the largest disparities around each pixel, filtered or not
+//! Memory of predictWindows(): the minimum and maximum disparities around each pixel, filtered or not
 struct WindowBuffers
 {
-    Mat smallest[2], largest[2];
+    Mat min[2], max[2];
 };
 
-//! A row of disparities of the layer above, and the smallest and largest ones around each
+//! A row of disparities of the layer above, and the minimum and maximum around each
 struct DisparityRow
 {
-    const ushort *own, *smallest, *largest;
+    const ushort *own, *min, *max;
 };
 
 /** Predicts the candidates of a layer. The other surface is, of those at least 5 pixels away from the pixel's own

@@ -16,16 +16,14 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param matches The match in each pixel's square, or SparseMatches::noMatch.
 @param width Of the rows.
 @param numDisparities Of the layer.
+@param discontinuity Pixels between disparities of different surfaces.
 @param windows Receives a CandidateWindow each. */
 void predictRow(const DisparityRow& filtered, const DisparityRow& unfiltered, const ushort* matches, int width,
-                int numDisparities, ushort* windows);
+                int numDisparities, int discontinuity, ushort* windows);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
-
-// Disparities, in pixels of the layer, that lie this far apart belong to different surfaces.
-const int discontinuity = 5;
 
 //! The first of a number of candidates around a disparity, or around the middle between two.
 inline int firstOf(int disparity, int candidates, int numDisparities)
@@ -34,28 +32,23 @@ inline int firstOf(int disparity, int candidates, int numDisparities)
     return std::max(std::min(disparity - (candidates / 2 - 1), numDisparities + outside - candidates), -outside);
 }
 
-//! Whether two disparities of the layer belong to different surfaces
-inline int isOther(int a, int b) { return std::abs(a - b) >= discontinuity * subpixelScale; }
-
-inline int farthest(int from, int smallest, int largest)
-{
-    return largest - from >= from - smallest ? largest : smallest;
-}
+inline int farthest(int from, int min, int max) { return max - from >= from - min ? max : min; }
 
 } // namespace
 
 void predictRow(const DisparityRow& filtered, const DisparityRow& unfiltered, const ushort* matches, int width,
-                int numDisparities, ushort* windows)
+                int numDisparities, int discontinuity, ushort* windows)
 {
-    const ushort *own = filtered.own, *least = filtered.smallest, *most = filtered.largest;
-    const ushort *raw = unfiltered.own, *leastRaw = unfiltered.smallest, *mostRaw = unfiltered.largest;
+    const ushort *own = filtered.own, *min = filtered.min, *max = filtered.max;
+    const ushort *raw = unfiltered.own, *minRaw = unfiltered.min, *maxRaw = unfiltered.max;
     const int length = CandidateWindow::runLength, all = CandidateWindow::candidates,
-              outside = CandidateWindow::beyondRange;
+              outside = CandidateWindow::beyondRange, distance = discontinuity * subpixelScale;
+    const auto isOther = [=](int a, int b) { return (int)(std::abs(a - b) >= distance); }; // surface
     HDP_VECTORIZED for (int x = 0; x < width; ++x) // without branches, so that it can be
     {
         const int here = 2 * own[x], match = matches[x];
-        int other = farthest(here, 2 * leastRaw[x], 2 * mostRaw[x]);
-        const int ofFiltered = farthest(here, 2 * least[x], 2 * most[x]);
+        int other = farthest(here, 2 * minRaw[x], 2 * maxRaw[x]);
+        const int ofFiltered = farthest(here, 2 * min[x], 2 * max[x]);
         other = choose(isOther(ofFiltered, here), ofFiltered, other);
         other = choose((match != SparseMatches::noMatch) & isOther(match, here), match, other);
         other = choose(isOther(2 * raw[x], here), 2 * raw[x], other);

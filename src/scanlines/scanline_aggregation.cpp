@@ -6,16 +6,19 @@
 #include "scanline_aggregation.simd.hpp"
 #include "scanlines/scanline_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-// Of a stripe, about: stripes are of even number, so that also two threads have as much to do.
-const int stripeHeight = 128;
-
-// Rows before a stripe from which on the directions from above and from below are followed
-const int warmUpRows = 16;
+HDP_TUNABLE(int, stripeHeight, 128, "rows", "about: fewer rows are more warm-up, more leave threads without work");
+HDP_TUNABLE(int, warmUpRows, 16, "rows",
+            "beside a stripe, which the vertical directions begin with: fewer show its border, more cost time");
+HDP_TUNABLE(double, bluntSlope, 15, "bits per direction",
+            "of a minimum's steeper side: up to it the fraction is mostly noise, and the tip of two lines is better");
+HDP_TUNABLE(double, sharpSlope, 25, "bits per direction",
+            "from which on the tip is too near to whole disparities, and its root is better");
 
 HDP_DISPATCH(aggregateStripe)
 
@@ -48,13 +51,16 @@ void ScanlineScratch::prepare(int width, int numDisparities)
     winnerSums.resize(blockColumns);
 }
 
-void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int largest, const Mat& windows,
-                        const ScanlinePenalties& penalties, bool hasFromBelow, ScanlineBuffers& buffers, Mat& disparity,
-                        Mat& residual)
+void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int maxDisparity,
+                        const Mat& windows, const ScanlinePenalties& penalties, bool hasFromBelow,
+                        ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
     const Size size = left.size();
-    const ScanlineProblem problem = { &cost, &left, size, numDisparities, largest, &windows, penalties, hasFromBelow };
-    const int stripes =
+    const float directions = hasFromBelow ? 4 : 3;
+    const MinimumShape shape = { (float)bluntSlope * directions, (float)sharpSlope * directions };
+    const ScanlineProblem problem = { &cost,    &left,     size,         numDisparities, maxDisparity,
+                                      &windows, penalties, hasFromBelow, shape };
+    const int stripes = // of even number, so that also two threads have as much to do
         size.height < stripeHeight / 2 ? 1 : 2 * std::max(1, cvRound(size.height / (2. * stripeHeight)));
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);

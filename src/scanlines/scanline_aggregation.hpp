@@ -14,15 +14,30 @@ namespace cv { namespace stereo { namespace hdp {
 struct ScanlinePenalties
 {
     int small, large; // for a step of one disparity and for a larger one between neighbours of one grey level,
-                      // 0..largest
-    int edgeSlope;    // halves of a bit by which large falls per grey level between them, 0..largestSlope
-    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..largestPrior
+                      // 0..max
+    int edgeSlope;    // halves of a bit by which large falls per grey level between them, 0..maxSlope
+    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..maxPrior
     enum
     {
-        largest = 100,
-        largestSlope = 64, // times the largest difference of grey levels, in their units, it has 16 bits
-        largestPrior = 4
+        max = 100,     // bits; costs with it have 8 bits
+        maxSlope = 64, // times the maximum difference of grey levels, in their units, it has 16 bits
+        maxPrior = 4   // for the same reason
     };
+};
+
+//! A part of the cost that the compiler has to know
+struct ScanlineContrast
+{
+    enum
+    {
+        max = 23 // grey levels, four of which count as a bit: larger differences are other light or another surface
+    };
+};
+
+//! Sums of the directions, as differences from the winner's, that tell how sharp a minimum is, see winnerFraction()
+struct MinimumShape
+{
+    float blunt, sharp;
 };
 
 //! What is aggregated, see aggregateScanlines()
@@ -32,10 +47,11 @@ struct ScanlineProblem
     const Mat* left; // grey levels
     Size size;
     int numDisparities;
-    int largest; // disparity of a map
+    int maxDisparity; // of a map
     const Mat* windows;
     ScanlinePenalties penalties;
     bool hasFromBelow; // a fourth direction
+    MinimumShape shape;
 
     //! Of a window: others are outside of the range.
     int validCandidates() const
@@ -106,15 +122,15 @@ where candidates that q does not have count m + large(p, q). d - 1 and d + 1 sta
 in the window of p: those that p does not have are left out, and the last one of its first run and the first one of the
 second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less
 its own minimum, at most 255, the first of them if there are several; its sum and those of the candidates beside it, if
-p has disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction(): its limits are 15 and 25 times the
-number of directions.
+p has disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction(): its limits grow with the number of
+directions.
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
 start anew some rows before each of them.
 @param cost The layer's census cost.
 @param left The layer's grey levels, see LayerImages.
 @param numDisparities Of the layer.
-@param largest The largest disparity that a map of the layer may have. The winner may be beyond the ends of the range;
+@param maxDisparity That of a map of the layer. The winner may be beyond the ends of the range;
 its disparity is not.
 @param windows From predictWindows().
 @param penalties The penalties.
@@ -122,7 +138,7 @@ its disparity is not.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
-CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int largest,
+CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int maxDisparity,
                                    const Mat& windows, const ScanlinePenalties& penalties, bool hasFromBelow,
                                    ScanlineBuffers& buffers, Mat& disparity, Mat& residual);
 

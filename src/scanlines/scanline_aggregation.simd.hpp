@@ -146,12 +146,12 @@ private:
     //! large(p, q) between each pixel of a row and its neighbours to the right and in the next row
     void weighEdges(const ushort* row, const ushort* next, uchar* edges) const
     {
-        const ushort large = (ushort)p_.penalties.large, least = std::min((ushort)p_.penalties.small, large);
+        const ushort large = (ushort)p_.penalties.large, min = std::min((ushort)p_.penalties.small, large);
         const ushort slope = (ushort)p_.penalties.edgeSlope;
         const int last = width_ - 1;
         const auto penalty = [&](ushort p, ushort q) {
             const ushort fall = (ushort)((ushort)(difference(p, q) * slope) / (2 * greyScale));
-            return (uchar)std::max((ushort)(std::max(large, fall) - fall), least);
+            return (uchar)std::max((ushort)(std::max(large, fall) - fall), min);
         };
         HDP_VECTORIZED for (int x = 0; x < last; ++x)
         {
@@ -205,7 +205,7 @@ private:
         const int at = 4 * column;
         const auto ofPlane = [&](int plane) { return load((ptrdiff_t)(plane * planeStride_) - column); };
         const ByteLanes grey = ByteLanes::repeatByte<at + CensusCost::greyByte>(left), candidates = ofPlane(planes);
-        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(23)).quarter();
+        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(ScanlineContrast::max)).quarter();
         const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ofPlane(0);
         if (planes == 1)
             return contrast + first.countBits();
@@ -364,8 +364,8 @@ private:
     //! A row's disparities, with winnerFraction(), and residuals
     void finishRow(int group, ushort* disparity, uchar* residual) const
     {
-        const float directions = p_.hasFromBelow ? 4 : 3, blunt = 15 * directions, sharp = 25 * directions;
-        const int last = p_.validCandidates() - 1, large = p_.penalties.large, largest = p_.largest;
+        const float blunt = p_.shape.blunt, sharp = p_.shape.sharp;
+        const int last = p_.validCandidates() - 1, large = p_.penalties.large, maxDisparity = p_.maxDisparity;
         const short *firstOfLow = tables_.first(0), *firstOfHigh = tables_.first(1);
         const uchar *winners = winners_[group], *costs = costs_[group];
         const unsigned* sums = sums_[group];
@@ -382,7 +382,7 @@ private:
             const float slope = (float)std::max(std::max(before, after) - sum, 1);
             const float rise = (float)((before - after) & -isInner);
             const int tip = whole * subpixelScale + subpixelUnits(winnerFraction(rise, slope, blunt, sharp));
-            disparity[x] = (ushort)clamped(tip, 0, largest);
+            disparity[x] = (ushort)clamped(tip, 0, maxDisparity);
         }
         HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - large);
     }

@@ -6,10 +6,17 @@
 #include "sparse_matches.simd.hpp"
 #include "scanlines/sparse_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
+
+HDP_TUNABLE(int, rivalDistance, 2, "pixels", "candidates as near to the best one are no rivals: its minimum is there");
+HDP_TUNABLE(int, uniqueness, 2, "costs of the best match",
+            "by which rivals cost more: a smaller factor lets wrong matches in, a larger one finds few");
+HDP_TUNABLE(int, comparisonsPerDarker, 4, "comparisons of the census",
+            "of which one finds a darker pixel in a window with texture: flat ones match each other perfectly");
 
 HDP_DISPATCH(sumWindowCosts)
 
@@ -20,7 +27,7 @@ bool hasTexture(const CensusCost& cost, const uchar* left)
     int darker = 0;
     for (int i = 0; i <= 2 * SparseMatches::radius; ++i, left += 4)
         darker += countCensusBits((left[0] | (unsigned)left[1] << 8 | (unsigned)left[2] << 16) & mask);
-    return darker * SparseMatches::texture >= cost.comparisons() * (2 * SparseMatches::radius + 1);
+    return darker * comparisonsPerDarker >= cost.comparisons() * (2 * SparseMatches::radius + 1);
 }
 
 HDP_DISPATCH(lowestCost)
@@ -30,13 +37,13 @@ ushort uniqueMatch(const uchar* costs, int count)
 {
     const int lowest = dispatched::lowestCost(costs, count);
     const int best = (int)(std::find(costs, costs + count, (uchar)lowest) - costs);
-    const int before = std::max(best - SparseMatches::tolerance, 0);
-    const int after = std::min(best + SparseMatches::tolerance + 1, count);
+    const int before = std::max(best - rivalDistance, 0);
+    const int after = std::min(best + rivalDistance + 1, count);
     if (before == 0 && after == count) // no rivals
         return (ushort)SparseMatches::noMatch;
     const int rival =
         std::min(dispatched::lowestCost(costs, before), dispatched::lowestCost(costs + after, count - after));
-    return (ushort)(lowest * SparseMatches::uniqueness < rival ? best * subpixelScale : SparseMatches::noMatch);
+    return (ushort)(lowest * uniqueness < rival ? best * subpixelScale : SparseMatches::noMatch);
 }
 
 } // namespace

@@ -9,17 +9,16 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of findSparseMatches()
+//! The constants of findSparseMatches() that others need
 struct SparseMatches
 {
     enum
     {
-        spacing = 24,    // of the points, in pixels; even, as a pixel of the layer above is two wide
-        radius = 7,      // of a point's window, which is one row
-        tolerance = 2,   // candidates this near to the best one are not its rivals
-        uniqueness = 2,  // the rivals cost more than this many times as much
-        texture = 4,     // one comparison of the census in so many, at least, finds a darker pixel
-        noMatch = 0xffff // no disparity
+        spacing = 24, // pixels between points: more cost time, fewer miss surfaces; even, as a pixel of the layer above
+                      // is two wide
+        radius = 7,   // pixels of a point's window, which is one row: a wider one sees two surfaces, a narrower one is
+                      // seldom unique
+        noMatch = 0xffff
     };
 };
 
@@ -27,7 +26,7 @@ struct SparseMatches
 pixels, is found again here, if it is unique.
 
 The cost of a candidate is the sum of the census costs over the point's window, at most 255. The candidate of the lowest
-cost is a match if its window is inside the right image, if every rival costs more than `uniqueness` times as much,
+cost is a match if its window is inside the right image, if every rival costs clearly more,
 and if the left window has texture: flat areas match each other perfectly.
 @param cost The layer's census cost.
 @param size Of the layer.

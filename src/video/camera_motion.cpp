@@ -5,6 +5,7 @@
 #include "camera_motion.hpp"
 
 #include "../base/robust_fit.hpp"
+#include "../base/tunable.hpp"
 
 #include <cmath>
 
@@ -12,7 +13,28 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-typedef MotionFit T;
+HDP_TUNABLE(int, minPoints, 30, "points", "for eleven terms: with fewer of them, there is no motion");
+HDP_TUNABLE(double, inertia, 1e-5, "points' weight",
+            "that the camera is at rest: decides what the points leave open, more pulls motions to 0");
+HDP_TUNABLE(double, disparityUnits, 6, "per half width of the image",
+            "units of disparity: usual ones are as large, and so are all numbers in the equations");
+
+// Reweighted least squares
+HDP_TUNABLE(double, minTolerance, 0.25, "pixels", "of the last rounds: tracked points are as exact");
+HDP_TUNABLE(double, toleranceFall, 0.6, "factor from a round to the next",
+            "less loses points before the motion is near them, more costs rounds");
+HDP_TUNABLE(int, finalRounds, 3, "rounds", "with the last tolerance: the weights hardly change after these");
+
+// The median error at rest has to be larger than that of a motion.
+HDP_TUNABLE(double, motionFactor, 1.25, "errors of the motion",
+            "less takes things that move by themselves for the camera, more overlooks slow cameras");
+HDP_TUNABLE(double, motionDistance, 0.05, "pixels", "beside that: less takes the noise of the points for motion");
+
+// Corrected disparities
+HDP_TUNABLE(double, measuredDeviation, 0.15, "pixels",
+            "of a measured disparity: more lets outliers pull, less takes noise for them");
+HDP_TUNABLE(double, offsetDeviation, 1, "pixels", "expected of the offset: cameras turn against each other");
+HDP_TUNABLE(double, factorDeviation, 0.02, "difference from 1", "expected of the factor: motions are estimates");
 
 // What a motion has: the rows of X, Y and W, but for the 1 that is the last of W
 const int terms = 11;
@@ -77,10 +99,10 @@ void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>
 CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance)
 {
     CameraMotion motion;
-    if ((int)points.size() < T::minPoints)
+    if ((int)points.size() < minPoints)
         return motion;
     // Numbers of about the same size in all equations
-    const double unit = size.width / 2., disparityUnit = unit / 6;
+    const double unit = size.width / 2., disparityUnit = unit / disparityUnits;
     const Point2d centre(size.width / 2., size.height / 2.);
     std::vector<TrackedPoint> normed(points);
     for (TrackedPoint& point : normed)
@@ -92,28 +114,27 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, doubl
 
     Terms none = Terms::zeros();
     none(0) = none(5) = 1;
-    const double inertia = 1e-5 * points.size(); // decides what the points leave open
-    const double minTolerance = 0.25;            // in pixels
+    const double rest = inertia * points.size();
     std::vector<double> weights(points.size(), 1.);
     Matx44d forward = Matx44d::eye();
-    for (int rounds = T::fittingRounds; rounds > 0; rounds -= tolerance == minTolerance)
+    for (int rounds = finalRounds; rounds > 0; rounds -= tolerance == minTolerance)
     {
-        NormalMatrix a = inertia * NormalMatrix::eye();
-        Terms b = inertia * none;
+        NormalMatrix a = rest * NormalMatrix::eye();
+        Terms b = rest * none;
         for (size_t i = 0; i < normed.size(); ++i)
             addEquations(normed[i], weights[i], a, b);
         forward = matrixOf(a.solve(b, DECOMP_CHOLESKY));
         const double scale = tolerance / unit;
         for (size_t i = 0; i < normed.size(); ++i)
             weights[i] = 1 / (1 + squaredError(forward, normed[i]) / (scale * scale));
-        tolerance = std::max(tolerance * 0.6, minTolerance);
+        tolerance = std::max<double>(tolerance * toleranceFall, minTolerance);
     }
 
     // Things that move by themselves may look as if the camera did, but most points tell whether it is at rest.
     const double moved = std::sqrt(medianSquaredError(forward, normed)) * unit;
     const double still = std::sqrt(medianSquaredError(Matx44d::eye(), normed)) * unit;
     motion.error = still;
-    if (!(still > 1.25 * moved + 0.05))
+    if (!(still > motionFactor * moved + motionDistance))
         return motion;
     motion.error = moved;
     const Matx44d toNormed(1 / unit, 0, 0, -centre.x / unit, 0, 1 / unit, 0, -centre.y / unit, 0, 0, 1 / disparityUnit,
@@ -141,13 +162,12 @@ CameraMotion scaled(const CameraMotion& motion, double scale)
 DisparityChange correctedChange(const DisparityChange& change, const std::vector<float>& predicted,
                                 const std::vector<float>& measured)
 {
-    const double deviation = 0.15;                        // of a measured disparity
-    const FitPrior<2> none = { Vec2d(), Vec2d(1, 0.02) }; // of the offset, and of the factor's difference from 1
+    const FitPrior<2> none = { Vec2d(), Vec2d(offsetDeviation, factorDeviation) };
     std::vector<FitSample<2>> samples(predicted.size());
     for (size_t i = 0; i < samples.size(); ++i)
     {
         const FitSample<2> sample = { Vec2d(1, predicted[i] + change.minDisparity), measured[i] - predicted[i],
-                                      deviation };
+                                      measuredDeviation };
         samples[i] = sample;
     }
     if (samples.empty())

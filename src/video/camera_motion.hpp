@@ -20,16 +20,6 @@ struct CameraMotion
     double error = 0;    // median distance of the points from where it takes them, in pixels
 };
 
-//! The constants of fitMotion()
-struct MotionFit
-{
-    enum
-    {
-        minPoints = 30,   // with fewer of them, there is no motion
-        fittingRounds = 3 // of reweighted least squares with the last tolerance, after those with larger ones
-    };
-};
-
 /** Moves points to where a motion takes them.
 @param motion In pixels of the points, disparities as well.
 @param size The image's; points that leave it are nowhere.
@@ -58,7 +48,8 @@ struct DisparityChange
     CV_ALWAYS_INLINE float now(float before, float place) const
     {
         const float old = before + minDisparity, w = 1 - ofDisparity * old;
-        const float positive = w > 0.1f ? w : 0.1f; // less is at the camera or behind it
+        const float minW = 0.1f; // what gets ten times as near in a frame is at the camera or behind it
+        const float positive = w > minW ? w : minW;
         const float disparity = old * place / positive + offset - minDisparity;
         const float notNegative = disparity > 0 ? disparity : 0;
         return notNegative < maxDisparity ? notNegative : maxDisparity;
@@ -84,7 +75,8 @@ public:
     //! Where a pixel was if this is its disparity now; at negative coordinates if it is behind the camera
     CV_ALWAYS_INLINE Point2f place(int x, int y, float disparity) const
     {
-        const float minW = 0.001f, w = w_[0] * x + w_[1] * y + w_[2] * disparity + w_[3];
+        const float minW = 0.001f; // no pixel of a camera that looks ahead: less divides by 0
+        const float w = w_[0] * x + w_[1] * y + w_[2] * disparity + w_[3];
         const float factor = 1 / (w > minW ? w : minW);
         const float placeX = (x_[0] * x + x_[1] * y + x_[2] * disparity + x_[3]) * factor;
         const float placeY = (y_[0] * x + y_[1] * y + y_[2] * disparity + y_[3]) * factor;

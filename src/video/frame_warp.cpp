@@ -6,10 +6,15 @@
 #include "frame_warp.simd.hpp"
 #include "video/frame_warp.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
+
+HDP_TUNABLE(int, maxSteps, 4, "steps", "of the search for a block: more cost time, fewer do not come to rest");
+HDP_TUNABLE(int, maxLastStep, 2, "pixels",
+            "both coordinates of the last step of a block that was found: more has not come to rest, less loses many");
 
 HDP_DISPATCH(stepBack)
 HDP_DISPATCH(changeBlocks)
@@ -39,7 +44,7 @@ void findWarp(const BackwardMotion& motion, const Mat& disparity, FrameWarp& war
                 now[j] = disparity.ptr<ushort>(y)[atX[j]] / (float)subpixelScale;
                 state[j] = BlockRow::MOVING;
             }
-            for (int step = 0; step < T::steps && !dispatched::stepBack(motion, size, step == 0, row); ++step)
+            for (int step = 0; step < maxSteps && !dispatched::stepBack(motion, size, step == 0, row); ++step)
             {
                 for (int j = 0; j < count; ++j)
                     before[j] = disparity.ptr<ushort>(atY[j])[atX[j]];
@@ -48,7 +53,7 @@ void findWarp(const BackwardMotion& motion, const Mat& disparity, FrameWarp& war
             Vec2s* const shifts = warp.shifts.ptr<Vec2s>(i);
             for (int j = 0; j < count; ++j)
             {
-                const bool isFound = state[j] != BlockRow::OUTSIDE && lastStep[j] <= T::maxLastStep;
+                const bool isFound = state[j] != BlockRow::OUTSIDE && lastStep[j] <= maxLastStep;
                 shifts[j] =
                     isFound ? Vec2s((short)(atX[j] - row.centre(j)), (short)(atY[j] - y)) : Vec2s((short)T::unknown, 0);
             }

@@ -13,10 +13,8 @@ struct FrameWarp
 {
     enum
     {
-        block = 4,          // side of a block, in pixels
-        unknown = SHRT_MIN, // in place of the x of a shift: the block was not in the last frame
-        steps = 4,          // of the search for a block, see findWarp()
-        maxLastStep = 2     // sum of both coordinates' changes in the last step of a block that was found, in pixels
+        block = 4,         // pixels; side of a block: larger ones have two surfaces, smaller ones cost time
+        unknown = SHRT_MIN // in place of the x of a shift: the block was not in the last frame
     };
     Size size;  // of both frames
     Mat shifts; // CV_16SC2, per block: from a pixel to where it was

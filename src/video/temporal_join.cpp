@@ -6,6 +6,7 @@
 #include "temporal_join.simd.hpp"
 #include "video/temporal_join.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "../base/tunable.hpp"
 
 #include <cstring>
 #include <numeric>
@@ -15,6 +16,29 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 typedef TemporalJoin T;
+
+// Which disparity a cell takes
+HDP_TUNABLE(int, sameDistance, 1, "pixels", "up to which disparities are the same: their costs differ by noise");
+HDP_TUNABLE(int, costOffset, 6, "bits of 24",
+            "that a measured disparity's cost gets before shares of it are taken: without it, noise decides low ones");
+HDP_TUNABLE(int, stillShare, 26, "percent of that sum",
+            "that a disparity may cost more if the camera stands still: more keeps errors, less flickers");
+HDP_TUNABLE(int, movedShare, 60, "percent of that sum",
+            "the same if the camera moved: the costs of warped disparities are higher, however right they are");
+HDP_TUNABLE(int, wrongShare, 33, "percent of that sum", "beyond it, a cell contradicts the last frame: less is noise");
+HDP_TUNABLE(int, contradictedShare, 30, "percent of the cells with a source",
+            "that may contradict: if more do, one of the pairs was a wrong one, if fewer, something moved");
+HDP_TUNABLE(int, driftStep, 12, "cells", "between those that correct the predicted disparities: nearer ones cost time");
+
+// How it is joined with the measured one
+HDP_TUNABLE(int, tolerance, 4, "pixels of the image", "between disparities that agree: more joins two surfaces");
+HDP_TUNABLE(int, maxStep, 1, "pixels", "towards the measured one, before its share is taken: it may be an outlier");
+HDP_TUNABLE(int, maxCount, 4, "frames", "that a disparity may stand for: more flickers less and follows changes later");
+HDP_TUNABLE(int, maxUnmovedWeight, 2, "frames",
+            "that it counts for at the same place if the camera moved: it may be by chance");
+HDP_TUNABLE(int, maxMovedWeight, 1, "frames",
+            "that it counts for where the motion leads, which blurs from frame to frame");
+HDP_TUNABLE(int, stripeHeight, 32, "rows of cells", "for a thread: fewer compute the rows between stripes more often");
 
 const int cell = FrameMemory::cell;
 
@@ -56,10 +80,10 @@ DisparityChange measuredChange(const LastFrame& frame, const Mat& measured)
     const float unit = 1.f / subpixelScale;
     std::vector<float> predicted, now;
     std::vector<int> moved(frame.cells().width);
-    for (int i = 0; i < frame.cells().height; i += T::driftStep)
+    for (int i = 0; i < frame.cells().height; i += driftStep)
     {
         takeMovedCells(frame, i * cell, moved);
-        for (int j = 0; j < frame.cells().width; j += T::driftStep)
+        for (int j = 0; j < frame.cells().width; j += driftStep)
             if (frame.prediction.sources.ptr(i)[j] & MOVED_PLACE)
             {
                 predicted.push_back(moved[j] / (float)FrameMemory::scale);
@@ -73,7 +97,8 @@ DisparityChange measuredChange(const LastFrame& frame, const Mat& measured)
 void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& frame, VideoScratch& scratch)
 {
     const Size cells = frame.cells();
-    const int offset = T::costOffset * cost.comparisons() / 24;
+    const int offset = costOffset * cost.comparisons() / 24;
+    const int same = sameDistance * subpixelScale;
     const int maxDistance = TemporalSources::maxDistance * subpixelScale / frame.prediction.key.scale;
     scratch.sources.create(cells, CV_8U);
     scratch.evidence.create(cells, CV_16SC(EVIDENCE_CHANNELS));
@@ -86,7 +111,7 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
             if (!frame.isStill())
                 takeMovedCells(frame, y, moved);
             dispatched::compareDisparities(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y), moved.data(),
-                                           cells.width, maxDistance, frame.prediction.sources.ptr(i),
+                                           cells.width, same, maxDistance, frame.prediction.sources.ptr(i),
                                            scratch.sources.ptr(i), different.data());
             int count = 0;
             for (int j = 0; j < cells.width; ++j)
@@ -118,9 +143,9 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
 bool choose(const LastFrame& frame, VideoScratch& scratch)
 {
     const Size cells = frame.cells();
-    const int radius = T::window / 2, stripeHeight = 32, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
+    const int radius = T::window / 2, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
     // No pair has agreed with a first frame yet: from there, nothing that contradicts is taken.
-    const int movedShare = frame.memory.frames == 1 ? T::wrongShare : T::movedShare;
+    const ChoiceShares shares = { stillShare, frame.memory.frames == 1 ? wrongShare : movedShare, wrongShare };
     std::vector<int> sourceCounts(cells.height), contradicted(cells.height);
     scratch.choices.create(cells, CV_8U);
     parallel_for_(Range(0, stripes), [&](const Range& range) {
@@ -140,13 +165,13 @@ bool choose(const LastFrame& frame, VideoScratch& scratch)
             dispatched::sumWindow(columns.data(), length, sums.data());
             const uchar* sources = scratch.sources.ptr(y);
             sourceCounts[y] = (int)(cells.width - std::count(sources, sources + cells.width, 0));
-            contradicted[y] = dispatched::chooseCells(sums.data(), sources, cells.width, frame.isStill(), movedShare,
+            contradicted[y] = dispatched::chooseCells(sums.data(), sources, cells.width, frame.isStill(), shares,
                                                       scratch.choices.ptr(y));
             add(y - radius, -1);
         }
     });
     const int64 all = std::accumulate(sourceCounts.begin(), sourceCounts.end(), (int64)0);
-    return 100 * std::accumulate(contradicted.begin(), contradicted.end(), (int64)0) > T::contradictedShare * all;
+    return 100 * std::accumulate(contradicted.begin(), contradicted.end(), (int64)0) > contradictedShare * all;
 }
 
 //! Memory for a row
@@ -192,9 +217,10 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
         scratch.agrees.data() + T::fringe, scratch.choices.data(),    scratch.unmoved.data(), scratch.moved.data(),
         scratch.unmovedCounts.data(),      scratch.movedCounts.data()
     };
-    const int tolerance = std::max(T::tolerance / frame.prediction.key.scale, 1) * FrameMemory::scale;
-    const JoinRule rule = { tolerance, T::maxStep * FrameMemory::scale,
-                            frame.isStill() ? T::maxCount : T::maxUnmovedCount, T::maxMovedCount, T::maxCount };
+    const int maxDistance = std::max(tolerance / frame.prediction.key.scale, 1) * FrameMemory::scale;
+    const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale,
+                            std::min<int>(frame.isStill() ? maxCount : maxUnmovedWeight, T::maxWeight),
+                            std::min<int>(maxMovedWeight, T::maxWeight), maxCount };
     dispatched::joinRow(measured.ptr<ushort>(y), row, width, rule, next.disparity.ptr<ushort>(y), next.detail.ptr(y));
 }
 

@@ -9,25 +9,16 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of joinLastFrame()
+//! The constants of joinLastFrame() that the compiler needs
 struct TemporalJoin
 {
     enum
     {
-        window = 7,             // side of the square that costs are compared over, in cells
-        sameDisparity = 1,      // in pixels: costs of disparities no farther apart are not compared
-        costOffset = 6,         // what the measured disparity's cost gets before shares are taken of it, in bits of 24
-        keptShare = 26,         // percent of that sum that another disparity may cost more if the camera stands still
-        movedShare = 60,        // percent of that sum that another disparity may cost more if the camera moved
-        wrongShare = 33,        // percent of that sum beyond which a cell contradicts the last frame
-        contradictedShare = 30, // percent of the cells with a source: if more of them contradict, a pair was wrong
-        fringe = 2,          // pixels beside one that agrees: what disagrees there, where the motion leads, is measured
-        driftStep = 12,      // from a cell that corrects the predicted disparities to the next, in cells
-        tolerance = 4,       // between disparities that agree, in pixels of the image
-        maxStep = 1,         // towards the measured disparity, before it is divided by the weight, in pixels
-        maxCount = 4,        // frames that a disparity may stand for
-        maxUnmovedCount = 2, // frames that it counts for at most, at the same place, if the camera moved
-        maxMovedCount = 1    // frames that it counts for at most where the motion leads
+        window = 7, // cells; side of the square that costs are compared over: a smaller one decides by noise, a larger
+                    // one has two surfaces
+        fringe = 2, // pixels beside one that agrees: what disagrees there, where the motion leads, is measured;
+                    // fewer leave a rim of the last frame, more drop what is right
+        maxWeight = 4 // frames that a disparity may count for: joinRow() divides by one more
     };
 };
 
@@ -36,7 +27,7 @@ enum TemporalEvidence
 {
     COST_UNMOVED, // what it costs more than the measured one
     COST_MOVED,
-    SCALE_UNMOVED, // what the measured one costs, and costOffset
+    SCALE_UNMOVED, // what the measured one costs, and an offset
     SCALE_MOVED,
     EVIDENCE_CHANNELS
 };
@@ -67,10 +58,18 @@ struct TemporalRow
     const uchar *unmovedCounts, *movedCounts;
 };
 
-//! How disparities are joined, in FrameMemory's units; see TemporalJoin.
+//! Percent of the measured disparity's scale that another one may cost more, see TemporalEvidence
+struct ChoiceShares
+{
+    int still; // at the same place if the camera stands still
+    int moved; // if the camera moved
+    int wrong; // beyond it, a cell contradicts the last frame
+};
+
+//! How disparities are joined, in FrameMemory's units
 struct JoinRule
 {
-    int tolerance, maxStep, maxUnmovedWeight, maxMovedWeight, maxCount;
+    int tolerance, maxStep, maxUnmovedWeight, maxMovedWeight, maxCount; // weights: up to TemporalJoin::maxWeight
 };
 
 /** Joins the disparities of a pair, before the median, with those of the frame before. Each pixel has up to three: the

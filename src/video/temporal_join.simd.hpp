@@ -41,12 +41,13 @@ are far apart.
 @param unmoved Those of the frame before at the same places.
 @param moved Those where the motion leads, of each cell, as of changeDisparities().
 @param count Number of cells.
+@param same Distance of disparities that are the same, in units of a map.
 @param maxDistance TemporalSources::maxDistance, in units of a map.
 @param sources What each cell may take.
 @param used Receives those of them that count.
 @param different Receives which of the sources have another disparity than the measured one. */
-void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int maxDistance,
-                        const uchar* sources, uchar* used, uchar* different);
+void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int same,
+                        int maxDistance, const uchar* sources, uchar* used, uchar* different);
 
 /** Adds up what the pixels on the diagonals of cells tell, see TemporalEvidence.
 @param rows The rows of the cells.
@@ -64,10 +65,11 @@ void compareCells(const ComparedRow* rows, const int* moved, const uchar* differ
 @param sources What each may take.
 @param count Number of cells.
 @param isStill Whether the camera is at rest.
-@param movedShare TemporalJoin's, for the choices.
+@param shares What a disparity may cost more.
 @param choices Receives a TemporalChoice of each.
-@return How many that have a source contradict it: with wrongShare in place of movedShare, they would be measured. */
-int chooseCells(const short* sums, const uchar* sources, int count, bool isStill, int movedShare, uchar* choices);
+@return How many that have a source contradict it: with shares.wrong in place of the others, they would be measured. */
+int chooseCells(const short* sums, const uchar* sources, int count, bool isStill, const ChoiceShares& shares,
+                uchar* choices);
 
 /** Joins a row of measured disparities with those of the frame before.
 @param measured The measured ones.
@@ -105,15 +107,14 @@ template <int planes> inline int costOf(const ComparedRow& row, int x, int dispa
 }
 
 //! What a cell takes, of its sums over the window. isStill: 0 or 1
-inline int choiceOf(const short* sums, int sources, int isStill, int movedShare)
+inline int choiceOf(const short* sums, int sources, int isStill, int stillShare, int movedShare)
 {
-    typedef TemporalJoin T;
     const int unmoved = sums[COST_UNMOVED], moved = sums[COST_MOVED];
     const int scaleUnmoved = sums[SCALE_UNMOVED], scaleMoved = sums[SCALE_MOVED];
     const int hasUnmoved = sources & 1, hasMoved = (sources >> 1) & (isStill ^ 1);
     const int best = std::min(moved, 0) & -hasMoved;
     const int scale = select(isStill, scaleUnmoved, std::max(scaleUnmoved, scaleMoved));
-    const int share = select(isStill, T::keptShare, movedShare);
+    const int share = select(isStill, stillShare, movedShare);
     const int takesUnmoved = hasUnmoved & (100 * (unmoved - best) <= share * scale);
     const int takesMoved = hasMoved & (100 * moved <= movedShare * scaleMoved);
     return select(takesUnmoved, UNMOVED, takesMoved * MOVED);
@@ -177,10 +178,9 @@ void sumWindow(const short* columns, int length, short* sums)
                 columns[i + 5 * c] + columns[i + 6 * c]);
 }
 
-void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int maxDistance,
-                        const uchar* sources, uchar* used, uchar* different)
+void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int same,
+                        int maxDistance, const uchar* sources, uchar* used, uchar* different)
 {
-    const int same = TemporalJoin::sameDisparity * subpixelScale;
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
         const int here = measured[j * FrameMemory::cell], there = unmoved[j * FrameMemory::cell];
@@ -203,17 +203,17 @@ void compareCells(const ComparedRow* rows, const int* moved, const uchar* differ
     compare(rows, moved, different, cells, count, offset, evidence);
 }
 
-int chooseCells(const short* sums, const uchar* sources, int count, bool isStill, int movedShare, uchar* choices)
+int chooseCells(const short* sums, const uchar* sources, int count, bool isStill, const ChoiceShares& shares,
+                uchar* choices)
 {
-    const int still = isStill;
+    const int still = isStill, stillShare = shares.still, movedShare = shares.moved, wrongShare = shares.wrong;
     int contradicting = 0;
     static_assert(MEASURED == 0 && SAME_PLACE == 1 && MOVED_PLACE == 2, "choiceOf() relies on it.");
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
         const short* const ofCell = sums + j * EVIDENCE_CHANNELS;
-        contradicting +=
-            (sources[j] != 0) & (choiceOf(ofCell, sources[j], still, TemporalJoin::wrongShare) == MEASURED);
-        choices[j] = (uchar)choiceOf(ofCell, sources[j], still, movedShare);
+        contradicting += (sources[j] != 0) & (choiceOf(ofCell, sources[j], still, stillShare, wrongShare) == MEASURED);
+        choices[j] = (uchar)choiceOf(ofCell, sources[j], still, stillShare, movedShare);
     }
     return contradicting;
 }
@@ -228,6 +228,7 @@ void joinRow(const ushort* measured, const TemporalRow& row, int width, const Jo
     const uchar *unmovedCounts = row.unmovedCounts, *movedCounts = row.movedCounts, *choices = row.choices;
     uchar* const agreesMoved = row.agrees;
     static_assert(TemporalJoin::fringe == 2, "There are as many terms on each side.");
+    static_assert(TemporalJoin::maxWeight == 4, "There are as many shares.");
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const int distance = std::abs((measured[x] << FrameMemory::detailBits) - moved[x]);

@@ -8,13 +8,32 @@
 #include "../base/dispatch.hpp"
 
 #include "../base/grey_levels.hpp"
+#include "../base/tunable.hpp"
 #include "../pair/image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-typedef VideoFollowing T;
+HDP_TUNABLE(double, maxError, 4.5, "cells", "of the points of a first guess: more follows what moves by itself");
+HDP_TUNABLE(double, smallError, 1, "cells", "of a guess that is good, and of points that are near the motion");
+
+// What is no cut, on the coarsest level
+HDP_TUNABLE(int, cutShare, 60, "percent of the contrast",
+            "of changes: less is motion and noise, more is another scene");
+HDP_TUNABLE(int, cutNoise, 4, "grey levels", "of changes on average: images without contrast change by noise");
+HDP_TUNABLE(int, cutKnown, 25, "percent of the pixels", "that were in the last frame: fewer do not tell");
+
+// What is the same in two frames
+HDP_TUNABLE(double, stillness, 2.5, "grey levels",
+            "that the mean around a cell may change: less takes noise for motion");
+HDP_TUNABLE(int, minNoise, 3, "grey levels", "that what is the same may change without noise, by rounding and warping");
+HDP_TUNABLE(int, noiseFactor, 4, "medians of all changes", "beside that: outliers of noise are as large");
+HDP_TUNABLE(int, contrastShare, 70, "percent of the contrast around",
+            "if it is more: edges change by fractions of a pixel, what differs by more is something else");
+
+// Cells. Squares around a cell that changes and levels, and contrasts are averaged over: sumSquares() has 1 and 2.
+const int changeRadius = 1, changeCells = 9, contrastRadius = 2, contrastCells = 25;
 
 const int cell = FrameMemory::cell;
 
@@ -28,11 +47,9 @@ void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
     buildPyramid({ grey[0] }, trackingLevels(halved.cols), grey);
 }
 
-//! From the last frame to this one, in pixels of the layer. The camera most likely moves on as it did.
+//! From the last frame to this one, in pixels of the layer. The camera probably moves on as it did.
 CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
 {
-    const double anyError = 4.5; // in cells: points of a first guess may be this far from it
-    const double smallError = 1; // in cells: of a guess that is good, and of points that are near the motion
     const std::vector<Mat>& before = last.grey;
     const Size size = now[0].size();
     choosePoints(before, points);
@@ -43,11 +60,11 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
     }
     movePoints(scaled(last.motion, 1. / cell), size, points);
     trackNearby(before, now, points);
-    CameraMotion motion = fitMotion(points, size, anyError);
+    CameraMotion motion = fitMotion(points, size, maxError);
     if (motion.error > smallError)
     {
         trackPoints(before, now, points);
-        motion = fitMotion(points, size, anyError);
+        motion = fitMotion(points, size, maxError);
     }
     movePoints(motion, size, points);
     trackNearby(before, now, points);
@@ -77,7 +94,8 @@ bool isCut(const std::vector<Mat>& greyBefore, const FramePrediction& p)
             change += std::abs(now.ptr(y)[x] - before.ptr(at.y)[at.x]);
             contrast += std::abs(now.ptr(y)[x] - mean);
         }
-    return 4 * known < (int64)now.total() || (change > T::cutNoise * known && 100 * change > T::cutShare * contrast);
+    return 100 * known < cutKnown * (int64)now.total() ||
+           (change > cutNoise * known && 100 * change > cutShare * contrast);
 }
 
 //! The median of CV_8UC1
@@ -131,10 +149,10 @@ void findContrast(const Mat& image, Mat& contrast)
         for (int y = range.start; y < range.end; ++y)
         {
             const uchar* levels = image.ptr(y);
-            const ushort* sums = sumsOf(image, y, 2);
+            const ushort* sums = sumsOf(image, y, contrastRadius);
             uchar* contrasts = contrast.ptr(y);
             for (int x = 0; x < image.cols; ++x)
-                contrasts[x] = (uchar)(std::abs(25 * levels[x] - sums[x]) / 25);
+                contrasts[x] = (uchar)(std::abs(contrastCells * levels[x] - sums[x]) / contrastCells);
         }
     });
 }
@@ -194,23 +212,24 @@ void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, Video
         warpGrey(before, *warp, scratch.warped);
     absdiff(now, warp ? scratch.warped : before, scratch.change);
     findContrast(now, scratch.contrast);
-    const int noise = TemporalSources::minNoise + TemporalSources::noiseFactor * medianLevel(scratch.change);
+    const int noise = changeCells * (minNoise + noiseFactor * medianLevel(scratch.change));
+    const int maxChange = (int)(changeCells * stillness), share = contrastShare * changeCells;
     sources.create(now.size(), CV_8U);
     parallel_for_(Range(0, now.rows), [&](const Range& range) {
         SquareSums changesOf(now.cols), contrastsOf(now.cols), sumsBefore(now.cols), sumsNow(now.cols);
         for (int y = range.start; y < range.end; ++y)
         {
-            const ushort *changes = changesOf(scratch.change, y, 1), *contrasts = contrastsOf(scratch.contrast, y, 2);
+            const ushort *changes = changesOf(scratch.change, y, changeRadius),
+                         *contrasts = contrastsOf(scratch.contrast, y, contrastRadius);
             uchar* ofRow = sources.ptr(y);
             for (int x = 0; x < now.cols; ++x)
-                ofRow[x] = changes[x] <= 9 * noise ||
-                           100 * 25 * changes[x] <= TemporalSources::contrastShare * 9 * contrasts[x];
+                ofRow[x] = changes[x] <= noise || 100 * contrastCells * changes[x] <= share * contrasts[x];
             if (!warp)
                 continue; // 1 is SAME_PLACE
-            const ushort *there = sumsBefore(before, y, 1), *here = sumsNow(now, y, 1);
+            const ushort *there = sumsBefore(before, y, changeRadius), *here = sumsNow(now, y, changeRadius);
             for (int x = 0; x < now.cols; ++x)
             {
-                const bool isSame = std::abs(here[x] - there[x]) <= 9 * TemporalSources::stillness / 2;
+                const bool isSame = std::abs(here[x] - there[x]) <= maxChange;
                 const bool isMoved = ofRow[x] && warp->isKnown(cell * x, cell * y);
                 ofRow[x] = (uchar)((isSame ? SAME_PLACE : 0) | (isMoved ? MOVED_PLACE : 0));
             }

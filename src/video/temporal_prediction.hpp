@@ -9,26 +9,12 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of predictFrame()
-struct VideoFollowing
-{
-    enum
-    {
-        cutShare = 60, // percent of its contrast by which a coarse image changes at a cut
-        cutNoise = 4   // grey levels; a coarse image that changes by no more on average is no cut
-    };
-};
-
-//! The constants of findSources()
+//! A constant of all that takes disparities from the last frame
 struct TemporalSources
 {
     enum
     {
-        stillness = 5,      // halves of a grey level by which the mean of a cell that stands still changes at most
-        minNoise = 3,       // grey levels by which what is the same changes at most if the images have no noise
-        noiseFactor = 4,    // how much more that is with noise, in medians of the changes of all cells
-        contrastShare = 70, // percent of the contrast around by which what is the same changes at most if that is more
-        maxDistance = 3 // from the disparity of one source to that of the other, in pixels of the image: beyond, one of
+        maxDistance = 3 // pixels of the image, from the disparity of one source to that of the other: beyond, one of
                         // them must be wrong
     };
 };

@@ -4,13 +4,15 @@
 #include "../precomp.hpp"
 #include "temporal_prior.hpp"
 
+#include "../base/tunable.hpp"
+
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-// Maximum penalty of disparities other than the predicted one, in units of the volume. Means vary less than costs, and
-// contradict more clearly.
-const int maxPenalty = 6 * CostVolume::scale, maxPenaltyOfMeans = 3 * CostVolume::scale;
+HDP_TUNABLE(int, maxPenalty, 6, "bits",
+            "of disparities other than the predicted one: more keeps errors, less adds noise");
+HDP_TUNABLE(int, maxPenaltyOfMeans, 3, "bits", "the same over means, which vary less and contradict more clearly");
 
 //! The disparity that the last frame predicts for a pixel, in pixels; false if there is none.
 bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, float& disparity)
@@ -38,7 +40,7 @@ void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction,
                      CostVolume& volume)
 {
     const Size size = last.disparity.size();
-    const CostPreference preference(areMeans ? maxPenaltyOfMeans : maxPenalty);
+    const CostPreference preference(CostVolume::scale * (areMeans ? maxPenaltyOfMeans : maxPenalty));
     parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
             for (int x = 0; x < volume.size.width; ++x)
