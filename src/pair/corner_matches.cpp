@@ -30,8 +30,6 @@ HDP_TUNABLE(double, rivalCorrelation, 0.1, "share of the best one's distance fro
 HDP_TUNABLE(double, rivalDistance, 0.01, "correlation", "beside that share: near 1, noise decides");
 HDP_TUNABLE(int, rivalReach, 2, "pixels", "around the best match, in which there are no rivals: its own peak is there");
 HDP_TUNABLE(double, minContrast, 6, "levels of 1023", "standard deviation of a left window: in less, noise is matched");
-HDP_TUNABLE(double, wholePixelVariance, 0.1, "square pixels",
-            "of the row of a match to whole pixels: 1/12 by rounding");
 
 // Tracking on a layer
 HDP_TUNABLE(int, iterations, 3, "steps", "of Lucas and Kanade: more cost time, fewer do not arrive");
@@ -131,7 +129,6 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
         return;
     match.x = x0 + best % columns + side / 2;
     match.y = y0 + best / columns + side / 2;
-    match.variance = wholePixelVariance;
     match.isValid = true;
 }
 
