@@ -59,15 +59,15 @@ private:
     void provideCosts(); // for the rows
 
     DisparityInterval uniform_; // the candidates of all pixels
-    // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in the
-    // order of the trees.
+    // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in
+    // the order of the trees.
     int usualRows_ = 0;
     std::vector<unsigned> firsts_; // by tree: rows of the others, or pixels
     std::vector<int> pixels_;      // in the order of the trees, if all have the same candidates
 };
 
-/** Raises the costs of a pixel's other disparities than a preferred one: by a unit of cost, CostVolume::scale, per pixel of
-distance, up to a limit. */
+/** Raises the costs of a pixel's other disparities than a preferred one: by a unit of cost, CostVolume::scale, per
+pixel of distance, up to a limit. */
 class CV_EXPORTS CostPreference
 {
 public:

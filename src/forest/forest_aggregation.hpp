@@ -112,12 +112,12 @@ CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCos
                                 AggregationBuffers& buffers, Mat& disparity);
 
 /** The weighted means of M over each tree, C(p, x) / sum over q in the tree of S(p, q). Unlike C they can be compared
-between pixels, of other trees as well. They are computed in whole numbers of 16 bits, in units of 1 / MeanNode::meanScale of a bit.
-With w(p) = 1 + sum over p's children c of S(p, c) w(c), and W(p) = S W(parent) + (1 - S^2) w(p), S = S(p, parent), W = w at
-the root, which are sums of S over the pixels behind p and over the whole tree, in floats, children from the last one of the
-walk on,
-s(p) = floor(unit S(p, parent) w(p) / w(parent)), t(p) = floor(unit S(p, parent) W(parent) / W(p)), unit = MeanNode::unit,
-both less than unit,
+between pixels, of other trees as well. They are computed in whole numbers of 16 bits, in units of 1 /
+MeanNode::meanScale of a bit. With w(p) = 1 + sum over p's children c of S(p, c) w(c), and W(p) = S W(parent) + (1 -
+S^2) w(p), S = S(p, parent), W = w at the root, which are sums of S over the pixels behind p and over the whole tree, in
+floats, children from the last one of the walk on,
+s(p) = floor(unit S(p, parent) w(p) / w(parent)), t(p) = floor(unit S(p, parent) W(parent) / W(p)), unit =
+MeanNode::unit, both less than unit,
 U(p) = M(p) + sum over p's children c of round(s(c) (U(c) - M(p)) / unit), from the leaves to the root, and
 V(p) = U(p) + round(t(p) (V(parent) - U(p)) / unit), from the root to the leaves; V = U at the root.
 Halves are rounded up. So means of equal costs are these costs, and all means are in the range of the costs.

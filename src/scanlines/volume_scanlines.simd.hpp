@@ -232,7 +232,8 @@ private:
             std::fill_n(before_ + k * (ptrdiff_t)lineLength_ + candidates.first, candidates.size(), (short)0);
     }
 
-    //! Lets the L of the pixel before be read at candidates of another pixel and beside them; returns the large penalty.
+    //! Lets the L of the pixel before be read at candidates of another pixel and beside them; returns the large
+    //! penalty.
     static int enter(const Pixel& own, int large, const LastPixel& last, short* before)
     {
         const int first = own.first - 1, end = own.first + own.count + 1;
