@@ -102,7 +102,7 @@ endif()
 # Samples. These figures are checked elsewhere; this is the only place where the programs see a pair of full size.
 set(aloe "${samples_data}/aloeL.jpg" "${samples_data}/aloeR.jpg" "--truth=${samples_data}/aloeGT.png" --num-disparities=256)
 if(HDPSTEREO_SAMPLES)
-  add_check(sample_stereo_match samples example_hdpstereo_hdp_stereo_match ${aloe} --output=aloe.png
+  add_check(sample_stereo_match samples example_hdpstereo_hdp_stereo_match ${aloe} aloe.png
     --picture=aloe_picture.png --point-cloud=aloe.ply --focal=1000 --baseline=1)
   add_check(sample_own_tree samples example_hdpstereo_hdp_own_tree ${aloe})
   set(missing "")

@@ -29,7 +29,7 @@ static const char* const keys =
     "{help h ?        |      | print this and exit }"
     "{@left           |      | left image of a rectified pair, of 8 or 16 bit }"
     "{@right          |      | right image }"
-    "{@out            |      | see --batch }"
+    "{@out            |      | disparities, as --output; with --batch a folder }"
     "{batch           |      | --batch LEFTS RIGHTS OUT: matches files of the same name in two folders, or --batch "
     "LIST OUT: "
     "a line 'LEFT RIGHT NAME' per pair (between tabs if paths have spaces); writes OUT/NAME.png, keeps what is there, "
@@ -209,6 +209,8 @@ static void matchPair(const CommandLineParser& parser)
     const double f = parser.get<double>("focal"), B = parser.get<double>("baseline");
     if (parser.has("point-cloud") && !(f > 0 && B > 0))
         CV_Error(Error::StsBadArg, "--point-cloud needs --focal and --baseline, each above 0");
+    if (parser.has("output") && parser.has("@out"))
+        CV_Error(Error::StsBadArg, "disparities go to one file: OUT or --output, not both");
     const Mat left = readPicture(parser.get<String>("@left")), right = readPicture(parser.get<String>("@right"));
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.cols);
     const Mat disparity = computeDisparity(*matcher, left, right);
@@ -217,11 +219,9 @@ static void matchPair(const CommandLineParser& parser)
     printTimes(*matcher);
     if (parser.has("truth"))
         printErrors(disparity, readImage(parser.get<String>("truth"), IMREAD_GRAYSCALE | IMREAD_ANYDEPTH));
-    if (parser.has("output"))
-    {
-        const String output = parser.get<String>("output");
+    const String output = parser.get<String>(parser.has("output") ? "output" : "@out");
+    if (!output.empty())
         writeAndTell(output, encodeDisparity(extensionOf(output), disparity));
-    }
     if (parser.has("picture"))
     {
         const String picture = parser.get<String>("picture");
@@ -359,7 +359,7 @@ int main(int argc, char** argv)
         for (const String& argument : std::vector<String>(argv + 1, argv + argc))
             if (argument.compare(0, 2, "--") == 0)
                 parser.has(argument.substr(2, argument.find('=') - 2)); // throws if it is unknown
-        if (parser.has("help"))
+        if (parser.has("help") || argc == 1)
             parser.printMessage();
         else if (parser.has("batch"))
             status = matchPairs(parser) == 0 ? 0 : 2;

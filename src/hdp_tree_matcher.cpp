@@ -231,19 +231,22 @@ private:
         if (video.verdict == FIRST && pyramids_.isDimmed)
             return CONTRADICTED; // it is not the next frame after all
 
-        result_.plan = adapt(pairPlan, result_.findings, video);
+        PairPlan adapted = adapt(pairPlan, result_.findings, video);
         layers_.resize(pairPlan.top().layer + 1);
         scratch_.resize(layers_.size());
         const LayerResult* upper = nullptr;
         Verdict verdict = FIRST;
-        for (const LayerPlan& layer : result_.plan.layers)
+        for (const LayerPlan& layer : adapted.layers)
         {
-            const LayerInput input = { result_.plan, layer, images[layer.layer], upper, lastFrame_, prediction_ };
+            const LayerInput input = { adapted, layer, images[layer.layer], upper, lastFrame_, prediction_ };
             verdict = matchLayer(input, scratch_[layer.layer], shared_, clock_, layers_[layer.layer]);
             upper = &layers_[layer.layer];
         }
         if (pairPlan.followsVideo)
             std::swap(lastFrame_, shared_.frame);
+        adapted.treeStrategy = Ptr<TreeStrategy>(); // the caller's, whose life ends when the parameters are others
+        adapted.model = Ptr<DisparityPredictionModel>();
+        result_.plan = adapted;
         return verdict;
     }
 
@@ -267,7 +270,7 @@ private:
         ofLayer.colRange(result_.plan.output.extension >> layer, ofLayer.cols).copyTo(array);
     }
 
-    //! Of the disparities: what the caller's array has, if its type is fixed
+    //! The depth of the map: that of the caller's array, if its type is fixed
     int outputDepth(OutputArray disparity) const
     {
         const int type = disparity.fixedType() ? disparity.type() : p_.disparityDepth;

@@ -38,13 +38,14 @@ struct LayerScratch
 {
     CensusCost census;
     ColorGradientCost colorGradient;
-    Mat guide, edgeWeights;              // of the forest, and of scanlines without a forest
+    Mat guide, edgeWeights;              // what edges are weighed on; their weights, if there is no forest
     Mat pixelIntv;                       // PixelIntv, section 3.1
-    Mat sparseMatches, windows;          // candidates of scanlines
-    WindowBuffers windowBuffers;         //
-    Mat filtered, halved, halvedWinners; // a pass of scanlines for the next one
+    WindowBuffers windowBuffers;         // memory of predictWindows()
+    Mat sparseMatches, windows;          // what the windows of scanlines are predicted from; the windows
+    Mat filtered, halved, halvedWinners; // what a pass of scanlines leaves to the next one
     Mat residual;                        // costs of the winners
-    Mat stable, refined;                 // of the non-local refinement
+    Mat stable, refined;                 // pixels that pass the left-right check, and their refined disparities
+
     const MatchingCost& cost(const CostPlan& plan) const
     {
         return plan.isCensus ? static_cast<const MatchingCost&>(census) : colorGradient;

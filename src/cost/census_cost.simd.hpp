@@ -47,7 +47,7 @@ int censusRow(const CensusWindow& window, const short* grey, bool mirrored, int 
 {
     const int radius = window.radius;
     const short tolerance = (short)window.tolerance;
-    // Of the last plane's bits that compare nothing: the centre, which is not darker than itself
+    // Bits of the last plane that compare nothing stand for the centre, which is not darker than itself.
     ptrdiff_t offsets[24] = { 0 };
     int bits = 0;
     for (int dy = -radius; dy <= radius; ++dy)

@@ -270,7 +270,7 @@ template <typename T> void slide(const T* entering, int width, T* kept, T* sums)
     }
 }
 
-//! Of some more than count
+//! Square roots of count values, and of up to three behind them
 void takeSquareRoots(float* values, int count)
 {
     for (int i = 0; i < count; i += 4)

@@ -82,7 +82,7 @@ void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifte
 {
     const int width = right.cols + extension;
     const int64 shift = (int64)minDisparity + extension; // minDisparity is any int
-    // Of the columns of the result, [begin, end) come from inside the image.
+    // The columns [begin, end) of the result come from inside the image.
     const int begin = (int)std::min<int64>(std::max<int64>(shift, 0), width);
     const int end = (int)std::max<int64>(std::min<int64>(right.cols + shift, width), 0);
     shifted.create(right.rows, width, right.type());

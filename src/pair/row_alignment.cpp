@@ -132,7 +132,7 @@ const int fractions = 64; // of a row
 
 int64 wholeOf(double value) { return (int64)std::floor(value + 0.5); }
 
-//! Of four rows in 1/1024, for the place between the second and the third (Catmull and Rom)
+//! Weights of four rows, in 1/1024, at a place between the second and the third (Catmull and Rom)
 void cubicWeights(double t, int weights[4])
 {
     weights[0] = cvRound(512 * (-t + 2 * t * t - t * t * t));

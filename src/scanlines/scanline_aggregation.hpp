@@ -53,7 +53,7 @@ struct ScanlineProblem
     bool hasFromBelow; // a fourth direction
     MinimumShape shape;
 
-    //! Of a window: others are outside of the range.
+    //! Candidates of a window that are inside the range or beside its ends
     int validCandidates() const
     {
         return std::min(+CandidateWindow::candidates, numDisparities + 2 * CandidateWindow::beyondRange);
@@ -97,7 +97,7 @@ struct ScanlineScratch
     // 255 for those that it does not have
     std::vector<uchar> orders[CandidateWindow::runs];
     std::vector<uchar> edges; // large penalties of a block, two per pixel
-    // Of the winners of a block: their lanes, sums, each with those of the lanes before and behind, and costs
+    // The winners of a block: their lanes, their sums with those of the lanes before and behind, and their costs
     std::vector<uchar> winners, winnerCosts;
     std::vector<unsigned> winnerSums;
 };

@@ -56,7 +56,7 @@ struct WordLanes
     WordLanes operator-(const WordLanes& b) const { return v_sub_wrap(v, b.v); }
     WordLanes min(const WordLanes& b) const { return v_min(v, b.v); }
     WordLanes max(const WordLanes& b) const { return v_max(v, b.v); }
-    //! Of numbers that are not negative
+    //! The lowest lane, if none is negative
     int minimum() const
     {
 #if HDP_LANES_AVX2
@@ -220,10 +220,10 @@ private:
         }
     };
 
-    //! Of a disparity that is no candidate: more than any L, and four of them and a penalty are a 16-bit number.
+    //! L of a disparity that is no candidate: more than any other, and four of them and a penalty fit into 16 bits.
     static const short none = 0x1f00;
 
-    //! Of the same candidates everywhere: the margins stay as they are. Before the first pixels L = C, whatever the
+    //! For pixels of the same candidates, whose margins stay as they are: the first ones have L = C, whatever the
     //! penalties.
     void beginLines(const DisparityInterval& candidates)
     {
@@ -306,7 +306,7 @@ private:
         return lowest;
     }
 
-    //! Of a pixel of each scanline: the winner, and what winnerFraction() is given
+    //! The winner of a pixel per scanline, and what winnerFraction() is given
     struct Winners
     {
         ushort whole[VolumeProblem::maxScanlines];
