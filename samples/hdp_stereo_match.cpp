@@ -209,6 +209,8 @@ static void matchPair(const CommandLineParser& parser)
     const double f = parser.get<double>("focal"), B = parser.get<double>("baseline");
     if (parser.has("point-cloud") && !(f > 0 && B > 0))
         CV_Error(Error::StsBadArg, "--point-cloud needs --focal and --baseline, each above 0");
+    if (!parser.has("@left") || !parser.has("@right"))
+        CV_Error(Error::StsBadArg, "two images are needed, LEFT and RIGHT; --help says more");
     if (parser.has("output") && parser.has("@out"))
         CV_Error(Error::StsBadArg, "disparities go to one file: OUT or --output, not both");
     const Mat left = readPicture(parser.get<String>("@left")), right = readPicture(parser.get<String>("@right"));
@@ -359,7 +361,7 @@ int main(int argc, char** argv)
         for (const String& argument : std::vector<String>(argv + 1, argv + argc))
             if (argument.compare(0, 2, "--") == 0)
                 parser.has(argument.substr(2, argument.find('=') - 2)); // throws if it is unknown
-        if (parser.has("help") || argc == 1)
+        if (parser.has("help"))
             parser.printMessage();
         else if (parser.has("batch"))
             status = matchPairs(parser) == 0 ? 0 : 2;
