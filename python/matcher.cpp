@@ -111,11 +111,38 @@ void addEnumeration(py::object& matcher, const char* name, const char* documenta
 
 py::object enumerator(const char* name, int value) { return py::type::of<Matcher>().attr(name)(value); }
 
-py::object compute(Matcher& self, const py::array& leftArray, const py::array& rightArray, const py::object& output)
+py::array toImage(const py::object& image, const char* name)
+{
+    if (image.is_none())
+        throw py::type_error(std::string(name) + " must be a numpy array, not None: could the image be read?");
+    if (!py::isinstance<py::array>(image))
+        throw py::type_error(std::string(name) + " must be a numpy array, not " +
+                             py::type::of(image).attr("__name__").cast<std::string>());
+    return py::reinterpret_borrow<py::array>(image);
+}
+
+//! Pixels, NaN where a filter has rejected one
+cv::Mat computeFloat(Matcher& self, const cv::Mat& left, const cv::Mat& right)
+{
+    cv::Mat_<float> disparity; // an array of fixed type has the type of the result
+    self.run([&](HDPTreeMatcher& m) {
+        m.compute(left, right, disparity);
+        disparity.setTo(std::numeric_limits<float>::quiet_NaN(), disparity < m.getMinDisparity());
+    });
+    return disparity;
+}
+
+py::object compute(Matcher& self, const py::object& leftArray, const py::object& rightArray, const py::object& output,
+                   bool isFloat)
 {
     std::vector<py::array> kept;
-    const cv::Mat left = toMat(leftArray, "left", kept), right = toMat(rightArray, "right", kept);
+    const cv::Mat left = toMat(toImage(leftArray, "left"), "left", kept);
+    const cv::Mat right = toMat(toImage(rightArray, "right"), "right", kept);
     cv::Mat disparity;
+    if (isFloat && !output.is_none())
+        throw py::value_error("as_float must be False if there is an array for the result: its type is the result's");
+    if (isFloat)
+        return toPython(computeFloat(self, left, right));
     if (output.is_none())
     {
         self.run([&](HDPTreeMatcher& m) { m.compute(left, right, disparity); });
@@ -133,10 +160,10 @@ py::object compute(Matcher& self, const py::array& leftArray, const py::array& r
     // An array of fixed type has the type of the result.
     cv::Mat_<short> fixedPoint;
     cv::Mat_<float> pixels;
-    const bool isFloat = disparity.depth() == CV_32F;
-    (isFloat ? (cv::Mat&)pixels : (cv::Mat&)fixedPoint) = disparity;
+    const bool isFloatArray = disparity.depth() == CV_32F;
+    (isFloatArray ? (cv::Mat&)pixels : (cv::Mat&)fixedPoint) = disparity;
     self.run([&](HDPTreeMatcher& m) {
-        if (isFloat)
+        if (isFloatArray)
             m.compute(left, right, pixels);
         else
             m.compute(left, right, fixedPoint);
@@ -186,16 +213,7 @@ The values of a preset, but for the fields that are given by name.)doc");
     py::class_<HDPTreeMatcher::Findings> findingsType(matcher, "Findings",
                                                       "What the last compute() found out about the pair.");
     setPackage(findingsType);
-    const char* const creation = R"doc(
-Creates a matcher.
-
-minDisparity: smallest disparity in pixels, of any sign.
-numDisparities: number of candidates, > 0.
-preset: HDPTreeMatcher.PRESET_FAST, PRESET_ULTRAFAST, PRESET_QUALITY, PRESET_TREE or PRESET_PAPER.)doc";
-    matcher.def(py::init(&create), py::arg("minDisparity") = 0, py::arg("numDisparities") = 64,
-                py::arg("preset") = defaultPreset, creation);
-    matcher.def_static("create", &create, py::arg("minDisparity") = 0, py::arg("numDisparities") = 64,
-                       py::arg("preset") = defaultPreset, creation);
+    matcher.def(py::init(&create), py::arg("minDisparity"), py::arg("numDisparities"), py::arg("preset"));
 
     matcher.def_static("createLike", &createLike, py::arg("sgbm"), py::arg("preset") = defaultPreset, R"doc(
 Creates a matcher that takes the place of a cv2.StereoSGBM.
@@ -206,14 +224,15 @@ else it has is of its own algorithm, and is not taken over.
 sgbm: it is read, and not kept.
 preset: see create().)doc");
 
-    matcher.def("compute", &compute, py::arg("left").noconvert(), py::arg("right").noconvert(),
-                py::arg("disparity") = py::none(), R"doc(
+    matcher.def("compute", &compute, py::arg("left"), py::arg("right"), py::arg("disparity") = py::none(),
+                py::arg("as_float") = false, R"doc(
 Matches a rectified pair.
 
 left, right: images of one size and type: uint8 with one channel (grey), three (BGR) or four (BGR and alpha, which is
 ignored), or uint16 with one channel, of a camera of 10 to 16 bits. They are not copied if the pixels of a row are next
 to each other.
 disparity: an array for the result, if given: int16 or float32, of the images' size.
+as_float: whether disparities are float32 in pixels, and NaN where a filter rejects one.
 
 Returns the disparities of the left image: int16, times 16, or float32 in pixels, see setDisparityDepth(). What a filter
 rejects is (minDisparity - 1) * 16, or minDisparity - 1. Raises ValueError if images or parameters do not fit.)doc");

@@ -6,13 +6,85 @@
 Fast non-local stereo matching: disparities of a rectified pair, for numpy arrays.
 
     import hdpstereo
-    matcher = hdpstereo.HDPTreeMatcher.create(0, 128)
-    disparity = matcher.compute(left, right) / 16.0
+    matcher = hdpstereo.HDPTreeMatcher.create(num_disparities=128, preset='quality', disp12_max_diff=1)
+    disparity = matcher.compute(left, right, as_float=True)  # pixels; NaN where there is none
     confidence = matcher.getConfidence()  # 0 .. 255
 '''
 
 from ._hdpstereo import (CV_16S, CV_32F, DisparityPredictionModel, HDPTreeMatcher, TreeState, TreeStrategy, __version__,
-                         createMinimumSpanningTree, createRandomTree, createSegmentTree)
+                         createMinimumSpanningTree, createRandomTree, createSegmentTree, getNumThreads, setNumThreads)
 
 __all__ = ['CV_16S', 'CV_32F', 'DisparityPredictionModel', 'HDPTreeMatcher', 'TreeState', 'TreeStrategy',
-           'createMinimumSpanningTree', 'createRandomTree', 'createSegmentTree']
+           'createMinimumSpanningTree', 'createRandomTree', 'createSegmentTree', 'getNumThreads', 'setNumThreads']
+
+# Parameters by name, and repr(), which has the form of the call that creates the matcher
+
+_construct = HDPTreeMatcher.__init__
+
+
+def _in_camel_case(name):
+    first, *others = name.split('_')
+    return first + ''.join(word[:1].upper() + word[1:] for word in others)
+
+
+def _preset(preset):
+    if not isinstance(preset, str):
+        return preset
+    try:
+        return HDPTreeMatcher.Preset['PRESET_' + preset.upper()]
+    except KeyError:
+        names = ', '.join(repr(known.name[7:].lower()) for known in HDPTreeMatcher.Preset)
+        raise ValueError('preset must be one of %s, not %r' % (names, preset)) from None
+
+
+def _init(self, minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_FAST, **parameters):
+    parameters = {_in_camel_case(name): value for name, value in parameters.items()}
+    _construct(self, parameters.pop('minDisparity', minDisparity), parameters.pop('numDisparities', numDisparities),
+               _preset(preset))
+    params = self.getParams()
+    for name, value in parameters.items():
+        setter = getattr(self, 'set' + name[:1].upper() + name[1:], None)
+        if not name.startswith('_') and hasattr(params, name):
+            setattr(params, name, value)
+        elif name != 'params' and setter is not None:
+            setter(value)
+        else:
+            raise TypeError('HDPTreeMatcher has no parameter ' + name)
+    self.setParams(params)
+
+
+def _create(minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_FAST, **parameters):
+    return HDPTreeMatcher(minDisparity, numDisparities, preset, **parameters)
+
+
+def _fields(matcher):
+    params = matcher.getParams()
+    fields = {name: getattr(params, name) for name in dir(params) if not name.startswith('_')}
+    fields['treeStrategy'] = params.treeStrategy.getDefaultName()
+    for name in ('speckleWindowSize', 'speckleRange', 'disp12MaxDiff'):
+        fields[name] = getattr(matcher, 'get' + name[0].upper() + name[1:])()
+    return fields
+
+
+def _repr(self):
+    fields, differences = _fields(self), []
+    for preset in HDPTreeMatcher.Preset:
+        values = _fields(HDPTreeMatcher(preset=preset))
+        differences.append((preset, {name: value for name, value in fields.items() if value != values[name]}))
+    preset, others = min(differences, key=lambda difference: len(difference[1]))
+    return 'HDPTreeMatcher(minDisparity=%d, numDisparities=%d, preset=%r%s)' % (
+        self.getMinDisparity(), self.getNumDisparities(), preset.name[7:].lower(),
+        ''.join(', %s=%s' % (name, getattr(value, 'name', value)) for name, value in sorted(others.items())))
+
+
+_create.__doc__ = _init.__doc__ = '''\
+Creates a matcher.
+
+minDisparity: smallest disparity in pixels, of any sign.
+numDisparities: number of candidates, > 0.
+preset: HDPTreeMatcher.PRESET_FAST, PRESET_ULTRAFAST, PRESET_QUALITY, PRESET_TREE or PRESET_PAPER, or its name: 'fast'.
+parameters: all others by name, as Params and the setters have them. Names may be in snake case, too:
+    HDPTreeMatcher.create(num_disparities=128, preset='quality', disp12_max_diff=1, fill_occlusions=False)'''
+
+HDPTreeMatcher.__init__, HDPTreeMatcher.__repr__ = _init, _repr
+HDPTreeMatcher.create = staticmethod(_create)

@@ -193,6 +193,53 @@ class Parameters(Test):
         for i, values in enumerate(seen):
             self.assertNotIn(values, seen[:i])
 
+    def test_creation_by_name(self):
+        matcher = HDPTreeMatcher.create(num_disparities=128, preset='quality', disp12_max_diff=1, gamma=7)
+        expected = HDPTreeMatcher(0, 128, HDPTreeMatcher.PRESET_QUALITY)
+        expected.setDisp12MaxDiff(1)
+        change(expected, gamma=7)
+        self.assertEqual(parameters(expected), parameters(matcher))
+        for preset in HDPTreeMatcher.Preset:
+            name = preset.name[7:]
+            for create in (HDPTreeMatcher, HDPTreeMatcher.create):
+                self.assertEqual(parameters(HDPTreeMatcher(preset=preset)), parameters(create(preset=name.lower())))
+                self.assertEqual(parameters(HDPTreeMatcher(preset=preset)), parameters(create(preset=name)))
+        for name, value in parameters(HDPTreeMatcher(preset='tree')).items():
+            snake = re.sub('(?<=[a-z])([A-Z])', lambda match: '_' + match[1].lower(), name)
+            for spelled in (name, snake):
+                self.assertEqual(value, parameters(HDPTreeMatcher.create(**{spelled: value}))[name], spelled)
+        own = SegmentTree(300)
+        self.assertIs(own, HDPTreeMatcher.create(tree_strategy=own).getTreeStrategy())
+        self.assertRaisesText(
+            ValueError, "preset must be one of 'paper', 'fast', 'ultrafast', 'quality', 'tree', not 'best'",
+            lambda: HDPTreeMatcher.create(preset='best'))
+        for name in ('side', 'params', '__class__', '_x', ''):
+            self.assertRaises(TypeError, lambda name=name: HDPTreeMatcher.create(**{name: 3}))
+        self.assertRaisesText(TypeError, 'HDPTreeMatcher has no parameter numDisparity',
+                              lambda: HDPTreeMatcher.create(num_disparity=3))
+        self.assertRaisesText(ValueError, 'gamma must be finite and > 0, not -1',
+                              lambda: HDPTreeMatcher.create(gamma=-1))
+
+    def test_repr(self):
+        self.assertEqual("HDPTreeMatcher(minDisparity=0, numDisparities=64, preset='fast')", repr(HDPTreeMatcher()))
+        matcher = HDPTreeMatcher.create(-3, 40, 'tree', gamma=7, disp12MaxDiff=1)
+        self.assertEqual("HDPTreeMatcher(minDisparity=-3, numDisparities=40, preset='tree', disp12MaxDiff=1, "
+                         "gamma=7.0)", repr(matcher))
+        for preset in HDPTreeMatcher.Preset:
+            for options in ({}, {'gamma': 3.5}, {'blockSize': 3, 'useSubpixel': False, 'scanlinePasses': 4}):
+                matcher = HDPTreeMatcher.create(2, 33, preset, **options)
+                self.assertEqual(parameters(matcher), parameters(eval(repr(matcher))), repr(matcher))
+
+    def test_threads(self):
+        before = hdpstereo.getNumThreads()
+        matcher = HDPTreeMatcher(0, 32)
+        expected = matcher.compute(LEFT, RIGHT)
+        for count in (1, 2):
+            hdpstereo.setNumThreads(count)
+            self.assertEqual(count, hdpstereo.getNumThreads())
+            self.assertSame(expected, matcher.compute(LEFT, RIGHT))
+        hdpstereo.setNumThreads(before)
+
     def test_setters(self):
         matcher = HDPTreeMatcher(0, 40, HDPTreeMatcher.PRESET_PAPER)
         self.assertGreater(len(parameters(matcher)), 25)
@@ -301,6 +348,16 @@ class Matching(Test):
         matcher.setDisparityDepth(hdpstereo.CV_32F)
         self.assertSame(expected.astype(np.float32) / 16, matcher.compute(left, right))
 
+    def test_float(self):
+        matcher = HDPTreeMatcher.create(-2, 32, disp12MaxDiff=1)
+        expected = matcher.compute(LEFT, RIGHT)
+        actual = matcher.compute(LEFT, RIGHT, as_float=True)
+        self.assertEqual((np.float32, (expected < -32).sum()), (actual.dtype, np.isnan(actual).sum()))
+        self.assertGreater(np.isnan(actual).sum(), 0)
+        np.testing.assert_array_equal(np.where(expected < -32, np.nan, expected / 16), actual)
+        self.assertEqual(hdpstereo.CV_16S, matcher.getDisparityDepth())
+        self.assertRaises(ValueError, lambda: matcher.compute(LEFT, RIGHT, expected, as_float=True))
+
     def test_video(self):
         video = HDPTreeMatcher(0, 32)
         video.setUseTemporalPrediction(True)
@@ -368,9 +425,10 @@ class Matching(Test):
                 ('left must be an image, not an array of uint8 with shape (4, 4, 3, 2)',
                  np.zeros((4, 4, 3, 2), np.uint8), grey)):
             self.assertRaisesText(ValueError, text, matcher.compute, left, right)
-        for bad in (None, LEFT.tolist(), 'left', 7):
-            self.assertRaises(TypeError, matcher.compute, bad, RIGHT)
-            self.assertRaises(TypeError, matcher.compute, LEFT, bad)
+        for bad, kind in ((None, 'None: could the image be read?'), (LEFT.tolist(), 'list'), ('left', 'str'),
+                          (7, 'int')):
+            self.assertRaisesText(TypeError, 'left must be a numpy array, not ' + kind, matcher.compute, bad, RIGHT)
+            self.assertRaisesText(TypeError, 'right must be a numpy array, not ' + kind, matcher.compute, LEFT, bad)
         self.assertSame(expected, matcher.compute(LEFT, RIGHT))
 
     def test_what_the_last_compute_did(self):

@@ -23,7 +23,9 @@ class Contours(hdpstereo.TreeStrategy):
 
 
 def match(left: npt.NDArray[np.uint8], right: npt.NDArray[np.uint8]) -> Tuple[npt.NDArray[np.int16], List[str]]:
-    matcher = HDPTreeMatcher.create(0, 64, preset=HDPTreeMatcher.PRESET_TREE)
+    matcher = HDPTreeMatcher.create(0, preset='tree', num_disparities=64, fill_occlusions=False)
+    pixels: npt.NDArray[np.float32] = matcher.compute(left, right, as_float=True)
+    print(matcher, np.nanmean(pixels), hdpstereo.getNumThreads())
     params = HDPTreeMatcher.Params(HDPTreeMatcher.PRESET_TREE, gamma=10, treeStrategy=Contours())
     params.matchingCost = HDPTreeMatcher.MatchingCost.COST_CENSUS
     params.predictionModel = DisparityPredictionModel.createPublished(DisparityPredictionModel.PUBLISHED_SMALL)
