@@ -102,8 +102,8 @@ endif()
 # Samples. These figures are checked elsewhere; this is the only place where the programs see a pair of full size.
 set(aloe "${samples_data}/aloeL.jpg" "${samples_data}/aloeR.jpg" "--truth=${samples_data}/aloeGT.png" --num-disparities=256)
 if(HDPSTEREO_SAMPLES)
-  add_check(sample_stereo_match samples example_hdpstereo_hdp_stereo_match ${aloe} aloe.png
-    --picture=aloe_picture.png --point-cloud=aloe.ply --focal=1000 --baseline=1)
+  add_check(sample_stereo_match samples example_hdpstereo_hdp_stereo_match "${samples_data}/aloeL.jpg" "${samples_data}/aloeR.jpg"
+    aloe.png --num-disparities=256)
   add_check(sample_own_tree samples example_hdpstereo_hdp_own_tree ${aloe})
   set(missing "")
   if(NOT TARGET example_hdpstereo_hdp_live)
@@ -113,6 +113,8 @@ if(HDPSTEREO_SAMPLES)
     "${samples_data}/left%02d.jpg" "${samples_data}/right%02d.jpg" --frames=3 --no-gui --output=live.avi)
 endif()
 if(HDPSTEREO_TOOLS)
+  add_check(program_hdpstereo tools hdpstereo_program ${aloe} aloe_map.png --compare --picture=aloe_picture.png
+    --point-cloud=aloe.ply --focal=1000 --baseline=1)
   add_check(benchmark_small tools hdp_benchmark ${aloe} --resize=160x136 --num-disparities=32 --runs=2 --stages)
 endif()
 

@@ -4,7 +4,7 @@
 # of this distribution and at http://opencv.org/license.html.
 
 '''
-Matches a rectified stereo pair by cv.stereo.HDPTreeMatcher, beside cv.StereoSGBM.
+Matches a rectified stereo pair by HDPTreeMatcher, of the package hdpstereo or of cv2, beside cv.StereoSGBM.
 
 usage:
     hdp_stereo_match.py [LEFT RIGHT] [--preset=fast] [--num-disparities=128] [--compare]
@@ -21,13 +21,13 @@ import sys
 import numpy as np
 import cv2 as cv
 
-PRESETS = {
-    'ultrafast': cv.stereo.HDPTreeMatcher_PRESET_ULTRAFAST,
-    'fast': cv.stereo.HDPTreeMatcher_PRESET_FAST,
-    'quality': cv.stereo.HDPTreeMatcher_PRESET_QUALITY,
-    'tree': cv.stereo.HDPTreeMatcher_PRESET_TREE,
-    'paper': cv.stereo.HDPTreeMatcher_PRESET_PAPER,
-}
+try:  # a cv2 that is built with this module
+    HDPTreeMatcher = cv.stereo.HDPTreeMatcher
+except AttributeError:
+    from hdpstereo import HDPTreeMatcher
+
+# By name, as both have them
+PRESETS = {'paper': 0, 'fast': 1, 'ultrafast': 2, 'quality': 3, 'tree': 4}
 
 PLY_HEADER = '''ply
 format binary_little_endian 1.0
@@ -138,7 +138,7 @@ def time_in_turns(matchers, pairs, runs):
 
 
 def main():
-    parser = argparse.ArgumentParser(description='Disparity of a rectified stereo pair by cv.stereo.HDPTreeMatcher.')
+    parser = argparse.ArgumentParser(description='Disparity of a rectified stereo pair by HDPTreeMatcher.')
     parser.add_argument('left', nargs='?', help='left image; without one, the Aloe pair of OpenCV\'s samples')
     parser.add_argument('right', nargs='?', help='right image')
     parser.add_argument('--preset', choices=PRESETS, default='fast', help='set of parameters (default: fast)')
@@ -176,7 +176,7 @@ def main():
         print('without cv.StereoSGBM, which takes images that are wider than the disparities')
 
     try:
-        matcher = cv.stereo.HDPTreeMatcher.create(args.min_disparity, num_disparities, PRESETS[args.preset])
+        matcher = HDPTreeMatcher.create(args.min_disparity, num_disparities, PRESETS[args.preset])
         matchers = {args.preset: matcher}
         pairs = {args.preset: (left, right)}
         if has_sgbm:
@@ -185,8 +185,8 @@ def main():
                 args.min_disparity, (num_disparities + 15) // 16 * 16, blockSize=3, P1=8 * 27, P2=32 * 27,
                 mode=cv.StereoSGBM_MODE_SGBM_3WAY)
         disparities = {name: compute(m, *pairs[name]) for name, m in matchers.items()}
-    except cv.error as e:
-        sys.exit('error: ' + e.err)
+    except (cv.error, ValueError) as e:
+        sys.exit('error: %s' % getattr(e, 'err', e))
 
     print('images %d x %d, disparities %d to %d' % (left.shape[1], left.shape[0], args.min_disparity,
                                                   args.min_disparity + num_disparities - 1))

@@ -38,8 +38,8 @@ for side in 'LR':
     cv2.imwrite(side + '.ppm', cv2.resize(image, (320, 278), interpolation=cv2.INTER_AREA))
 PYTHON
 for preset in ultrafast fast quality tree paper; do
-    "$build/release/bin/$sample" L.ppm R.ppm --num-disparities=64 --preset=$preset --output=here.png >here.log
-    "${emulator[@]}" "build/bin/$sample" L.ppm R.ppm --num-disparities=64 --preset=$preset --output=there.png >there.log
+    "$build/release/bin/$sample" L.ppm R.ppm --num-disparities=64 --preset=$preset here.png >here.log
+    "${emulator[@]}" "build/bin/$sample" L.ppm R.ppm --num-disparities=64 --preset=$preset there.png >there.log
     cmp here.png there.png || fail "the map of $preset differs"
     say "The map of $preset is the same"
 done

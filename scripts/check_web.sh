@@ -9,7 +9,7 @@ module_build=$(realpath "$1")
 unset OPENCV_SAMPLES_DATA_PATH OPENCV_TEST_DATA_PATH
 "$checkout/scripts/build_web.sh"
 export HDPSTEREO_PAGE=$build/web/page HDPSTEREO_WEB_WORK=$build/web/test
-export HDPSTEREO_NATIVE=$module_build/bin/example_hdpstereo_hdp_stereo_match
+export HDPSTEREO_NATIVE=$module_build/bin/hdpstereo
 HDPSTEREO_BROWSER=$(command -v chromium) || fail "there is no chromium"
 export HDPSTEREO_BROWSER
 

@@ -13,15 +13,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 TEST(HDPStereo_Programs, help_and_wrong_arguments)
 {
     const DatasetFolder folder;
     for (const char* program :
          { "hdp_evaluate", "hdp_benchmark", "hdp_train", "hdp_parameters", "hdp_pictures", "hdp_robustness",
-           "hdp_stability", "hdp_video", "example_hdpstereo_hdp_stereo_match", "example_hdpstereo_hdp_own_tree" })
+           "hdp_stability", "hdp_video", "hdpstereo", "example_hdpstereo_hdp_own_tree" })
     {
         SCOPED_TRACE(program);
         const Execution help = run(folder, String(program) + " --help");
@@ -53,7 +52,7 @@ TEST(HDPStereo_Programs, full_disk)
            "hdp_robustness --methods=fast --cases=clean" + dataset, "hdp_parameters --presets=fast --runs=1" + dataset,
            "hdp_video --methods=fast --noise=0 --still=2" + dataset,
            "hdp_stability --methods=fast --changes=flip" + dataset,
-           "hdp_pictures --output=" + folder.root + pair + truth, "example_hdpstereo_hdp_stereo_match" + pair,
+           "hdp_pictures --output=" + folder.root + pair + truth, "hdpstereo" + pair,
            "example_hdpstereo_hdp_own_tree" + pair })
     {
         SCOPED_TRACE(command);
@@ -265,7 +264,7 @@ TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
     const DatasetFolder folder;
     writePair(folder);
     const String png = folder.path("map.png"), pfm = folder.path("map.pfm"), ply = folder.path("points.ply");
-    const String program = "example_hdpstereo_hdp_stereo_match" + pairOf(folder);
+    const String program = "hdpstereo" + pairOf(folder);
     const Execution result =
         run(folder, program + " --preset=quality --output=" + png + " --picture=" + folder.path("picture.jpg") +
                         " --point-cloud=" + ply +
@@ -289,8 +288,37 @@ TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
     std::memcpy(&z, points.data() + points.find(end) + end.size() + 8, sizeof(z));
     EXPECT_NEAR(100 * 2 / exact.at<float>(0, 0), z, 1e-3 * z);
 
-    for (const char* wrong : { " --preset=FAST", " --num-disparities=0", " --output=/no/such/folder/map.png",
-                               " --output=map.unknown", " --point-cloud=x.ply", " --truth=/no/such/file.png" })
+    // The principal point of Q is not the centre of the image.
+    folder.writeText("extrinsics.yml",
+                     "%YAML:1.0\n---\nQ: !!opencv-matrix\n   rows: 4\n   cols: 4\n   dt: d\n   data: [ 1., "
+                     "0., 0., -50., 0., 1., 0., -40., 0., 0., 0., 100., 0., 0., 0.5, 0. ]\n");
+    EXPECT_EQ(
+        0, run(folder, program + " --point-cloud=" + ply + " --reprojection=" + folder.path("extrinsics.yml")).status);
+    const String moved = readText(ply);
+    float first[3];
+    std::memcpy(first, moved.data() + moved.find(end) + end.size(), sizeof(first));
+    EXPECT_NEAR(-50 / 100. * first[2], first[0], 1e-4 * first[2]);
+    EXPECT_NEAR(-40 / 100. * first[2], first[1], 1e-4 * first[2]);
+
+    const Execution compared = run(folder, program + " --compare --picture=" + folder.path("picture.jpg") +
+                                               " --truth=" + folder.path("dataset/a/disp_left.png"));
+    EXPECT_EQ(0, compared.status) << compared.errors;
+    EXPECT_NE(String::npos, compared.output.find("times faster"));
+    EXPECT_NE(String::npos, compared.output.find("err>=2  StereoSGBM, 3WAY"));
+    EXPECT_EQ(Size(3 * 160, 120), cv::imread(folder.path("picture.jpg")).size());
+
+    const Execution version = run(folder, "hdpstereo --version");
+    EXPECT_EQ(0, version.status);
+    EXPECT_EQ(0u, version.output.find("hdpstereo 2."));
+    const String twice = "hdpstereo a.png b.png --num-disparities=";
+    EXPECT_EQ("error: --num-disparities=abc is not a number\n", run(folder, twice + "abc").errors);
+    EXPECT_EQ("error: --num-disparities=1.5 is not an integer\n", run(folder, twice + "1.5").errors);
+    EXPECT_EQ(String::npos, run(folder, "hdpstereo --help").output.find("value:true"));
+
+    for (const char* wrong :
+         { " --preset=FAST", " --min-disparity=near", " --reprojection=/no/such.yml --point-cloud=x.ply",
+           " --focal=0 --baseline=1 --point-cloud=x.ply", " --num-disparities=0", " --output=/no/such/folder/map.png",
+           " --output=map.unknown", " --point-cloud=x.ply", " --truth=/no/such/file.png" })
         EXPECT_EQ(1, run(folder, program + wrong).status) << wrong;
 }
 
@@ -330,7 +358,7 @@ TEST(HDPStereo_Programs, batch_of_folders)
     folder.writeText("out/two.png.part", "of a run that was killed");
 
     const String lefts = folder.path("lefts"), rights = folder.path("rights"), out = folder.path("out"),
-                 program = "example_hdpstereo_hdp_stereo_match --num-disparities=32 ",
+                 program = "hdpstereo --num-disparities=32 ",
                  command = program + "--batch " + lefts + " " + rights + " " + out;
     const Execution first = run(folder, command);
     EXPECT_EQ(2, first.status);
@@ -339,7 +367,7 @@ TEST(HDPStereo_Programs, batch_of_folders)
                               "4/6 three\n", "5/6 torn left out: cannot read the image", "6/6 two\n" })
         EXPECT_NE(String::npos, first.errors.find(line)) << line << first.errors;
     std::vector<String> files;
-    fs::glob_relative(out, "*", files);
+    fs::glob_relative(out, "*.png", files);
     EXPECT_EQ(std::vector<String>({ "one.png", "three.png", "two.png" }), files);
     EXPECT_EQ(
         0, run(folder, program + lefts + "/one.png " + rights + "/one.png --output=" + folder.path("map.png")).status);
@@ -356,13 +384,20 @@ TEST(HDPStereo_Programs, batch_of_folders)
     EXPECT_EQ("kept", readText(fs::join(out, "one.png")));
     EXPECT_TRUE(readText(fs::join(out, "alone.png")) == map);
 
+    // Maps of other options are not continued.
+    const Execution others = run(folder, command + " --preset=quality");
+    EXPECT_EQ(1, others.status);
+    EXPECT_NE(String::npos, others.errors.find("hdpstereo.yml': take another folder")) << others.errors;
+    EXPECT_EQ("error: there is no folder '" + folder.path("nowhere") + "'\n",
+              run(folder, program + "--batch " + lefts + " " + folder.path("nowhere") + " " + out).errors);
+
     // Mistakes of the call are found before any work.
     const String other = " " + folder.path("lefts") + " " + folder.path("rights") + " " + folder.path("other");
     for (const String& wrong : { String("--batch"), "--batch " + lefts + " " + rights, "--batch --preset=none" + other,
                                  "--batch --format=jpg" + other, "--batch --output=x.png" + other,
                                  "--batch --num-disparities=0" + other, "--batch " + folder.path("empty/") + ". x y" })
     {
-        const Execution result = run(folder, "example_hdpstereo_hdp_stereo_match " + wrong);
+        const Execution result = run(folder, "hdpstereo " + wrong);
         EXPECT_EQ(1, result.status) << wrong;
         EXPECT_EQ(firstLine(result.errors) + "\n", result.errors);
     }
@@ -382,7 +417,7 @@ TEST(HDPStereo_Programs, batch_of_a_list)
 {
     const DatasetFolder folder;
     writePair(folder);
-    const String program = "example_hdpstereo_hdp_stereo_match --num-disparities=32 --format=pfm --batch ";
+    const String program = "hdpstereo --num-disparities=32 --format=pfm --batch ";
     const auto list = [&](int pairs) {
         String text = "\n";
         for (int i = 0; i < pairs; i++)
@@ -440,9 +475,9 @@ TEST(HDPStereo_Programs, read_16_bit)
     };
     for (const String scene : { "faint", "rounded" })
     {
-        const Execution result = run(folder, "example_hdpstereo_hdp_stereo_match" + images(scene) +
-                                                 " --output=" + folder.path(scene + ".pfm") + " --focal=100" +
-                                                 " --baseline=2 --point-cloud=" + folder.path(scene + ".ply"));
+        const Execution result =
+            run(folder, "hdpstereo" + images(scene) + " --output=" + folder.path(scene + ".pfm") + " --focal=100" +
+                            " --baseline=2 --point-cloud=" + folder.path(scene + ".ply"));
         EXPECT_EQ(0, result.status) << result.errors;
     }
     const int limit = countErrors("rounded.pfm", 1) / 2;
@@ -505,7 +540,6 @@ TEST(HDPStereo_Programs, live)
     EXPECT_EQ(1, run(folder, "example_hdpstereo_hdp_live no/such/video.avi --no-gui").status);
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test
 
 #endif

@@ -12,7 +12,7 @@ import { decode, encode } from 'fast-png';
 // Folders and programs, from scripts/check_web.sh
 export const pageFolder = process.env.HDPSTEREO_PAGE;
 export const workFolder = process.env.HDPSTEREO_WEB_WORK;
-export const nativeProgram = process.env.HDPSTEREO_NATIVE; // example_hdpstereo_hdp_stereo_match
+export const nativeProgram = process.env.HDPSTEREO_NATIVE; // hdpstereo
 export const presets = ['ULTRAFAST', 'FAST', 'QUALITY', 'TREE', 'PAPER'];
 
 mkdirSync(workFolder, { recursive: true });

@@ -1,0 +1,65 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "files.hpp"
+
+#include <cstdio>
+#include <fstream>
+
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
+
+using namespace cv;
+
+String extensionOf(const String& path) { return path.substr(std::min(path.rfind('.'), path.size())); }
+
+std::vector<uchar> encode(const String& extension, const Mat& image)
+{
+    std::vector<uchar> bytes;
+    imencode(extension, image, bytes);
+    return bytes;
+}
+
+void writeFile(const String& path, const std::vector<uchar>& bytes)
+{
+    std::ofstream file(path.c_str(), std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    file.close();
+    if (!file)
+        CV_Error(Error::StsError, "cannot write '" + path + "'");
+}
+
+void writeWholeFile(const String& path, const std::vector<uchar>& bytes)
+{
+    const String part = path + ".part";
+    writeFile(part, bytes);
+    if (std::rename(part.c_str(), path.c_str()) != 0)
+        CV_Error(Error::StsError, "cannot write '" + path + "'");
+}
+
+Mat readImage(const String& path, int flags)
+{
+    const Mat image = imread(path, flags);
+    if (image.empty())
+        CV_Error(Error::StsError, "cannot read the image '" + path + "'");
+    return image;
+}
+
+Mat readPicture(const String& path)
+{
+    Mat image = readImage(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
+    if (image.depth() == CV_16U)
+        cvtColor(image, image, COLOR_BGR2GRAY);
+    return image;
+}
+
+std::vector<uchar> encodeDisparity(const String& extension, const Mat& disparity)
+{
+    if (extension != ".png")
+        return encode(extension, disparity);
+    Mat disparity256;
+    disparity.convertTo(disparity256, CV_16U, 256);
+    disparity256.setTo(1, disparity256 == 0); // 0 stands for none
+    disparity256.setTo(0, (disparity < 0) | (disparity >= 256));
+    return encode(extension, disparity256);
+}

@@ -1,0 +1,29 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_TOOLS_HDPSTEREO_FILES_HPP
+#define OPENCV_HDPSTEREO_TOOLS_HDPSTEREO_FILES_HPP
+
+#include "opencv2/core.hpp"
+
+// Images and maps in files. All throw cv::Exception.
+
+cv::String extensionOf(const cv::String& path);
+
+std::vector<uchar> encode(const cv::String& extension, const cv::Mat& image);
+
+//! A map in pixels, infinite where there is none, as --output says
+std::vector<uchar> encodeDisparity(const cv::String& extension, const cv::Mat& disparity);
+
+//! Unlike imwrite(), this notices a full disk.
+void writeFile(const cv::String& path, const std::vector<uchar>& bytes);
+
+//! Whole or not at all, whatever becomes of this program meanwhile
+void writeWholeFile(const cv::String& path, const std::vector<uchar>& bytes);
+
+cv::Mat readImage(const cv::String& path, int flags);
+
+//! Colours in 8 bit, or grey levels in 16 bit of a picture that has them
+cv::Mat readPicture(const cv::String& path);
+
+#endif

@@ -1,0 +1,71 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Matches a rectified stereo pair with cv::stereo::HDPTreeMatcher, and writes the disparities, a picture of them and a
+// point cloud; or matches many pairs, and writes the disparities of each.
+
+#include "options.hpp"
+
+#include <iostream>
+
+#include "opencv2/core/utils/logger.hpp"
+
+using namespace cv;
+
+static const char* const keys =
+    "{help h ?        |      | print this and exit }"
+    "{version         |      | print the version and exit }"
+    "{@left           |      | left image of a rectified pair, of 8 or 16 bit }"
+    "{@right          |      | right image }"
+    "{@out            |      | disparities, as --output; with --batch a folder }"
+    "{batch           |      | --batch LEFTS RIGHTS OUT: matches files of the same name in two folders, or --batch "
+    "LIST OUT: "
+    "a line 'LEFT RIGHT NAME' per pair (between tabs if paths have spaces); writes OUT/NAME.png, keeps what is there, "
+    "leaves out bad pairs (exit status 2). OUT/hdpstereo.yml keeps the options; maps of others are not continued }"
+    "{format          | png  | png or pfm: what --batch writes, see --output }"
+    "{preset          | fast | set of parameters: ultrafast, fast, quality, tree or paper }"
+    "{min-disparity   | 0    | smallest disparity in pixels }"
+    "{num-disparities |      | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
+    "{output          |      | disparities: FILE.png (16 bit, times 256, 0 = none) or FILE.pfm (float, inf = none) }"
+    "{picture         |      | disparities in colors: far is blue, near is orange, none is black }"
+    "{truth           |      | true disparities: PNG, 8 bit or 16 bit (times 256), 0 = unknown }"
+    "{compare         |      | also by cv::StereoSGBM: times, errors, and its picture between the left image and ours }"
+    "{point-cloud     |      | colored points: FILE.ply; needs --reprojection, or --focal and --baseline }"
+    "{reprojection    |      | file with the matrix Q of cv::stereoRectify, as stereo_calib.cpp of OpenCV's samples "
+    "writes it: extrinsics.yml }"
+    "{focal           |      | focal length in pixels; the principal point is the center of the image }"
+    "{baseline        |      | distance of the cameras, in the unit of the points }";
+
+int main(int argc, char** argv)
+{
+    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below
+    CommandLineParser parser(argc, argv, keys);
+    int status = 0;
+    try
+    {
+        for (const String& argument : std::vector<String>(argv + 1, argv + argc))
+            if (argument.compare(0, 2, "--") == 0)
+                parser.has(argument.substr(2, argument.find('=') - 2)); // throws if it is unknown
+        if (parser.has("help"))
+        {
+            CommandLineParser defaults(1, argv, keys); // whose values are those that help shows
+            defaults.about("Disparities of a rectified stereo pair, or of many.");
+            defaults.printMessage();
+        }
+        else if (parser.has("version"))
+            std::cout << "hdpstereo " << HDPSTEREO_VERSION << " (OpenCV " << CV_VERSION << ")" << std::endl;
+        else if (parser.has("batch"))
+            status = matchPairs(parser) == 0 ? 0 : 2;
+        else
+            matchPair(parser);
+        if (!std::cout.flush())
+            CV_Error(Error::StsError, "cannot write to the standard output");
+    }
+    catch (const cv::Exception& e)
+    {
+        std::cerr << "error: " << e.err << std::endl;
+        return 1;
+    }
+    return status;
+}

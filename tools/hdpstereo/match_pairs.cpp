@@ -1,0 +1,158 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "files.hpp"
+#include "options.hpp"
+
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <sstream>
+#ifdef __unix__
+#include <unistd.h>
+#endif
+
+#include "opencv2/core/utils/filesystem.hpp"
+#include "opencv2/imgcodecs.hpp"
+
+using namespace cv;
+using cv::stereo::HDPTreeMatcher;
+
+struct NamedPair
+{
+    String left, right, name;
+};
+
+static String fileName(const String& path) { return path.substr(path.find_last_of("/\\") + 1); }
+
+static String withoutExtension(const String& name) { return name.substr(0, name.rfind('.')); }
+
+static std::vector<NamedPair> pairsOfFolders(const String& lefts, const String& rights)
+{
+    if (!utils::fs::isDirectory(rights))
+        CV_Error(Error::StsError, "there is no folder '" + rights + "'");
+    std::vector<String> paths;
+    glob(utils::fs::join(lefts, "*"), paths);
+    std::vector<NamedPair> pairs;
+    for (const String& path : paths)
+        if (haveImageWriter(path)) // by its extension
+            pairs.push_back({ path, utils::fs::join(rights, fileName(path)), withoutExtension(fileName(path)) });
+    return pairs;
+}
+
+static std::vector<NamedPair> pairsOfList(const String& list)
+{
+    std::ifstream file(list.c_str());
+    if (!file)
+        CV_Error(Error::StsError, "cannot read '" + list + "'");
+    std::vector<NamedPair> pairs;
+    for (std::string line; std::getline(file, line);)
+    {
+        std::istringstream words(line);
+        std::vector<String> parts;
+        const char delimiter = line.find('\t') != std::string::npos ? '\t' : ' ';
+        for (std::string word; std::getline(words, word, delimiter);)
+            if (word.find_first_not_of(" \r") != std::string::npos)
+                parts.push_back(word.substr(0, word.find('\r')));
+        if (parts.empty())
+            continue;
+        if (parts.size() != 3)
+            CV_Error(Error::StsBadArg, "'" + list + "': not a left image, a right one and a name: " + line);
+        pairs.push_back({ parts[0], parts[1], parts[2] });
+    }
+    return pairs;
+}
+
+//! One line on a terminal, which the next one replaces
+static void printProgress(size_t done, size_t total, const String& name)
+{
+#ifdef __unix__
+    static const bool isTerminal = isatty(STDERR_FILENO) != 0;
+#else
+    static const bool isTerminal = false;
+#endif
+    std::cerr << (isTerminal ? "\r\x1b[K" : "") << done << "/" << total << " " << name;
+    if (isTerminal && done < total)
+        std::cerr << std::flush;
+    else
+        std::cerr << std::endl;
+}
+
+//! What the maps in a folder were made with, so that those of other options are not taken for these
+static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& matcher, const String& out)
+{
+    FileStorage options(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+    options << "version" << HDPSTEREO_VERSION;
+    options << "numDisparities"
+            << (parser.has("num-disparities") ? parser.get<String>("num-disparities") : "width / 5");
+    options << "matcher"
+            << "{";
+    matcher.write(options);
+    options << "}";
+    const String text = options.releaseAndGetString(), path = utils::fs::join(out, "hdpstereo.yml");
+    std::ifstream file(path.c_str());
+    const String before((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    if (!before.empty() && before != text)
+        CV_Error(Error::StsBadArg, "the maps in '" + out + "' were made with other options, see '" + path +
+                                       "': take another folder, or remove it");
+    if (!before.empty())
+        return;
+    utils::fs::createDirectories(out);
+    writeWholeFile(path, std::vector<uchar>(text.begin(), text.end()));
+}
+
+size_t matchPairs(const CommandLineParser& parser)
+{
+    for (const char* option : { "output", "picture", "truth", "point-cloud", "compare" })
+        if (parser.has(option))
+            CV_Error(Error::StsBadArg, format("--%s is for one pair, and not for --batch", option));
+    const String format = parser.get<String>("format"), lefts = parser.get<String>("@left");
+    if (format != "png" && format != "pfm")
+        CV_Error(Error::StsBadArg, "--format=" + format + " is unknown, see --help");
+    const bool areFolders = utils::fs::isDirectory(lefts);
+    const String out = parser.get<String>(areFolders ? "@out" : "@right");
+    if (out.empty() || (!areFolders && parser.has("@out")))
+        CV_Error(Error::StsBadArg, "--batch needs LEFTS RIGHTS OUT, three folders, or LIST OUT, a file and a folder");
+    const std::vector<NamedPair> pairs =
+        areFolders ? pairsOfFolders(lefts, parser.get<String>("@right")) : pairsOfList(lefts);
+    if (pairs.empty())
+        CV_Error(Error::StsBadArg, "there is no pair in '" + lefts + "'");
+    std::set<String> names;
+    for (const NamedPair& pair : pairs)
+        if (!names.insert(pair.name).second)
+            CV_Error(Error::StsBadArg, "two pairs have the name '" + pair.name + "'");
+
+    // One for all pairs: it keeps its memory.
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, 0);
+    keepOptions(parser, *matcher, out);
+    size_t done = 0, old = 0, bad = 0;
+    for (const NamedPair& pair : pairs)
+    {
+        const String path = utils::fs::join(out, pair.name + "." + format);
+        done++;
+        if (utils::fs::exists(path))
+        {
+            old++;
+            continue;
+        }
+        std::vector<uchar> bytes;
+        try
+        {
+            const Mat left = readPicture(pair.left), right = readPicture(pair.right);
+            matcher->setNumDisparities(numDisparitiesOf(parser, left.cols));
+            bytes = encodeDisparity("." + format, computeDisparity(*matcher, left, right));
+        }
+        catch (const cv::Exception& e)
+        {
+            bad++;
+            printProgress(done, pairs.size(), pair.name + " left out: " + e.err + "\n");
+            continue;
+        }
+        utils::fs::createDirectories(utils::fs::getParent(path));
+        writeWholeFile(path, bytes);
+        printProgress(done, pairs.size(), pair.name);
+    }
+    std::cout << pairs.size() - old - bad << " pairs matched, " << old << " were there, " << bad << " left out"
+              << std::endl;
+    return bad;
+}

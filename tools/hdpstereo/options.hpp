@@ -1,0 +1,32 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_TOOLS_HDPSTEREO_OPTIONS_HPP
+#define OPENCV_HDPSTEREO_TOOLS_HDPSTEREO_OPTIONS_HPP
+
+#include "opencv2/core/utility.hpp"
+#include "opencv2/hdpstereo.hpp"
+
+// What the command line asks for. All throw cv::Exception, with the option's name.
+
+double numberOf(const cv::CommandLineParser& parser, const cv::String& option);
+int integerOf(const cv::CommandLineParser& parser, const cv::String& option);
+
+//! --num-disparities, or what is usual for images of a width
+int numDisparitiesOf(const cv::CommandLineParser& parser, int width);
+
+cv::Ptr<cv::stereo::HDPTreeMatcher> createMatcher(const cv::CommandLineParser& parser, int width);
+
+// What the program does
+
+void matchPair(const cv::CommandLineParser& parser);
+
+//! --batch. Returns how many pairs are bad.
+size_t matchPairs(const cv::CommandLineParser& parser);
+
+//! Disparities in pixels from those in CV_16S, infinite where there is none
+cv::Mat inPixels(const cv::Mat& disparity16, int minDisparity);
+
+cv::Mat computeDisparity(cv::stereo::HDPTreeMatcher& matcher, const cv::Mat& left, const cv::Mat& right);
+
+#endif
