@@ -27,11 +27,12 @@ inline String readText(const String& path)
     return String(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
 }
 
-//! Runs a program of the build's bin/, by the shell.
-inline Execution run(const DatasetFolder& folder, const String& command, const String& output = String())
+//! Runs a program of the build's bin/, by the shell, with additions to the environment such as A=1 B=2.
+inline Execution run(const DatasetFolder& folder, const String& command, const String& output = String(),
+                     const String& environment = String())
 {
     const String out = output.empty() ? folder.path("stdout") : output, err = folder.path("stderr");
-    const String line = String(HDP_PROGRAMS) + "/" + command + " >'" + out + "' 2>'" + err + "'";
+    const String line = environment + " " + HDP_PROGRAMS + "/" + command + " >'" + out + "' 2>'" + err + "'";
     const int status = std::system(line.c_str());
     const bool exited = status != -1 && WIFEXITED(status);
     EXPECT_TRUE(exited) << command;

@@ -1,0 +1,340 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// HDPTreeMatcher behind the command line of mgm, for programs that call that one for each tile: the Ames Stereo
+// Pipeline and s2p. Their sign of disparities is the opposite of OpenCV's: a left pixel (x, y) is (x + d, y) in the
+// right image.
+
+#include <algorithm>
+#include <cfloat>
+#include <climits>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+#include <map>
+
+#include "opencv2/core.hpp"
+#include "opencv2/core/utils/logger.hpp"
+#include "opencv2/hdpstereo.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
+
+using namespace cv;
+using cv::stereo::HDPTreeMatcher;
+
+static const char* const usage =
+    "HDPTreeMatcher behind the command line of mgm\n"
+    "usage: hdpstereo-mgm [OPTION VALUE]... LEFT RIGHT OUT [COST [BACKFLOW]]\n"
+    "LEFT, RIGHT: a rectified pair, 8 or 16 bit or float, NaN = no data. OUT: float TIFF, NaN = no disparity.\n"
+    "A left pixel (x, y) is (x + d, y) in the right image: the sign is the opposite of OpenCV's.\n"
+    "  -r MIN -R MAX    smallest and largest disparity (-30, 30)\n"
+    "  -m FILE -M FILE  the same for each pixel; where not finite, as -r and -R. What is outside has no disparity\n"
+    "  -s none          whole disparities; with anything else they have fractions (none)\n"
+    "  -Rd FILE         disparities of the right image\n"
+    "  -confidence_consensusL FILE, -confidence_consensusR FILE  confidence from 0 to 1\n"
+    "Accepted without effect: -O -P1 -P2 -p -t -truncDist -aP1 -aP2 -aThresh -S -wl -wr -Rc -confidence_costL\n"
+    "-confidence_costR -confidence_pkrL -confidence_pkrR -inputCostVolume, COST and BACKFLOW.\n"
+    "Environment, as mgm has it: TESTLRRL=0: no left-right check; TESTLRRL_TAU=1: its threshold; REMOVESMALLCC=0: "
+    "size\n"
+    "of the smallest region; OMP_NUM_THREADS. Its own: HDPSTEREO_PRESET=quality: ultrafast, fast, quality or tree;\n"
+    "HDPSTEREO_VERBOSE=1: says what has no effect.\n";
+
+static const float none = std::numeric_limits<float>::quiet_NaN();
+
+static void fail(const String& message) { CV_Error(Error::StsBadArg, message); }
+
+static double toNumber(const String& name, const String& text)
+{
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (text.empty() || *end != 0 || !std::isfinite(number))
+        fail(name + " must be a number, not '" + text + "'");
+    return number;
+}
+
+static String environment(const char* name, const char* otherwise)
+{
+    const char* const value = std::getenv(name);
+    return value && *value ? value : otherwise;
+}
+
+//! What the command line says
+class Call
+{
+public:
+    Call(int argc, char** argv)
+    {
+        static const char* const known[] = {
+            "r", "R", "m", "M", "s", "Rd", "confidence_consensusL", "confidence_consensusR"
+        };
+        static const char* const ignored[] = { "O",
+                                               "P1",
+                                               "P2",
+                                               "p",
+                                               "t",
+                                               "truncDist",
+                                               "aP1",
+                                               "aP2",
+                                               "aThresh",
+                                               "S",
+                                               "wl",
+                                               "wr",
+                                               "Rc",
+                                               "confidence_costL",
+                                               "confidence_costR",
+                                               "confidence_pkrL",
+                                               "confidence_pkrR",
+                                               "inputCostVolume" };
+        for (int i = 1; i < argc; i++)
+        {
+            const String word = argv[i], name = word.substr(word.empty() ? 0 : 1);
+            const bool isKnown = std::find(std::begin(known), std::end(known), name) != std::end(known);
+            const bool isIgnored = std::find(std::begin(ignored), std::end(ignored), name) != std::end(ignored);
+            if (word.size() < 2 || word[0] != '-')
+                files_.push_back(word);
+            else if (!isKnown && !isIgnored)
+                fail("the option " + word + " is unknown");
+            else if (++i == argc)
+                fail("the option " + word + " needs a value");
+            else if (isKnown)
+                values_[name] = argv[i];
+            else
+                tell(word + " has no effect");
+        }
+        if (files_.size() < 3 || files_.size() > 5)
+            fail(files_.size() < 3 ? "LEFT, RIGHT and OUT are needed, see --help" : "there are too many files");
+        for (size_t i = 3; i < files_.size(); i++)
+            tell("'" + files_[i] + "' is not written");
+    }
+
+    const String& left() const { return files_[0]; }
+    const String& right() const { return files_[1]; }
+    const String& out() const { return files_[2]; }
+
+    String value(const char* name, const char* otherwise = "") const
+    {
+        const auto found = values_.find(name);
+        return found == values_.end() ? otherwise : found->second;
+    }
+
+private:
+    static void tell(const String& message)
+    {
+        if (environment("HDPSTEREO_VERBOSE", "0") != "0")
+            std::cerr << "hdpstereo-mgm: " << message << std::endl;
+    }
+
+    std::vector<String> files_;
+    std::map<String, String> values_;
+};
+
+static Mat readImage(const String& path)
+{
+    Mat image = imread(path, IMREAD_UNCHANGED);
+    if (image.empty())
+        CV_Error(Error::StsError, "cannot read the image '" + path + "'");
+    if (image.channels() > 1)
+        cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);
+    if (image.depth() != CV_8U && image.depth() != CV_16U)
+        image.convertTo(image, CV_32F);
+    return image;
+}
+
+static void writeImage(const String& path, const Mat& image)
+{
+    if (!path.empty() && !imwrite(path, image))
+        CV_Error(Error::StsError, "cannot write '" + path + "'");
+}
+
+static Mat extended(const Mat& image, Size size, double value)
+{
+    Mat larger;
+    copyMakeBorder(image, larger, 0, size.height - image.rows, 0, size.width - image.cols, BORDER_CONSTANT,
+                   Scalar(value));
+    return larger;
+}
+
+//! One type and one size for both; what only one of them has is no data.
+static void makeAlike(Mat& left, Mat& right)
+{
+    if (left.type() == right.type() && left.size() == right.size())
+        return;
+    const Size size(std::max(left.cols, right.cols), std::max(left.rows, right.rows));
+    for (Mat* image : { &left, &right })
+    {
+        image->convertTo(*image, CV_32F);
+        *image = extended(*image, size, none);
+    }
+}
+
+//! In mgm's sign
+struct DisparityRange
+{
+    int min, max;
+    Mat mins, maxs; // per pixel of the left image, if given
+};
+
+//! -m or -M: rounded away from the range's inside, and the limit of all where it is not finite
+static Mat readLimits(const String& path, Size size, double limit, bool isMax)
+{
+    Mat limits = readImage(path);
+    if (limits.size() != size)
+        fail("'" + path + "' must have the size of LEFT");
+    limits.convertTo(limits, CV_32F);
+    for (int y = 0; y < limits.rows; y++)
+        for (int x = 0; x < limits.cols; x++)
+        {
+            float& value = limits.at<float>(y, x);
+            value = !std::isfinite(value) ? (float)limit : isMax ? std::ceil(value) : std::floor(value);
+        }
+    return limits;
+}
+
+static DisparityRange readRange(const Call& call, Size size)
+{
+    DisparityRange range = { cvFloor(toNumber("-r", call.value("r", "-30"))),
+                             cvCeil(toNumber("-R", call.value("R", "30"))), Mat(), Mat() };
+    if (range.max < range.min)
+        fail(format("-R must be at least -r, %d, not %d", range.min, range.max));
+    if (call.value("m").empty() != call.value("M").empty())
+        fail("-m and -M need each other");
+    if (call.value("m").empty())
+        return range;
+    range.mins = readLimits(call.value("m"), size, range.min, false);
+    range.maxs = readLimits(call.value("M"), size, range.max, true);
+    range.maxs = max(range.maxs, range.mins);
+    double lowest, highest;
+    minMaxLoc(range.mins, &lowest, nullptr);
+    minMaxLoc(range.maxs, nullptr, &highest);
+    range.min = cvFloor(lowest);
+    range.max = cvCeil(highest);
+    return range;
+}
+
+static int presetOf(const String& name)
+{
+    static const std::map<String, int> presets = { { "ultrafast", HDPTreeMatcher::PRESET_ULTRAFAST },
+                                                   { "fast", HDPTreeMatcher::PRESET_FAST },
+                                                   { "quality", HDPTreeMatcher::PRESET_QUALITY },
+                                                   { "tree", HDPTreeMatcher::PRESET_TREE } };
+    const auto preset = presets.find(name);
+    if (preset == presets.end())
+        fail("HDPSTEREO_PRESET must be ultrafast, fast, quality or tree, not '" + name + "'");
+    return preset->second;
+}
+
+static Ptr<HDPTreeMatcher> createMatcher(const Call& call, const DisparityRange& range)
+{
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-range.max, range.max - range.min + 1,
+                                                               presetOf(environment("HDPSTEREO_PRESET", "quality")));
+    HDPTreeMatcher::Params params = matcher->getParams();
+    params.useSubpixel = call.value("s", "none") != "none";
+    params.disparityDepth = CV_32F;
+    matcher->setParams(params);
+    if (environment("TESTLRRL", "1") != "0")
+        matcher->setDisp12MaxDiff(cvCeil(toNumber("TESTLRRL_TAU", environment("TESTLRRL_TAU", "1"))));
+    matcher->setSpeckleWindowSize(cvRound(toNumber("REMOVESMALLCC", environment("REMOVESMALLCC", "0"))));
+    matcher->setSpeckleRange(1);
+    return matcher;
+}
+
+//! Pixels without data get the next level of their row that has some: a surface without texture, for the matcher.
+static void fillNoData(Mat& image, const Mat& valid)
+{
+    for (int y = 0; y < image.rows; y++)
+    {
+        float* const row = image.ptr<float>(y);
+        const uchar* const isValid = valid.ptr(y);
+        float level = 0;
+        for (int x = image.cols - 1; x >= 0; x--) // so that a row begins with the first one
+            level = isValid[x] ? row[x] : level;
+        for (int x = 0; x < image.cols; x++)
+            row[x] = level = isValid[x] ? row[x] : level;
+    }
+}
+
+//! A pair as the matcher takes it, and where its left image has data. Floats become 16 bit, from the darkest pixel of
+//! both to the brightest.
+static Mat prepare(Mat& left, Mat& right)
+{
+    const Mat valid = left == left, validRight = right == right; // NaN is not equal to itself
+    if (left.depth() != CV_32F)
+        return valid;
+    double minLeft = 0, maxLeft = 0, minRight = 0, maxRight = 0;
+    minMaxLoc(left, &minLeft, &maxLeft, nullptr, nullptr, valid);
+    minMaxLoc(right, &minRight, &maxRight, nullptr, nullptr, validRight);
+    fillNoData(left, valid);
+    fillNoData(right, validRight);
+    const double lowest = std::min(minLeft, minRight), highest = std::max(maxLeft, maxRight);
+    if (!std::isfinite(lowest) || !std::isfinite(highest))
+        CV_Error(Error::StsOutOfRange, "LEFT and RIGHT must be finite, but for NaN");
+    const double scale = USHRT_MAX / std::max(highest - lowest, FLT_MIN * 1.);
+    left.convertTo(left, CV_16U, scale, -lowest * scale);
+    right.convertTo(right, CV_16U, scale, -lowest * scale);
+    return valid;
+}
+
+//! Disparities of OpenCV's sign, NaN where there is none, and the confidence from 0 to 1
+static void match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, const Mat& valid, Mat& disparity,
+                  Mat& confidence)
+{
+    disparity.release();
+    matcher.compute(left, right, disparity);
+    matcher.getConfidence(confidence);
+    disparity.setTo(none, (disparity < matcher.getMinDisparity()) | ~valid);
+    confidence.convertTo(confidence, CV_32F, 1. / 255);
+    confidence.setTo(0, ~valid);
+}
+
+static void run(const Call& call)
+{
+    Mat left = readImage(call.left()), right = readImage(call.right());
+    const Rect leftImage(Point(), left.size()), rightImage(Point(), right.size());
+    const DisparityRange range = readRange(call, left.size());
+    makeAlike(left, right);
+    Mat left16 = left.clone(), right16 = right.clone();
+    const Mat valid = prepare(left16, right16), validRight = right == right;
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(call, range);
+    Mat disparity, confidence;
+    match(*matcher, left16, right16, valid, disparity, confidence);
+    disparity = -disparity(leftImage);
+    if (!range.mins.empty())
+        disparity.setTo(none, (disparity < range.mins - 0.5) | (disparity > range.maxs + 0.5));
+    writeImage(call.out(), disparity);
+    writeImage(call.value("confidence_consensusL"), confidence(leftImage));
+    if (call.value("Rd").empty() && call.value("confidence_consensusR").empty())
+        return;
+
+    // The right image is the left one of a scene that is mirrored.
+    Mat mirroredLeft, mirroredRight, mirroredValid;
+    flip(right16, mirroredLeft, 1);
+    flip(left16, mirroredRight, 1);
+    flip(validRight, mirroredValid, 1);
+    match(*matcher, mirroredLeft, mirroredRight, mirroredValid, disparity, confidence);
+    flip(disparity, disparity, 1);
+    flip(confidence, confidence, 1);
+    writeImage(call.value("Rd"), disparity(rightImage));
+    writeImage(call.value("confidence_consensusR"), confidence(rightImage));
+}
+
+int main(int argc, char** argv)
+{
+    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below
+    if (argc == 2 && (String(argv[1]) == "--help" || String(argv[1]) == "-h"))
+        return std::cout << usage << std::flush ? 0 : 1;
+    try
+    {
+        const String threads = environment("OMP_NUM_THREADS", "");
+        if (!threads.empty())
+            setNumThreads(std::max(cvRound(toNumber("OMP_NUM_THREADS", threads)), 1));
+        run(Call(argc, argv));
+    }
+    catch (const cv::Exception& e)
+    {
+        std::cerr << "error: " << e.err << std::endl;
+        return 1;
+    }
+    return 0;
+}
