@@ -5,7 +5,7 @@ if(HDPSTEREO_BUILD_FUZZERS)
 endif()
 if(HDPSTEREO_SANITIZE)
   # _DEBUG turns on the range checks of cv::Mat::at and its like, _GLIBCXX_ASSERTIONS those of std::vector.
-  add_compile_options(-fsanitize=${HDPSTEREO_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+  add_compile_options(-fsanitize=${HDPSTEREO_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
   add_compile_definitions(_DEBUG _GLIBCXX_ASSERTIONS)
   add_link_options(-fsanitize=${HDPSTEREO_SANITIZE})
 endif()

@@ -21,3 +21,16 @@ if(HDPSTEREO_SANITIZE)
 endif()
 target_link_libraries(opencv_ts PUBLIC
   opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio opencv_highgui Threads::Threads)
+
+# What a test program is compiled with. It is not what is tested: the optimizer, and the checks for undefined behavior of
+# the tests' own code, would take half of the time of a build. AddressSanitizer stays, for what the library is given.
+function(use_opencv_ts target)
+  target_link_libraries(${target} PRIVATE opencv_ts)
+  target_compile_options(${target} PRIVATE ${warnings})
+  if(NOT MSVC)
+    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
+  endif()
+  if(HDPSTEREO_SANITIZE)
+    target_compile_options(${target} PRIVATE -fno-sanitize=undefined)
+  endif()
+endfunction()

@@ -17,8 +17,8 @@ foreach(kind test perf)
   file(GLOB sources CONFIGURE_DEPENDS ${kind}/*.cpp ${kind}/*.hpp)
   add_executable(opencv_${kind}_hdpstereo ${sources})
   target_include_directories(opencv_${kind}_hdpstereo PRIVATE ${kind})
-  target_link_libraries(opencv_${kind}_hdpstereo PRIVATE opencv_hdpstereo opencv_ts)
-  target_compile_options(opencv_${kind}_hdpstereo PRIVATE ${warnings})
+  target_link_libraries(opencv_${kind}_hdpstereo PRIVATE opencv_hdpstereo)
+  use_opencv_ts(opencv_${kind}_hdpstereo)
 endforeach()
 # Optional: a filter of ximgproc on our disparities. Inside OpenCV's build that test skips itself: there, a module's tests
 # see what the module itself depends on.

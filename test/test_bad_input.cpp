@@ -151,8 +151,6 @@ TEST(HDPStereo_BadInput, setters)
         expectBadValue(inParams([bad](Params& p) { p.aggregation = bad; }), "aggregation");
         expectBadValue(inParams([bad](Params& p) { p.topAggregation = bad; }), "topAggregation");
     }
-    expectBadValue(inParams([](Params& p) { p.topAggregation = HDPTreeMatcher::AGGREGATION_SCANLINES; }),
-                   "topAggregation");
     for (int bad : { -1, 65, INT_MAX, INT_MIN })
         expectBadValue(inParams([bad](Params& p) { p.intervalMargin = bad; }), "intervalMargin");
     for (double bad : { -0.5, 1., 2., infinity, -infinity, notANumber })

@@ -829,9 +829,9 @@ TEST(HDPStereo_MatcherContract, number_of_layers)
                 const bool isQuality = preset.preset == HDPTreeMatcher::PRESET_QUALITY;
                 const bool isTree = preset.preset == HDPTreeMatcher::PRESET_TREE;
                 expected = !isQuality && !isTree && numDisparities > 60 ? 3 : 2;
-                for (int limit = (isTree      ? 64
-                                  : isQuality ? 48
-                                              : 32)
+                for (int limit = (isTree      ? 90
+                                  : isQuality ? 55
+                                              : 45)
                                  << (expected - 1);
                      numDisparities > limit; limit *= 2)
                     ++expected;
@@ -840,6 +840,9 @@ TEST(HDPStereo_MatcherContract, number_of_layers)
             ASSERT_EQ(expected, hdp::chooseLayers(numDisparities, numLayers, limit, 16))
                 << preset.name << ", " << numDisparities << " disparities";
             ASSERT_EQ(std::min(expected, 4), hdp::chooseLayers(numDisparities, numLayers, limit, 4));
+            for (int usual : { 64, 96, 128, 192, 256, 384, 512, 1024 }) // one more is matched alike
+                if (numDisparities == usual && limit > 0)
+                    EXPECT_EQ(expected, hdp::chooseLayers(usual + 1, numLayers, limit, 16)) << preset.name << usual;
         }
     for (int numLayers : { 1, 2, 16 })
         EXPECT_EQ(numLayers, hdp::chooseLayers(1024, numLayers, 0, 16)) << "no limit";

@@ -141,6 +141,8 @@ const Row withEffect[] = {
     { "aggregation", withCensus, [](MatcherParameters& p) { p.aggregation = (p.aggregation + 1) % 3; } },
     { "topAggregation", withScanlines,
       [](MatcherParameters& p) { p.topAggregation = M::AGGREGATION_TREE_SCANLINES - p.topAggregation; } },
+    { "topAggregation: scanlines", withScanlines,
+      [](MatcherParameters& p) { p.topAggregation = M::AGGREGATION_SCANLINES; } },
     { "P1", withScanlines, [](MatcherParameters& p) { p.P1 = 3; } },
     { "P2", withScanlines, [](MatcherParameters& p) { p.P2 = 33; } },
     { "finestLayer", keep, [](MatcherParameters& p) { p.finestLayer = 1 - p.finestLayer; } },

@@ -98,6 +98,8 @@ static std::vector<Variant> variantsOf(int preset)
         add<int>(variants, "scanlinePasses", &P::scanlinePasses, { 2, 3 });
         addChange(variants, "topAggregation = AGGREGATION_TREES",
                   [](P& p) { p.topAggregation = M::AGGREGATION_TREES; });
+        addChange(variants, "topAggregation = AGGREGATION_SCANLINES",
+                  [](P& p) { p.topAggregation = M::AGGREGATION_SCANLINES; });
         add<int>(variants, "maxTopDisparities", &P::maxTopDisparities, { 16, 64 });
         add<int>(variants, "P1", &P::P1, { 8, 32 });
         add<int>(variants, "P2", &P::P2, { 35, 100 });

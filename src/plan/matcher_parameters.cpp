@@ -57,8 +57,8 @@ template <typename Parameters, typename Visitor> void visitParams(Parameters& p,
     visit("aggregation", p.aggregation, isIn(p.aggregation, M::AGGREGATION_TREES, M::AGGREGATION_TREE_SCANLINES),
           "AGGREGATION_TREES, AGGREGATION_SCANLINES or AGGREGATION_TREE_SCANLINES");
     visit("topAggregation", p.topAggregation,
-          p.topAggregation == M::AGGREGATION_TREES || p.topAggregation == M::AGGREGATION_TREE_SCANLINES,
-          "AGGREGATION_TREES or AGGREGATION_TREE_SCANLINES");
+          isIn(p.topAggregation, M::AGGREGATION_TREES, M::AGGREGATION_TREE_SCANLINES),
+          "AGGREGATION_TREES, AGGREGATION_SCANLINES or AGGREGATION_TREE_SCANLINES");
     visit("gamma", p.gamma, isNotNegative(p.gamma) && p.gamma > 0, "finite and > 0");
     visit("useMedianPrefilter", p.useMedianPrefilter);
     visit("disparityPrior", p.disparityPrior, isIn(p.disparityPrior, M::PRIOR_SUPPORT_POINTS, M::PRIOR_UPPER_LAYER),
@@ -163,7 +163,8 @@ HDPTreeMatcher::Params::Params(int preset)
 
     usePrediction = true;
     numLayers = isQuality || isTree ? 2 : 3; // PAPER: as in the authors' program; "L = 3" in the paper would be four
-    maxTopDisparities = isPaper ? 0 : isTree ? 64 : isQuality ? 48 : 32;
+    // Between the numbers that users choose, such as 96, 128 and 256: one disparity more has the same layers.
+    maxTopDisparities = isPaper ? 0 : isTree ? 90 : isQuality ? 55 : 45;
     finestLayer = preset == PRESET_ULTRAFAST ? 1 : 0;
 
     matchingCost = isPaper ? COST_COLOR_GRADIENT : COST_CENSUS;

@@ -146,7 +146,9 @@ LayerMethod methodOf(const MatcherParameters& p, bool isTop)
     if (below == M::AGGREGATION_SCANLINES && !isTop)
         return WINDOW_SCANLINES;
     const int aggregation = below == M::AGGREGATION_SCANLINES ? p.topAggregation : below;
-    return aggregation == M::AGGREGATION_TREE_SCANLINES ? TREE_SCANLINES : TREE_SUMS;
+    return aggregation == M::AGGREGATION_TREE_SCANLINES ? TREE_SCANLINES
+           : aggregation == M::AGGREGATION_SCANLINES    ? COST_SCANLINES
+                                                        : TREE_SUMS;
 }
 
 TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size)
@@ -170,7 +172,7 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
     return trees;
 }
 
-//! For means of trees, and for costs with what the last frame predicts, which are as smooth
+//! For means of trees, for costs with what the last frame predicts, which are as smooth, and for costs as they are
 VolumePenalties planVolume(const MatcherParameters& p)
 {
     const int scale = CostVolume::scale, large = cvRound(scale * meanP2 * p.P2);
@@ -204,11 +206,10 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     if (plan.method == WINDOW_SCANLINES)
         plan.passes = planPasses(p, plan);
     else
-    {
         plan.smoothsGuide = p.useMedianPrefilter;
+    if (plan.method == TREE_SUMS || plan.method == TREE_SCANLINES)
         plan.trees = planTrees(p, plan, size);
-    }
-    if (plan.method == TREE_SCANLINES)
+    if (plan.method == TREE_SCANLINES || plan.method == COST_SCANLINES)
         plan.volumePenalties = planVolume(p);
     plan.fillsOcclusions = p.fillOcclusions;
     // As in the authors' program; the paper says that nothing is refined.
@@ -231,8 +232,8 @@ int censusTolerance(int layer, const LayerNoise& noise, const VideoFindings& vid
 //! Surfaces that the last frame predicts need no trees, where scanlines below repair the rest.
 void predictTop(const LayerPlan& finest, LayerPlan& top)
 {
-    top.prefersLastFrame = top.method == TREE_SCANLINES;
-    if (!top.prefersLastFrame || finest.method != WINDOW_SCANLINES || top.layer - finest.layer < repairingLayers)
+    top.prefersLastFrame = top.method == TREE_SCANLINES || top.method == COST_SCANLINES;
+    if (top.method != TREE_SCANLINES || finest.method != WINDOW_SCANLINES || top.layer - finest.layer < repairingLayers)
         return;
     top.method = COST_SCANLINES;
     top.trees = TreePlan();

@@ -215,7 +215,7 @@ public:
 
         Layers are added until the top one has no more, but with intervals no more layers than predictionModel is for;
         beyond the second none that would leave it fewer than 16. >= 0; 0: there are numLayers layers. PAPER: 0, TREE:
-        64, QUALITY: 48, others: 32. */
+        90, QUALITY: 55, others: 45. */
         CV_PROP_RW int maxTopDisparities;
 
         /** @brief Layer at which matching ends; its map is enlarged to the size of the image.
@@ -270,10 +270,11 @@ public:
         AGGREGATION_TREE_SCANLINES, others: AGGREGATION_SCANLINES. */
         CV_PROP_RW int aggregation;
 
-        /** @brief Cost aggregation of the top layer, AGGREGATION_TREES or AGGREGATION_TREE_SCANLINES.
+        /** @brief Cost aggregation of the top layer, one of HDPTreeMatcher::Aggregation.
 
-        All disparities are candidates there. Without effect unless aggregation is AGGREGATION_SCANLINES. PAPER and
-        TREE: AGGREGATION_TREES, others: AGGREGATION_TREE_SCANLINES. */
+        All disparities are candidates there; with AGGREGATION_SCANLINES their costs are taken as they are, without
+        trees. Without effect unless aggregation is AGGREGATION_SCANLINES. PAPER and TREE: AGGREGATION_TREES, others:
+        AGGREGATION_TREE_SCANLINES. */
         CV_PROP_RW int topAggregation;
 
         /** @brief Rule 1 and Rule 2 of the spanning trees (section 3.2); not empty.
@@ -507,7 +508,7 @@ public:
 
     With scanlines this is the top layer, whose trees search the full range. Either may be cv::noArray().
     @param trees Receives the number of each pixel's tree, from 0: CV_32SC1 of the layer's size. Empty before the first
-    compute(), after one that threw an exception, and if temporal prediction took the place of trees.
+    compute(), after one that threw an exception, and without trees: Params::topAggregation, temporal prediction.
     @param intervals Receives the first and the last candidate of each pixel's tree, TreeIntv, counted from
     minDisparity: CV_16UC2 of the same size.
      */
