@@ -41,6 +41,7 @@ def main():
             cv2.imwrite(str(folder / 'lefts' / ('%02d.png' % i)), scene[:, :640])
             cv2.imwrite(str(folder / 'rights' / ('%02d.png' % i)), scene[:, i % 40:][:, :640])
         (folder / 'rights' / '07.png').write_text('no picture')
+        (folder / 'lefts' / 'readme.txt').write_text('left images')
 
         command = [sys.executable, str(SAMPLE), 'lefts', 'rights', 'out', '--num-disparities=64',
                    '--scheduler=' + cluster.scheduler_address]
@@ -67,6 +68,19 @@ def main():
         cv2.imwrite(str(folder / 'rights' / '07.png'), scene[:, 5:][:, :640])
         again = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True, check=True).stdout
         assert again.startswith('%d pairs, %d of them are there\n1/1 07.png\n' % (PAIRS, PAIRS - 1)), again
+        others = subprocess.run(command + ['--preset=quality'], cwd=folder, stderr=subprocess.PIPE, text=True,
+                                check=False)
+        assert others.returncode == 1 and 'made with other options' in others.stderr, others.stderr
+
+        # 16 bit, and disparities below 0
+        for side, columns in ('lefts', slice(0, 640)), ('rights', slice(20, 660)):
+            (folder / 'deep' / side).mkdir(parents=True)
+            grey = cv2.cvtColor(scene, cv2.COLOR_BGR2GRAY).astype(np.uint16) * 13
+            cv2.imwrite(str(folder / 'deep' / side / 'a.png'), np.roll(grey, 40, 1)[:, columns])
+        command[2:5] = ['deep/rights', 'deep/lefts', 'deep/out']
+        subprocess.run(command + ['--min-disparity=-40', '--format=tif'], cwd=folder, check=True)
+        disparity = cv2.imread(str(folder / 'deep' / 'out' / 'a.tif'), cv2.IMREAD_UNCHANGED)
+        assert disparity.dtype == np.float32 and abs(np.nanmedian(disparity) + 20) < 0.5, disparity
 
 
 if __name__ == '__main__':
