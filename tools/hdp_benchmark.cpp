@@ -28,6 +28,8 @@ static const String KEYS =
     "sgbm-hh4, ..., or groups: presets, systems, opencv, custom (tree with a custom strategy, in parallel and in "
     "order), separated by commas }"
     "{resize          |     | WIDTHxHEIGHT to resize the pair to; the truth's disparities scale with the width }"
+    "{sizes           |     | times at these sizes and as the pair is, a line for each: WIDTHxHEIGHT/DISPARITIES, "
+    "separated by commas; those of robots, 640x480/64,1280x720/128, if there is no value }"
     "{threads         |     | number of threads; all processors if not given }"
     "{runs            | 7   | timed runs of each method, after one that is not timed }"
     "{one-at-a-time   |     | keep the buffers of one method only, for pairs so large that all do not fit into memory; "
@@ -168,6 +170,50 @@ static Table resultTable(const std::vector<Measurement>& results, bool withError
     return table;
 }
 
+//! --sizes: median times and how many times faster than the reference, a line for each size
+static Table sizeTable(const String& sizes, const std::vector<Method>& methods, const Pair& pair, int runs,
+                       bool oneAtATime)
+{
+    std::vector<Pair> pairs(1, pair);
+    for (const String& size : splitList(sizes == "true" ? "640x480/64,1280x720/128" : sizes))
+    {
+        const size_t slash = std::min(size.find('/'), size.size());
+        int disparities;
+        char rest;
+        if (std::sscanf(size.c_str() + slash, "/%d%c", &disparities, &rest) != 1 || disparities < 1 ||
+            disparities > SHRT_MAX / 16 || disparities % 16 != 0)
+            fail("--sizes=" + size + ": not WIDTHxHEIGHT/DISPARITIES, the last a multiple of 16");
+        pairs.push_back(pair);
+        resizePair(size.substr(0, slash), pairs.back());
+        pairs.back().disparities = Range(0, disparities);
+        pairs.back().protocol = Pair::NO_TRUTH;
+    }
+    Table table;
+    table.title = "Median ms, times faster than " + String(REFERENCE_METHOD);
+    table.header = { "size, disparities" };
+    for (const Method& method : methods)
+        table.header.push_back(method.name);
+    for (const Pair& each : pairs)
+    {
+        std::vector<Measurement> results;
+        for (const Method& method : methods)
+            results.push_back({ method, String(), -1, {}, Score(), {}, {} });
+        measureTimes(results, each, runs, oneAtATime);
+        double reference = NO_SCORE;
+        for (const Measurement& result : results)
+            if (result.method.name == REFERENCE_METHOD && result.failure.empty())
+                reference = median(result.milliseconds);
+        table.addRow(format("%d x %d, %d", each.left.cols, each.left.rows, each.disparities.size()));
+        for (const Measurement& result : results)
+            if (!result.failure.empty())
+                table.addText(result.failure);
+            else
+                table.addText(format("%.1f, ", median(result.milliseconds)) +
+                              (reference > 0 ? format("%.2f x", reference / median(result.milliseconds)) : "-"));
+    }
+    return table;
+}
+
 static Table stageTable(const std::vector<Measurement>& results)
 {
     Table table;
@@ -220,6 +266,12 @@ static int run(const CommandLineParser& parser, const char* const argv[])
                         getVersionString().c_str())
               << "processor features: " << getCPUFeaturesLine() << "\n"
               << std::endl;
+    if (parser.has("sizes"))
+    {
+        std::cout << toMarkdown(
+            sizeTable(parser.get<String>("sizes"), methods, pair, runs, parser.has("one-at-a-time")));
+        return 0;
+    }
     std::vector<Measurement> results;
     for (const Method& method : methods)
     {
@@ -241,6 +293,6 @@ static int run(const CommandLineParser& parser, const char* const argv[])
 int main(int argc, char** argv)
 {
     return runProgram(argc, argv, KEYS, "Times, memory and errors of stereo matchers side by side.\n",
-                      { "one-at-a-time", "stages" }, 2,
+                      { "one-at-a-time", "stages", "sizes=" }, 2,
                       [&](const CommandLineParser& parser) { return run(parser, argv); });
 }

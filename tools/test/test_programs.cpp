@@ -246,6 +246,15 @@ TEST(HDPStereo_Programs, benchmark)
     for (const char* row : { "\n| fast | ", "\n| sgbm-3way | ", "\n| fast | image pyramid | " })
         EXPECT_NE(String::npos, result.output.find(row)) << result.output;
     EXPECT_EQ(1, run(folder, "hdp_benchmark --methods=none" + pairOf(folder)).status);
+
+    const String sizes = "hdp_benchmark --methods=fast,sgbm-3way --runs=1" + pairOf(folder) + " --sizes";
+    const Execution listed = run(folder, sizes + "=120x90/16,80x60/32");
+    EXPECT_EQ(0, listed.status) << listed.errors;
+    for (const char* row :
+         { "| fast | sgbm-3way |", "\n| 160 x 120, 32 | ", "\n| 120 x 90, 16 | ", "\n| 80 x 60, 32 | ", ", 1.00 x |" })
+        EXPECT_NE(String::npos, listed.output.find(row)) << listed.output;
+    for (const char* wrong : { "=120x90", "=120x90/", "=120x90/17", "=120/16", "=x/16", "=120x90/16x" })
+        EXPECT_EQ(1, run(folder, sizes + wrong).status) << wrong;
 }
 
 TEST(HDPStereo_Programs, train_then_evaluate)
