@@ -14,7 +14,8 @@
 #     arm64, i386, riscv64, s390x   scripts/check_machine.sh: the same maps there, and unit tests
 #     clang      unit tests of a build by Clang
 #     mingw      nothing in the library keeps it from Windows: MinGW-w64 compiles it, against the headers of OpenCV
-#     bookworm, trixie   scripts/test.sh in a fresh Debian 12 or 13 (as root; mmdebstrap makes it)
+#     bullseye, bookworm, trixie   scripts/test.sh in a fresh Debian 11 (OpenCV 4.5.1, GCC 10, CMake 3.18, Python 3.9), 12
+#                        or 13 (as root; mmdebstrap makes it)
 #     packages-bookworm, packages-trixie   scripts/check_wheel.sh and build_deb.sh in the same way, and check_deb.sh in
 #                        another fresh one
 # Each step's messages are in build/check_all/STEP.log; a summary comes last, and the status is that of the worst step.
@@ -23,8 +24,8 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 fuzz_seconds=1800
-all_steps=(warnings widths threads memory fuzz in-tree projects dask web ros arm64 i386 riscv64 s390x clang mingw bookworm
-    trixie packages-bookworm packages-trixie)
+all_steps=(warnings widths threads memory fuzz in-tree projects dask web ros arm64 i386 riscv64 s390x clang mingw bullseye
+    bookworm trixie packages-bookworm packages-trixie)
 steps=()
 for argument in "$@"; do
     case $argument in
@@ -76,7 +77,7 @@ check_threads()
     install_packages build-essential cmake libopencv-dev
     find_opencv_source
     cd "$checkout"
-    cmake --preset tsan -B "$build/tsan" -DOPENCV_SOURCE_DIR="$OPENCV_SOURCE_DIR"
+    configure tsan -DOPENCV_SOURCE_DIR="$OPENCV_SOURCE_DIR"
     cmake --build "$build/tsan" --parallel "$jobs" --target opencv_test_hdpstereo
     run_ctest tsan
 }
@@ -175,8 +176,10 @@ make_root()
     install_packages git mmdebstrap
     rm -rf --one-file-system "$root"
     say "Making a fresh $1 in $root"
+    local archive=() # Debian's own choice: updates of security, too
+    [ "$1" != bullseye ] || archive=(http://deb.debian.org/debian) # has lost some of its updates of security
     # shellcheck disable=SC2086  # options
-    mmdebstrap --variant=minbase ${HDPSTEREO_MMDEBSTRAP:-} "$1" "$root"
+    mmdebstrap --variant=minbase ${HDPSTEREO_MMDEBSTRAP:-} "$1" "$root" "${archive[@]}"
     mkdir "$root/root/hdpstereo"
     git -c safe.directory="$checkout" -C "$checkout" archive HEAD | tar -C "$root/root/hdpstereo" -x
 }
@@ -213,6 +216,11 @@ check_packages()
     mv "$debs" "$root/root/hdpstereo/build/deb"
     in_root "exec scripts/check_deb.sh"
     rm -rf --one-file-system "$root"
+}
+
+check_bullseye()
+{
+    check_debian bullseye
 }
 
 check_bookworm()

@@ -32,7 +32,7 @@ fi
 
 say "Building in $build/$preset"
 time {
-    cmake --preset "$preset" -B "$build/$preset" "${options[@]}"
+    configure "$preset" "${options[@]}"
     cmake --build "$build/$preset" --parallel "$jobs"
 }
 [ -n "${OPENCV_SOURCE_DIR:-}" ] || fail "built, but NOT tested: the test framework is in OpenCV's source"
