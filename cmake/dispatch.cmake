@@ -9,8 +9,10 @@
 # - src/NAME.cpp: includes NAME.simd.hpp (that is the baseline) and NAME.simd_declarations.hpp (generated, the others),
 #   and calls a function by CV_CPU_DISPATCH(function, (arguments), CV_CPU_DISPATCH_MODES_ALL), which returns its result.
 
+set(SSE4_2_flags -msse4.2 -mpopcnt)
+set(SSE4_2_features SSE3 SSSE3 SSE4_1 POPCNT SSE4_2)
 set(AVX2_flags -mavx2 -mfma -mf16c -mpopcnt)
-set(AVX2_features SSE3 SSSE3 SSE4_1 POPCNT SSE4_2 AVX FP16 FMA3 AVX2)
+set(AVX2_features ${SSE4_2_features} AVX FP16 FMA3 AVX2)
 set(AVX512_SKX_flags ${AVX2_flags} -mavx512f -mavx512cd -mavx512bw -mavx512dq -mavx512vl)
 set(AVX512_SKX_features ${AVX2_features} AVX_512F AVX512_COMMON AVX512_SKX)
 set(AVX512_ICL_flags ${AVX512_SKX_flags} -mavx512ifma -mavx512vbmi -mavx512vbmi2 -mavx512bitalg -mavx512vnni

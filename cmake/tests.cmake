@@ -125,7 +125,7 @@ endif()
 add_check(includes unit "${PROJECT_SOURCE_DIR}/scripts/check_includes.sh")
 
 # Once more with the slower instruction sets: all that has an oracle, and the reference outputs
-foreach(without AVX512-ICL "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2")
+foreach(without AVX512-ICL "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2" "AVX512-ICL,AVX512-SKX,AVX2,SSE4.2")
   add_unit_tests(unit_without_${without} instruction-sets opencv_test_hdpstereo
     "HDPStereo_*Cost*:HDPStereo_*Aggregation*:HDPStereo_*Refinement*:*_DisparityConfidence*:*HDPStereo_ReferenceOutput*")
   set_property(TEST unit_without_${without} APPEND PROPERTY ENVIRONMENT "OPENCV_CPU_DISABLE=${without}")

@@ -9,7 +9,7 @@ build=${HDPSTEREO_BUILD:-$checkout/build} # everything the scripts make is in he
 jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 # OPENCV_CPU_DISABLE of all instruction sets that the library is built for, and of fewer and fewer of them
 # shellcheck disable=SC2034
-disabled_sets=("" "AVX512-ICL" "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2")
+disabled_sets=("" "AVX512-ICL" "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2" "AVX512-ICL,AVX512-SKX,AVX2,SSE4.2")
 TIMEFORMAT='   (%1R s; %1U s + %1S s of processor time)'
 
 say()

@@ -12,6 +12,7 @@
 // Which instructions may stand beside the universal intrinsics: none if these are OpenCV's emulation.
 #define HDP_LANES_AVX2 (CV_AVX2 && !CV_SIMD128_CPP)
 #define HDP_LANES_SSE2 (CV_SSE2 && !CV_AVX2 && !CV_SIMD128_CPP)
+#define HDP_LANES_SSE4 (HDP_LANES_SSE2 && CV_SSE4_2)
 #define HDP_LANES_WASM (CV_WASM_SIMD && !CV_SIMD128_CPP)
 #if CV_NEON && !CV_SIMD128_CPP && (defined(__aarch64__) || defined(_M_ARM64))
 #define HDP_LANES_NEON 1
@@ -26,8 +27,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 the result for a pixel does not depend on the number of groups.
 
 It is OpenCV's universal intrinsics, under operators that all versions of OpenCV have in common, and what they lack:
-shuffles inside a group, and the minimum of each group. These are written for AVX2, SSE2, 64-bit NEON and WebAssembly;
-the last branch of each is for all others, OpenCV's emulation without vectors among them. */
+shuffles inside a group, and the minimum of each group. These are written for AVX2, SSE4.2, SSE2, 64-bit NEON and
+WebAssembly; the last branch of each is for all others, OpenCV's emulation without vectors among them. */
 struct ByteLanes
 {
 #if HDP_LANES_AVX2
@@ -121,6 +122,10 @@ struct ByteLanes
     {
 #if HDP_LANES_AVX2 && CV_AVX512_ICL
         return _mm256_popcnt_epi8(v.val);
+#elif HDP_LANES_SSE4
+        const __m128i counts = _mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4), low = _mm_set1_epi8(15);
+        return Vector(_mm_add_epi8(_mm_shuffle_epi8(counts, _mm_and_si128(v.val, low)),
+                                   _mm_shuffle_epi8(counts, _mm_and_si128(_mm_srli_epi16(v.val, 4), low))));
 #elif HDP_LANES_WASM
         return Vector(wasm_i8x16_popcnt(v.val));
 #else
@@ -133,6 +138,8 @@ struct ByteLanes
     {
 #if HDP_LANES_AVX2
         return _mm256_shuffle_epi8(load(bytes, 0).v.val, _mm256_set1_epi8(at));
+#elif HDP_LANES_SSE4
+        return Vector(_mm_shuffle_epi8(v_load(bytes[0]).val, _mm_set1_epi8(at)));
 #elif HDP_LANES_SSE2
         const __m128i all = v_load(bytes[0]).val;
         const __m128i twice = at < 8 ? _mm_unpacklo_epi8(all, all) : _mm_unpackhi_epi8(all, all);
@@ -170,7 +177,7 @@ struct ByteLanes
     {
 #if HDP_LANES_AVX2
         return _mm256_shuffle_epi8(v.val, order.v.val);
-#elif HDP_LANES_SSE2 && CV_SSSE3
+#elif HDP_LANES_SSE4
         return Vector(_mm_shuffle_epi8(v.val, order.v.val));
 #elif HDP_LANES_NEON
         return Vector(vqtbl1q_u8(v.val, order.v.val));
@@ -201,6 +208,9 @@ struct ByteLanes
         const __m256i bytes = _mm256_setr_epi8(1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14, 1, 0, 3, 2, 5, 4,
                                                7, 6, 9, 8, 11, 10, 13, 12, 15, 14);
         return _mm256_min_epu8(m, _mm256_shuffle_epi8(m, bytes));
+#elif HDP_LANES_SSE4
+        const __m128i words = _mm_min_epu8(v.val, _mm_srli_epi16(v.val, 8)); // of pairs
+        return Vector(_mm_shuffle_epi8(_mm_minpos_epu16(words), _mm_setzero_si128()));
 #elif HDP_LANES_SSE2
         __m128i m = _mm_min_epu8(v.val, _mm_shuffle_epi32(v.val, 0x4e));
         m = _mm_min_epu8(m, _mm_shuffle_epi32(m, 0xb1));
@@ -229,6 +239,10 @@ struct ByteLanes
             _mm256_min_epu16(_mm256_unpacklo_epi8(numbers, v.val), _mm256_unpackhi_epi8(numbers, v.val));
         lanes[0] = _mm_extract_epi8(_mm_minpos_epu16(_mm256_castsi256_si128(words)), 0);
         lanes[1] = _mm_extract_epi8(_mm_minpos_epu16(_mm256_extracti128_si256(words, 1)), 0);
+#elif HDP_LANES_SSE4
+        const __m128i numbers = laneNumbers().val;
+        const __m128i words = _mm_min_epu16(_mm_unpacklo_epi8(numbers, v.val), _mm_unpackhi_epi8(numbers, v.val));
+        lanes[0] = _mm_extract_epi8(_mm_minpos_epu16(words), 0);
 #elif HDP_LANES_NEON
         lanes[0] = vminvq_u8(vornq_u8(laneNumbers().val, equals(minimum()).val));
 #elif HDP_LANES_WASM

@@ -62,6 +62,8 @@ struct WordLanes
 #if HDP_LANES_AVX2
         const __m128i half = _mm_min_epi16(_mm256_castsi256_si128(v.val), _mm256_extracti128_si256(v.val, 1));
         return _mm_cvtsi128_si32(_mm_minpos_epu16(half)) & 0xffff;
+#elif HDP_LANES_SSE4
+        return _mm_cvtsi128_si32(_mm_minpos_epu16(v.val)) & 0xffff;
 #else
         return v_reduce_min(v);
 #endif
