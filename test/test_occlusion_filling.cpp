@@ -100,6 +100,39 @@ TEST(HDPStereo_OcclusionFilling, slanted_surface_at_the_border)
     }
 }
 
+//! The truth of layers of fronto-parallel boxes: what a z-buffer of the right image says is occluded gets the farther one
+//! of the disparities beside it, whatever was matched there, and nothing else changes.
+TEST(HDPStereo_OcclusionFilling, boxes_as_a_z_buffer_of_the_right_image_says)
+{
+    const int width = 160, background = 2;
+    RNG rng(81);
+    for (int run = 0; run < 200; ++run)
+    {
+        std::vector<int> truth(width, background);
+        for (int begin = 40 + rng.uniform(0, 12); begin < width - 30; begin += rng.uniform(34, 50))
+            std::fill_n(truth.begin() + begin, rng.uniform(12, 20), rng.uniform(4, 16));
+
+        std::vector<int> nearest(width, -1); // by column of the right image
+        for (int x = 0; x < width; ++x)
+            if (x >= truth[x])
+                nearest[x - truth[x]] = std::max(nearest[x - truth[x]], truth[x]);
+        std::vector<int> matched = truth, expected = truth, residuals(width, 1);
+        for (int x = background; x < width; ++x)
+        {
+            if (nearest[x - truth[x]] == truth[x])
+                continue;
+            expected[x] = background;
+            residuals[x] = 20;
+            // By chance, but not within a pixel of what is there, or where nothing else is: none could tell that.
+            const int chance = rng.uniform(0, 16), shown = x >= chance ? nearest[x - chance] : -1;
+            if (shown >= 0 && std::abs(shown - chance) > 1)
+                matched[x] = chance;
+        }
+        SCOPED_TRACE(run);
+        expectIdentical(Mat_<ushort>(Mat(expected).reshape(1, 1)), filled(matched, residuals));
+    }
+}
+
 TEST(HDPStereo_OcclusionFilling, visible_pixels_are_not_filled)
 {
     RNG rng(47);
