@@ -19,6 +19,7 @@ namespace py = pybind11;
 // Each adds its classes and functions to the module.
 void addTreeStrategies(py::module_& module);
 void addPredictionModel(py::module_& module);
+void addPairModel(py::module_& module);
 void addMatcher(py::module_& module);
 
 //! The class is known as one of the package, not of the module in it.
@@ -62,6 +63,10 @@ std::string toText(const cv::Algorithm& algorithm, const std::string& filename);
 //! Calls read() for what toText() has made; throws cv::Exception.
 void fromText(cv::Algorithm& algorithm, const std::string& text);
 
+//! The name of a file, which may be a path object
+std::string nameOf(const py::object& filename);
+
+void writeText(const py::object& filename, const std::string& text);
 void writeFile(const py::object& filename, const cv::Algorithm& algorithm);
 std::string readFile(const py::object& filename);
 

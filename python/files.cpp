@@ -20,12 +20,21 @@ void fromText(cv::Algorithm& algorithm, const std::string& text)
     algorithm.read(storage.getFirstTopLevelNode());
 }
 
+std::string nameOf(const py::object& filename)
+{
+    return py::module_::import("os").attr("fspath")(filename).cast<std::string>();
+}
+
+void writeText(const py::object& filename, const std::string& text)
+{
+    const py::object file = py::module_::import("io").attr("open")(filename, "w", py::arg("encoding") = "utf-8");
+    file.attr("write")(text);
+    file.attr("close")();
+}
+
 void writeFile(const py::object& filename, const cv::Algorithm& algorithm)
 {
-    const std::string name = py::module_::import("os").attr("fspath")(filename).cast<std::string>();
-    const py::object file = py::module_::import("io").attr("open")(filename, "w", py::arg("encoding") = "utf-8");
-    file.attr("write")(toText(algorithm, name));
-    file.attr("close")();
+    writeText(filename, toText(algorithm, nameOf(filename)));
 }
 
 std::string readFile(const py::object& filename)

@@ -7,6 +7,7 @@
 
 using cv::stereo::DisparityPredictionModel;
 using cv::stereo::HDPTreeMatcher;
+using cv::stereo::PairModel;
 
 namespace {
 
@@ -273,6 +274,29 @@ Raises ValueError if a value is out of range; the matcher is unchanged then.)doc
         return findings;
         },
         "Returns what the last compute() found out about the pair, see Findings.");
+
+    matcher.def(
+        "setPairModel",
+        [](Matcher& self, const PairModel& model) {
+        const PairModel copy = model; // another thread may change it
+        self.run([&](HDPTreeMatcher& m) { m.setPairModel(copy); });
+        },
+        py::arg("model"), R"doc(
+Sets what is known of the next pairs: nothing is estimated from them then, see PairModel.
+
+What the model says is done, whatever maxRowOffset and useLightAlignment are; noiseThreshold is compared with its noise.
+The disparity range is not taken from it. save() does not store it, and clear() does not forget it.
+model: that of an earlier pair, or of a tile of it. An empty one, PairModel(): pairs are estimated again.
+
+Raises ValueError if a value is not valid; the matcher is unchanged then.)doc");
+    matcher.def(
+        "getPairModel",
+        [](Matcher& self) {
+        PairModel model;
+        self.run([&](HDPTreeMatcher& m) { model = m.getPairModel(); });
+        return model;
+        },
+        "Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute().");
 
     matcher.attr("AUTO") = (int)HDPTreeMatcher::AUTO;
     using cv::String;

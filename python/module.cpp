@@ -40,5 +40,6 @@ numThreads: 1 for none but the caller's; a negative number for as many as there 
 same library of OpenCV, it is that of cv2, too.)doc");
     addTreeStrategies(module);
     addPredictionModel(module);
+    addPairModel(module);
     addMatcher(module);
 }

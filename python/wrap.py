@@ -13,7 +13,8 @@ declaration that this program does not know how to wrap is an error.
 import re
 import sys
 
-BY_HAND = {'create', 'createLike', 'setTreeStrategy', 'getTreeStrategy', 'setParams', 'getParams', 'getFindings'}
+BY_HAND = {'create', 'createLike', 'setTreeStrategy', 'getTreeStrategy', 'setParams', 'getParams', 'getFindings',
+           'setPairModel', 'getPairModel'}
 FIELDS_BY_HAND = {'treeStrategy': 'TreeStrategy', 'predictionModel': 'Optional[DisparityPredictionModel]'}
 # cv::StereoMatcher's, which that header documents, but does not declare
 INHERITED = ('minDisparity', 'numDisparities', 'blockSize', 'speckleWindowSize', 'speckleRange', 'disp12MaxDiff')

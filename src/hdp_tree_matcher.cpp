@@ -37,7 +37,7 @@ public:
         const Mat left = leftArray.getMat(), right = rightArray.getMat();
         checkPair(left, right);
         const int depth = outputDepth(disparityArray);
-        const PairPlan pairPlan = plan(p_, left.size(), left.type());
+        const PairPlan pairPlan = plan(p_, left.size(), left.type(), pairModel_);
         clock_.restart();
 
         if (matchPair(left, right, pairPlan) == CONTRADICTED)
@@ -51,6 +51,10 @@ public:
         const Mat& finest = layers_[pairPlan.finest().layer].disparity;
         clock_.run("output", [&] { outputDisparity(finest, pairPlan.output, output_, disparity); });
         result_.isMatched = true;
+        result_.model = pairPlan.given.isGiven
+                            ? pairModel_
+                            : toPairModel(pairPlan.pyramids, left.size(), left.depth(),
+                                          pairPlan.alignment.numDisparities, pyramids_.levels, result_.findings);
     }
 
     // cv::StereoMatcher
@@ -82,10 +86,17 @@ public:
         change(changed);
     }
 
+    void setPairModel(const PairModel& model) CV_OVERRIDE
+    {
+        checkPairModel(model);
+        pairModel_ = model;
+    }
+    PairModel getPairModel() const CV_OVERRIDE { return result_.isMatched ? result_.model : PairModel(); }
+
     Findings getFindings() const CV_OVERRIDE
     {
         const Result r = result_.isMatched ? result_ : Result();
-        const RowModel rows = r.findings.rows.about(r.plan.shift());
+        const RowModel rows = r.findings.rows.about(0.5 * r.model.addedColumns + r.model.minDisparity);
         const LightModel light = r.findings.light.scaled(1 / r.brightness);
         Findings findings;
         findings.rows.assign(rows.coefficients.val, rows.coefficients.val + RowModel::terms);
@@ -191,6 +202,7 @@ private:
         bool isMatched = false;
         PairPlan plan;
         PairFindings findings;
+        PairModel model;
         double brightness = 1; // of the levels that were matched, relative to those of the images
     };
 
@@ -214,17 +226,21 @@ private:
     Verdict matchPair(const Mat& left, const Mat& right, const PairPlan& pairPlan)
     {
         const int finest = pairPlan.finest().layer;
+        const GivenPair& given = pairPlan.given;
         if (!pairPlan.followsVideo)
             lastFrame_ = FrameMemory();
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
             const int* const lastBrightening = lastFrame_.isEmpty() ? nullptr : &lastFrame_.key.brightening;
-            buildPairPyramids(left, right, pairPlan.pyramids, lastBrightening, pyramids_, images);
+            buildPairPyramids(left, right, pairPlan.pyramids, lastBrightening, pyramids_, images,
+                              given.isGiven ? &given.levels : nullptr);
         });
-        result_.brightness = 1 << pyramids_.brightening;
-        if (pairPlan.alignment.looksForAnything())
-            clock_.run("alignment",
-                       [&] { alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings); });
+        result_.brightness = 1 << pyramids_.levels.brightening;
+        if (given.isGiven || pairPlan.alignment.looksForAnything())
+            clock_.run("alignment", [&] {
+                alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings,
+                          given.isGiven ? &given.alignment : nullptr);
+            });
         VideoFindings video = { FIRST, true, false };
         if (pairPlan.followsVideo)
             clock_.run("temporal prediction", [&] { video = predict(images[finest].left, finest); });
@@ -255,7 +271,7 @@ private:
     {
         const int scale = 1 << finestLayer;
         const FrameKey key = { scale, p_.minDisparity / (double)scale, largestDisparity(p_.numDisparities, finestLayer),
-                               pyramids_.brightening };
+                               pyramids_.levels.brightening };
         predictFrame(left, key, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, prediction_.motion.isStill, hasPrior(lastFrame_, prediction_) };
     }
@@ -280,6 +296,7 @@ private:
     }
 
     MatcherParameters p_;
+    PairModel pairModel_; // of the next pairs, if it is known
     Result result_;
     StageClock clock_;
 

@@ -206,8 +206,8 @@ private:
         {
             predictPass(&pass == &plan_.passes.front());
             clock_.run("cost aggregation", [&] {
-                aggregateScanlines(own_.census, in_.images.left, plan_.numDisparities, plan_.maxDisparity, own_.windows,
-                                   pass.penalties, pass.hasFromBelow, shared_.scanlines, result_.winners,
+                aggregateScanlines(own_.census, in_.images.left, plan_.frame, plan_.numDisparities, plan_.maxDisparity,
+                                   own_.windows, pass.penalties, pass.hasFromBelow, shared_.scanlines, result_.winners,
                                    own_.residual);
             });
             if (plan_.fillsOcclusions)

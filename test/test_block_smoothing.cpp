@@ -8,8 +8,7 @@
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using hdp::BlockGrid;
 
@@ -111,7 +110,7 @@ TEST(HDPStereo_BlockSmoothing, steps_become_ramps)
         Mat expectedLeft = left.clone(), expectedRight = right.clone();
         makeRamps(expectedLeft, begin, hdp::findBlocks(left).step);
         makeRamps(expectedRight, (begin + 3) % BlockGrid::side, hdp::findBlocks(right).step);
-        EXPECT_TRUE(hdp::smoothBlocks(left, right));
+        hdp::smoothBlocks(left, right, hdp::findBlocks(left), hdp::findBlocks(right));
         expectIdentical(expectedLeft, left);
         expectIdentical(expectedRight, right);
     }
@@ -122,8 +121,8 @@ TEST(HDPStereo_BlockSmoothing, needs_blocks_in_both_images)
     RNG rng(4);
     const Mat some = blocks(Size(200, 100), 0, rng), none = randomImage(rng, some.size(), CV_16UC1, 1000);
     Mat left = some.clone(), right = none.clone();
-    EXPECT_FALSE(hdp::smoothBlocks(left, right));
-    EXPECT_FALSE(hdp::smoothBlocks(right, left));
+    hdp::smoothBlocks(left, right, hdp::findBlocks(left), hdp::findBlocks(right));
+    hdp::smoothBlocks(right, left, hdp::findBlocks(right), hdp::findBlocks(left));
     expectIdentical(some, left);
     expectIdentical(none, right);
 }
@@ -145,5 +144,4 @@ TEST(HDPStereo_BlockSmoothing, compressed_pairs_match_better)
     EXPECT_LE(with, 0.85 * without);
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -61,7 +61,7 @@ TEST(HDPStereo_LightAlignment, levels_follow_the_model)
     {
         const Mat levels = randomImage(rng, size, CV_16UC1, 1021);
         Mat aligned = levels.clone();
-        hdp::alignLight(aligned, model);
+        hdp::alignLight(aligned, model, hdp::ImageFrame(aligned.size()));
         for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x)
             {

@@ -123,7 +123,7 @@ TEST(HDPStereo_PairAlignment, light_of_exact_matches)
         LightModel found;
         ASSERT_TRUE(hdp::estimateLight(coarse, found));
         Mat aligned = right.clone();
-        hdp::alignLight(aligned, found);
+        hdp::alignLight(aligned, found, hdp::ImageFrame(aligned.size()));
         EXPECT_LE(cvtest::norm(aligned, left, NORM_L1) / left.total(), 0.5 * hdp::greyScale);
         coarse.left[0] = right;
         EXPECT_FALSE(hdp::estimateLight(coarse, found)) << "the same light";

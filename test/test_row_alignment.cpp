@@ -106,7 +106,7 @@ TEST(HDPStereo_RowAlignment, rows_are_interpolated)
             SCOPED_TRACE(format("%d, %f", type, model.coefficients[0]));
             const Mat image = randomImage(rng, Size(171, 53), type, type == CV_16UC1 ? 1024 : 256);
             Mat aligned;
-            hdp::alignRows(image, model, aligned);
+            hdp::alignRows(image, model, hdp::ImageFrame(image.size()), aligned);
             ASSERT_EQ(image.size(), aligned.size());
             ASSERT_EQ(image.type(), aligned.type());
             const double tolerance = type == CV_16UC1 ? 20 : 6; // a row's place is one of 64
@@ -127,13 +127,13 @@ TEST(HDPStereo_RowAlignment, whole_rows_are_copied)
     RNG rng(2);
     const Mat image = randomImage(rng, Size(64, 40), CV_8UC3);
     Mat aligned;
-    hdp::alignRows(image, makeModel(0), aligned);
+    hdp::alignRows(image, makeModel(0), hdp::ImageFrame(image.size()), aligned);
     expectIdentical(image, aligned);
-    hdp::alignRows(image, makeModel(-3), aligned);
+    hdp::alignRows(image, makeModel(-3), hdp::ImageFrame(image.size()), aligned);
     expectIdentical(image.rowRange(0, 37), aligned.rowRange(3, 40));
     for (int y = 0; y < 3; ++y)
         expectIdentical(image.row(0), aligned.row(y));
-    hdp::alignRows(image, makeModel(1000), aligned);
+    hdp::alignRows(image, makeModel(1000), hdp::ImageFrame(image.size()), aligned);
     for (int y = 0; y < image.rows; ++y)
         expectIdentical(image.row(39), aligned.row(y));
 }

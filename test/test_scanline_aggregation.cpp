@@ -17,8 +17,7 @@
 #define CV_CPU_OPTIMIZATION_NAMESPACE_END }
 #include "../src/scanlines/scanline_aggregation.simd.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int scale = 16;
 
@@ -91,8 +90,8 @@ Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, bool 
               hdp::ScanlineBuffers& buffers)
 {
     Mat disparity, residual;
-    hdp::aggregateScanlines(layer.cost(), layer.left, layer.numDisparities, layer.largest(), layer.windows, penalties,
-                            hasFromBelow, buffers, disparity, residual);
+    hdp::aggregateScanlines(layer.cost(), layer.left, hdp::ImageFrame(layer.left.size()), layer.numDisparities,
+                            layer.largest(), layer.windows, penalties, hasFromBelow, buffers, disparity, residual);
     return Layer::beside(disparity, residual);
 }
 
@@ -187,5 +186,4 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
 
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_ScanlineAggregation, testing::Values(3, 5, 7));
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

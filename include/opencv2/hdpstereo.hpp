@@ -7,6 +7,7 @@
 #include "opencv2/hdpstereo/tree_strategy.hpp"
 #include "opencv2/hdpstereo/disparity_prediction.hpp"
 #include "opencv2/hdpstereo/hdp_tree_matcher.hpp"
+#include "opencv2/hdpstereo/pair_model.hpp"
 
 /** @defgroup hdpstereo Non-local stereo matching with hierarchical disparity prediction
 

@@ -11,10 +11,11 @@ Fast non-local stereo matching: disparities of a rectified pair, for numpy array
     confidence = matcher.getConfidence()  # 0 .. 255
 '''
 
-from ._hdpstereo import (CV_16S, CV_32F, DisparityPredictionModel, HDPTreeMatcher, TreeState, TreeStrategy, __version__,
-                         createMinimumSpanningTree, createRandomTree, createSegmentTree, getNumThreads, setNumThreads)
+from ._hdpstereo import (CV_16S, CV_32F, DisparityPredictionModel, HDPTreeMatcher, PairModel, TreeState, TreeStrategy,
+                         __version__, createMinimumSpanningTree, createRandomTree, createSegmentTree, getNumThreads,
+                         setNumThreads)
 
-__all__ = ['CV_16S', 'CV_32F', 'DisparityPredictionModel', 'HDPTreeMatcher', 'TreeState', 'TreeStrategy',
+__all__ = ['CV_16S', 'CV_32F', 'DisparityPredictionModel', 'HDPTreeMatcher', 'PairModel', 'TreeState', 'TreeStrategy',
            'createMinimumSpanningTree', 'createRandomTree', 'createSegmentTree', 'getNumThreads', 'setNumThreads']
 
 # Parameters by name, and repr(), which has the form of the call that creates the matcher

@@ -31,7 +31,7 @@ HEADERS = pathlib.Path(__file__).resolve().parents[2] / 'include' / 'opencv2' / 
 OTHERS = {'minDisparity': 3, 'numDisparities': 17, 'blockSize': 5, 'speckleWindowSize': 100, 'speckleRange': 2,
           'disp12MaxDiff': 1, 'disparityDepth': hdpstereo.CV_32F, 'delta0': 0.125, 'beta': 0.5}
 CLASSES = (hdpstereo.TreeState, TreeStrategy, DisparityPredictionModel, HDPTreeMatcher, HDPTreeMatcher.Params,
-           HDPTreeMatcher.Findings)
+           HDPTreeMatcher.Findings, hdpstereo.PairModel)
 
 
 def create_pair(shape=(120, 160), background=4, foreground=11):
@@ -65,7 +65,7 @@ def parameters(matcher):
     params = matcher.getParams()
     values.update((name, getattr(params, name)) for name in dir(params) if not name.startswith('_'))
     return {name: value for name, value in values.items()
-            if name not in ('params', 'treeStrategy', 'predictionModel')}
+            if name not in ('params', 'pairModel', 'treeStrategy', 'predictionModel')}
 
 
 def change(matcher, **fields):
@@ -117,6 +117,11 @@ class Interface(Test):
             self.assertTrue(callable(getattr(HDPTreeMatcher, name, None)), name)
         for name in self.declared('disparity_prediction.hpp', method):
             self.assertTrue(callable(getattr(DisparityPredictionModel, name, None)), name)
+        for name in self.declared('pair_model.hpp', method):
+            self.assertTrue(callable(getattr(hdpstereo.PairModel, name, None)), name)
+        methods = {'empty', 'tile', 'save', 'load'}
+        self.assertEqual(self.declared('pair_model.hpp', r'CV_PROP_RW [^;]* (\w+);'),
+                         set(name for name in dir(hdpstereo.PairModel) if not name.startswith('_')) - methods)
         for name in self.declared('tree_strategy.hpp', r'CV_EXPORTS_W \S+ (\w+)\('):
             self.assertTrue(callable(getattr(hdpstereo, name, None)), name)
         for name in self.declared('tree_strategy.hpp', r'    virtual [\w:<>]+ (\w+)\('):
@@ -375,6 +380,29 @@ class Matching(Test):
             video.compute(LEFT, LEFT[1:])
         video.setUseTemporalPrediction(False)
         self.assertSame(single[2], video.compute(*frames[2]))
+
+    def test_pair_model(self):
+        matcher = HDPTreeMatcher(0, 32)
+        self.assertTrue(matcher.getPairModel().empty())
+        expected = matcher.compute(LEFT, RIGHT)
+        model = matcher.getPairModel()
+        self.assertEqual(LEFT.shape[:2], (model.height, model.width))
+        with tempfile.TemporaryDirectory() as folder:
+            model.save(pathlib.Path(folder) / 'model.json')
+            loaded = hdpstereo.PairModel.load(pathlib.Path(folder) / 'model.json')
+        for other in loaded, pickle.loads(pickle.dumps(model)):
+            np.testing.assert_array_equal(model.rows, other.rows)
+            matcher.setPairModel(other)
+            self.assertSame(expected, matcher.compute(LEFT, RIGHT))
+        tile = model.tile(0, 0, 64, 48)
+        self.assertIn('tile of 64 x 48', repr(tile))
+        matcher.setPairModel(tile)
+        self.assertEqual((48, 64), matcher.compute(LEFT[:48, :64], RIGHT[:48, :64]).shape)
+        with self.assertRaisesRegex(ValueError, 'left must have 64 x 48 pixels'):
+            matcher.compute(LEFT, RIGHT)
+        model.rows = [1, 2]
+        self.assertRaisesText(ValueError, 'PairModel: rows must be 5 finite numbers', matcher.setPairModel, model)
+        self.assertRaises(TypeError, matcher.setPairModel, None)
 
     def test_layouts(self):
         matcher = HDPTreeMatcher(0, 32)

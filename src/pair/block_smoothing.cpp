@@ -94,14 +94,12 @@ BlockGrid findBlocks(const Mat& grey)
     return grid;
 }
 
-bool smoothBlocks(Mat& left, Mat& right)
+void smoothBlocks(Mat& left, Mat& right, const BlockGrid& ofLeft, const BlockGrid& ofRight)
 {
-    const BlockGrid ofLeft = findBlocks(left), ofRight = findBlocks(right);
     if (ofLeft.step == 0 || ofRight.step == 0)
-        return false;
+        return;
     smoothSteps(ofLeft, left);
     smoothSteps(ofRight, right);
-    return true;
 }
 
 }}} // namespace cv::stereo::hdp

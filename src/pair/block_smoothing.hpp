@@ -32,8 +32,9 @@ columns, less the mean change beside them; if it is less than 4 times the mean, 
 5/16, 3/16 and 1/16 of it, so that the slope becomes even. Larger steps are edges of the scene.
 @param left See greyLevels().
 @param right The same.
-@return Whether there were blocks. */
-CV_EXPORTS bool smoothBlocks(Mat& left, Mat& right);
+@param ofLeft The blocks of the left image, see findBlocks().
+@param ofRight Those of the right one. */
+CV_EXPORTS void smoothBlocks(Mat& left, Mat& right, const BlockGrid& ofLeft, const BlockGrid& ofRight);
 
 }}} // namespace cv::stereo::hdp
 

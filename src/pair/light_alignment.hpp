@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_LIGHT_ALIGNMENT_HPP
 
 #include "corner_matches.hpp"
+#include "../base/image_frame.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -48,8 +49,9 @@ CV_EXPORTS bool estimateLight(const CoarseMatches& coarse, LightModel& model);
 
 /** Gives the right image the light of the left one.
 @param levels CV_16UC1 of values up to 1020, changed in place.
-@param model */
-CV_EXPORTS void alignLight(Mat& levels, const LightModel& model);
+@param model
+@param frame What the model is about: the image, or a larger one that it is a tile of. */
+CV_EXPORTS void alignLight(Mat& levels, const LightModel& model, const ImageFrame& frame);
 
 }}} // namespace cv::stereo::hdp
 

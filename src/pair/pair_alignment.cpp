@@ -27,15 +27,13 @@ void smooth(LayerImages& images, LayerImages& smoothed)
     images.right = smoothed.right;
 }
 
-} // namespace
+bool isGrey(const std::vector<LayerImages>& images) { return images[0].right.depth() == CV_16U; } // see greyLevels()
 
-void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
-               PairFindings& findings)
+void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const std::vector<LayerImages>& images,
+                   PairFindings& findings)
 {
-    findings = PairFindings();
-    const bool isGrey = images[0].right.depth() == CV_16U; // see greyLevels()
     std::vector<Mat> left, right;
-    if (isGrey)
+    if (isGrey(images))
         for (const LayerImages& layer : images)
         {
             left.push_back(layer.left);
@@ -50,22 +48,33 @@ void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector
     }
     matchCoarsely(left, right, plan.numDisparities, buffers.coarse);
     findings.hasRows = estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings.rows, findings.noise);
-    if (plan.findsLight && isGrey)
+    if (plan.findsLight && isGrey(images))
         findings.hasLight = estimateLight(buffers.coarse, findings.light);
+}
+
+} // namespace
+
+void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
+               PairFindings& findings, const GivenAlignment* given)
+{
+    findings = given ? given->findings : PairFindings();
+    if (!given)
+        findAlignment(plan, buffers, images, findings);
+    const ImageFrame frame = (given ? given->frame : ImageFrame(images[0].guide.size())).ofLayer(plan.finestLayer);
 
     Mat& finest = images[plan.finestLayer].right;
     if (findings.hasRows)
     {
-        alignRows(finest, findings.rows.ofLayer(plan.finestLayer), buffers.right);
+        alignRows(finest, findings.rows.ofLayer(plan.finestLayer), frame, buffers.right);
         finest = buffers.right;
     }
-    if (findings.hasLight)
-        alignLight(finest, findings.light);
+    if (findings.hasLight && isGrey(images))
+        alignLight(finest, findings.light, frame);
     if (findings.hasRows || findings.hasLight)
         for (size_t layer = plan.finestLayer + 1; layer < images.size(); ++layer)
             halveImage(images[layer - 1].right, images[layer].right); // into the memory of the pyramid
 
-    if (!isGrey || !plan.isNoisy(findings.noise))
+    if (!isGrey(images) || !plan.isNoisy(findings.noise))
         return;
     buffers.smoothed.resize(images.size());
     for (size_t layer = plan.finestLayer; layer < images.size(); ++layer)

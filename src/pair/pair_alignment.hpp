@@ -37,6 +37,13 @@ struct PairFindings
     LayerNoise noise = LayerNoise();
 };
 
+//! What is known of a pair already, and what the models are about
+struct GivenAlignment
+{
+    PairFindings findings;
+    ImageFrame frame; // in pixels of the image
+};
+
 //! Memory of alignPair(), kept from pair to pair
 struct AlignmentBuffers
 {
@@ -50,9 +57,10 @@ smooths the grey levels of noisy pairs. The guides stay.
 @param plan What is looked for.
 @param buffers Memory to work in.
 @param images Those of buildPairPyramids(); they may change.
-@param findings Receives what was found. */
+@param findings Receives what was found.
+@param given What is known already: nothing is looked for then. */
 CV_EXPORTS void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
-                          PairFindings& findings);
+                          PairFindings& findings, const GivenAlignment* given = nullptr);
 
 }}} // namespace cv::stereo::hdp
 

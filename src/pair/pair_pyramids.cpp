@@ -4,7 +4,6 @@
 #include "../precomp.hpp"
 #include "pair_pyramids.hpp"
 
-#include "block_smoothing.hpp"
 #include "image_levels.hpp"
 #include "image_pyramid.hpp"
 
@@ -28,8 +27,41 @@ void checkPair(const Mat& left, const Mat& right)
         CV_Error(Error::StsOutOfRange, "left must have less than 2^31 bytes");
 }
 
+namespace {
+
+//! Grey levels of an extended pair, brightened if it is dark, and without the blocks of compression
+void makeLevels(const Mat& left, const Mat& right, const PyramidPlan& plan, const int* lastBrightening, bool isKnown,
+                PairPyramids& pyramids)
+{
+    LevelFindings& found = pyramids.levels;
+    Mat &leftLevels = pyramids.leftLevels, &rightLevels = pyramids.rightLevels;
+    const auto convert = [&](int bits) {
+        greyLevels(left, bits, leftLevels);
+        greyLevels(right, bits, rightLevels);
+    };
+    convert(found.bits - found.brightening);
+    if (!isKnown)
+    {
+        const int unused = countUnusedBits(leftLevels, rightLevels);
+        pyramids.isDimmed = lastBrightening && unused == *lastBrightening + 1;
+        found.brightening = unused - pyramids.isDimmed;
+        if (found.brightening > 0)
+            convert(found.bits - found.brightening);
+    }
+    if (!plan.smoothsBlocks)
+        return;
+    if (!isKnown)
+    {
+        found.leftBlocks = findBlocks(leftLevels);
+        found.rightBlocks = findBlocks(rightLevels);
+    }
+    smoothBlocks(leftLevels, rightLevels, found.leftBlocks, found.rightBlocks);
+}
+
+} // namespace
+
 void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan, const int* lastBrightening,
-                       PairPyramids& pyramids, std::vector<LayerImages>& images)
+                       PairPyramids& pyramids, std::vector<LayerImages>& images, const LevelFindings* given)
 {
     const int minDisparity = plan.minDisparity, extension = plan.extension, layers = plan.layers;
     Mat extended = left, shifted = right;
@@ -43,29 +75,22 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& pla
         copyMakeBorder(left, pyramids.extendedLeft, 0, 0, extension, 0, BORDER_REPLICATE);
         extended = pyramids.extendedLeft;
     }
-    int bits = countBits(left, right);
-    pyramids.brightening = 0;
+    LevelFindings& levels = pyramids.levels;
+    levels = given ? *given : LevelFindings();
+    if (!given)
+        levels.bits = countBits(left, right);
+    if (!plan.isCensus)
+        levels.brightening = 0;
     pyramids.isDimmed = false;
     if (plan.isCensus)
     {
-        greyLevels(extended, bits, pyramids.leftLevels);
-        greyLevels(shifted, bits, pyramids.rightLevels);
-        const int unused = countUnusedBits(pyramids.leftLevels, pyramids.rightLevels);
-        pyramids.isDimmed = lastBrightening && unused == *lastBrightening + 1;
-        pyramids.brightening = unused - pyramids.isDimmed;
-        if (pyramids.brightening > 0)
-        {
-            bits -= pyramids.brightening;
-            greyLevels(extended, bits, pyramids.leftLevels);
-            greyLevels(shifted, bits, pyramids.rightLevels);
-        }
-        if (plan.smoothsBlocks)
-            smoothBlocks(pyramids.leftLevels, pyramids.rightLevels);
+        makeLevels(extended, shifted, plan, lastBrightening, given != nullptr, pyramids);
         buildPyramid({ pyramids.leftLevels }, layers, pyramids.leftGrey);
         buildPyramid({ pyramids.rightLevels }, layers, pyramids.right);
     }
     else
-        buildPyramid({ byteLevels(shifted, bits, pyramids.rightBytes) }, layers, pyramids.right);
+        buildPyramid({ byteLevels(shifted, levels.bits, pyramids.rightBytes) }, layers, pyramids.right);
+    const int bits = levels.bits - levels.brightening;
     buildPyramid({ byteLevels(extended, bits, pyramids.leftBytes) }, layers, pyramids.left);
     images.resize(layers);
     for (int layer = 0; layer < layers; ++layer)

@@ -4,6 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
 #define OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
 
+#include "block_smoothing.hpp"
+
 #include "opencv2/core.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -23,13 +25,21 @@ struct LayerImages
     Mat left, right; // give the matching cost; a candidate counts from minDisparity
 };
 
+//! What there is to know of the levels of a pair
+struct LevelFindings
+{
+    int bits = 8;                      // in use, see countBits()
+    int brightening = 0;               // how often the levels of the pair are doubled
+    BlockGrid leftBlocks, rightBlocks; // of JPEG compression
+};
+
 //! Memory of the pyramids, kept from pair to pair
 struct PairPyramids
 {
     std::vector<Mat> left, leftGrey, right;
     Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels;
-    int brightening = 0;   // how often the levels of the pair are doubled
-    bool isDimmed = false; // once less than without a frame before
+    LevelFindings levels;  // found, or given
+    bool isDimmed = false; // whether levels are doubled once less than without a frame before
 };
 
 //! What buildPairPyramids() builds
@@ -51,10 +61,12 @@ exposed.
 @param plan What to build.
 @param lastBrightening That of the frame before, if there was one: kept if one more is possible, so that a video seldom
 changes it.
-@param pyramids Memory to work in.
-@param images Receives the images of each layer. */
+@param pyramids Memory to work in; receives what was found.
+@param images Receives the images of each layer.
+@param given What is known already: nothing is looked for then. */
 CV_EXPORTS void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan,
-                                  const int* lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images);
+                                  const int* lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images,
+                                  const LevelFindings* given = nullptr);
 
 //! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:
 //! shifted(x + extension) = right(x - minDisparity), the nearest column where there is none.

@@ -150,14 +150,19 @@ template <typename T> void mixColumns(const Mat& right, int row, const int weigh
     dispatched::mixRows(rows, weights, columns.start * right.channels(), columns.end * right.channels(), aligned);
 }
 
-//! aligned(x, y) for all x. A row of the model is a straight line: its columns come in runs from the same place.
-template <typename T> void alignRow(const Mat& right, const RowModel& model, int y, const int weights[][4], T* aligned)
+//! aligned(x, y) for all x. A row of the model is a straight line: its columns come in runs from the same place, which
+//! is that of the whole image's columns in a tile, too.
+template <typename T>
+void alignRow(const Mat& right, const RowModel& model, const ImageFrame& frame, int y, const int weights[][4],
+              T* aligned)
 {
     const int64 one = (int64)1 << 24; // a place
-    const double first = y + model.at(fromCentre(0, y, 0, right.size()));
-    const double last = y + model.at(fromCentre(right.cols, y, 0, right.size()));
-    const int64 start = wholeOf(first * fractions * one) + one / 2;
-    const int64 step = wholeOf((last - first) / right.cols * fractions * one);
+    const int row = y + frame.origin.y, width = frame.whole.width;
+    const double first = row + model.at(fromCentre(0, row, 0, frame.whole));
+    const double last = row + model.at(fromCentre(width, row, 0, frame.whole));
+    const int64 step = wholeOf((last - first) / width * fractions * one);
+    const int64 start =
+        wholeOf(first * fractions * one) + one / 2 + frame.origin.x * step - frame.origin.y * fractions * one;
     for (int begin = 0, end; begin < right.cols; begin = end)
     {
         const int64 position = start + begin * step, within = position & (one - 1);
@@ -220,7 +225,7 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
     return ofBest.move - certainty * certainty * ofBest.deviation > minMove * minMove;
 }
 
-void alignRows(const Mat& right, const RowModel& model, Mat& aligned)
+void alignRows(const Mat& right, const RowModel& model, const ImageFrame& frame, Mat& aligned)
 {
     int weights[fractions][4];
     for (int i = 0; i < fractions; ++i)
@@ -229,9 +234,9 @@ void alignRows(const Mat& right, const RowModel& model, Mat& aligned)
     parallel_for_(Range(0, right.rows), [&](const Range& range) {
         for (int y = range.start; y < range.end; ++y)
             if (right.depth() == CV_8U)
-                alignRow(right, model, y, weights, aligned.ptr(y));
+                alignRow(right, model, frame, y, weights, aligned.ptr(y));
             else
-                alignRow(right, model, y, weights, aligned.ptr<ushort>(y));
+                alignRow(right, model, frame, y, weights, aligned.ptr<ushort>(y));
     });
 }
 

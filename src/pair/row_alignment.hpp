@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_ROW_ALIGNMENT_HPP
 
 #include "corner_matches.hpp"
+#include "../base/image_frame.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -71,8 +72,9 @@ CV_EXPORTS bool estimateRows(const CoarseMatches& coarse, int finestLayer, int m
 interpolation. Beyond the image are its first and last rows.
 @param right CV_8U or CV_16U, any number of channels.
 @param model
+@param frame What the model is about: the image, or a larger one that it is a tile of.
 @param aligned Of the same size and type. */
-CV_EXPORTS void alignRows(const Mat& right, const RowModel& model, Mat& aligned);
+CV_EXPORTS void alignRows(const Mat& right, const RowModel& model, const ImageFrame& frame, Mat& aligned);
 
 }}} // namespace cv::stereo::hdp
 

@@ -255,20 +255,27 @@ int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int m
     return layers;
 }
 
-PairPlan plan(const MatcherParameters& p, Size size, int type)
+PairPlan plan(const MatcherParameters& p, Size size, int type, const PairModel& model)
 {
     checkCombinations(p, size);
     PairPlan plan;
     plan.size = size;
     plan.treeStrategy = p.treeStrategy;
-    plan.model = modelOf(p, size);
-    const int layers = countLayers(p, size, plan.model), finest = std::min(p.finestLayer, layers - 1);
+    const Size whole = wholeSize(model, size); // a tile is matched as the image that it is a part of
+    plan.model = modelOf(p, whole);
+    const int layers = countLayers(p, whole, plan.model);
+    checkPairModelOf(model, size, type, layers);
+    const int finest = std::min(p.finestLayer, layers - 1);
     const int extension = countExtension(p, size, type, layers);
     plan.pyramids = { p.minDisparity, extension, layers, p.matchingCost == M::COST_CENSUS, p.noiseThreshold > 0 };
     plan.alignment = { p.numDisparities, p.maxRowOffset, p.useLightAlignment, p.noiseThreshold, finest };
+    plan.given = toGivenPair(model, plan.pyramids, size);
     plan.followsVideo = p.useTemporalPrediction;
     for (int layer = layers - 1; layer >= finest; --layer)
-        plan.layers.push_back(planLayer(p, size, layer, layers, finest));
+    {
+        plan.layers.push_back(planLayer(p, whole, layer, layers, finest));
+        plan.layers.back().frame = plan.given.alignment.frame.ofLayer(layer);
+    }
     plan.layers.back().joinsLastFrame = plan.followsVideo;
     plan.output = { p.minDisparity,
                     extension,

@@ -12,6 +12,7 @@
 #include "../scanlines/volume_scanlines.hpp"
 #include "../video/verdict.hpp"
 #include "matcher_parameters.hpp"
+#include "pair_model.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -72,6 +73,7 @@ struct LayerPlan
 {
     int layer = 0; // 0 is the image
     bool isTop = false, isFinest = false;
+    ImageFrame frame;       // of its images, in its pixels
     int numDisparities = 0; // candidates
     int maxDisparity = 0;   // of a map of the layer
     bool hasFractions = false;
@@ -94,6 +96,7 @@ struct PairPlan
     Size size; // of the images
     PyramidPlan pyramids;
     AlignmentPlan alignment;
+    GivenPair given; // what is not looked for in the pair, but known
     bool followsVideo = false;
     std::vector<LayerPlan> layers; // that are matched, the top one first
     Ptr<TreeStrategy> treeStrategy;
@@ -102,16 +105,16 @@ struct PairPlan
 
     const LayerPlan& top() const { return layers.front(); }
     const LayerPlan& finest() const { return layers.back(); }
-    //! How far the centre of the right image is to the right of where it is matched, in pixels
-    double shift() const { return 0.5 * output.extension + output.minDisparity; }
 };
 
 /** What is done for a pair, as far as it depends on nothing but this:
 @param parameters The parameters; each is valid by itself.
 @param size Of the images.
 @param type Of the images, as checkPair() accepts it.
+@param model What is known of the images beforehand; valid by itself.
 @throws cv::Exception if the parameters do not go with one another or with the images. */
-CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int type);
+CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int type,
+                         const PairModel& model = PairModel());
 
 /** What is done now that the pair has been seen.
 @param plan From plan().

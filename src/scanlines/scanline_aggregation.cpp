@@ -22,6 +22,25 @@ HDP_TUNABLE(double, sharpSlope, 25, "bits per direction",
 
 HDP_DISPATCH(aggregateStripe)
 
+//! The stripes of an image, or what a tile of it has of them
+std::vector<Range> stripesOf(const ImageFrame& frame, int height)
+{
+    const int whole = frame.whole.height, first = frame.origin.y;
+    const int count = // of even number, so that also two threads have as much to do
+        whole < stripeHeight / 2 ? 1 : 2 * std::max(1, cvRound(whole / (2. * stripeHeight)));
+    const auto border = [&](int64 index) {
+        return index < count ? (int)(whole * index / count / 2 * 2) - first : whole - first;
+    };
+    std::vector<Range> stripes;
+    for (int i = 0; i < count; ++i)
+    {
+        const Range rows(std::max(border(i), 0), std::min(border(i + 1), height));
+        if (rows.start < rows.end)
+            stripes.push_back(rows);
+    }
+    return stripes;
+}
+
 } // namespace
 
 void ScanlineScratch::prepare(int width, int numDisparities)
@@ -51,8 +70,8 @@ void ScanlineScratch::prepare(int width, int numDisparities)
     winnerSums.resize(blockColumns);
 }
 
-void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int maxDisparity,
-                        const Mat& windows, const ScanlinePenalties& penalties, bool hasFromBelow,
+void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFrame& frame, int numDisparities,
+                        int maxDisparity, const Mat& windows, const ScanlinePenalties& penalties, bool hasFromBelow,
                         ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
     const Size size = left.size();
@@ -60,17 +79,15 @@ void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparit
     const MinimumShape shape = { (float)bluntSlope * directions, (float)sharpSlope * directions };
     const ScanlineProblem problem = { &cost,    &left,     size,         numDisparities, maxDisparity,
                                       &windows, penalties, hasFromBelow, shape };
-    const int stripes = // of even number, so that also two threads have as much to do
-        size.height < stripeHeight / 2 ? 1 : 2 * std::max(1, cvRound(size.height / (2. * stripeHeight)));
+    const std::vector<Range> stripes = stripesOf(frame, size.height);
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);
-    buffers.stripes.resize(stripes);
-    parallel_for_(Range(0, stripes), [&](const Range& range) {
+    buffers.stripes.resize(stripes.size());
+    parallel_for_(Range(0, (int)stripes.size()), [&](const Range& range) {
         Mat followed; // as large as a thread needs it, not as the image would
         for (int i = range.start; i < range.end; ++i)
         {
-            const auto border = [&](int64 index) { return (int)(size.height * index / stripes / 2 * 2); };
-            const Range rows(border(i), i + 1 < stripes ? border(i + 1) : size.height);
+            const Range rows = stripes[i];
             const Range reach(std::max(rows.start - warmUpRows, 0), std::min(rows.end + warmUpRows, size.height));
             const ScanlineStripe stripe = { rows, reach };
             if (hasFromBelow)

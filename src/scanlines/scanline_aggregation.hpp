@@ -7,6 +7,7 @@
 #include "candidate_windows.hpp"
 #include "../cost/census_cost.hpp"
 #include "../base/disparity_units.hpp"
+#include "../base/image_frame.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -126,9 +127,10 @@ p has disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction()
 directions.
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
-start anew some rows before each of them.
+start anew some rows before each of them. A tile has those of the image that it lies in.
 @param cost The layer's census cost.
 @param left The layer's grey levels, see LayerImages.
+@param frame Where they lie in a larger image, if they are a tile of one; from an even row on.
 @param numDisparities Of the layer.
 @param maxDisparity That of a map of the layer. The winner may be beyond the ends of the range;
 its disparity is not.
@@ -138,9 +140,9 @@ its disparity is not.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
-CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& left, int numDisparities, int maxDisparity,
-                                   const Mat& windows, const ScanlinePenalties& penalties, bool hasFromBelow,
-                                   ScanlineBuffers& buffers, Mat& disparity, Mat& residual);
+CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFrame& frame, int numDisparities,
+                                   int maxDisparity, const Mat& windows, const ScanlinePenalties& penalties,
+                                   bool hasFromBelow, ScanlineBuffers& buffers, Mat& disparity, Mat& residual);
 
 }}} // namespace cv::stereo::hdp
 

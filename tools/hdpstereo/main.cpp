@@ -27,6 +27,8 @@ static const char* const keys =
     "{preset          | fast | set of parameters: ultrafast, fast, quality, tree or paper }"
     "{min-disparity   | 0    | smallest disparity in pixels }"
     "{num-disparities |      | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
+    "{findings        |      | matches as --save-findings of another pair of the rig says; nothing is estimated }"
+    "{save-findings   |      | what was found in the pair, rows, light, noise and levels: FILE.yml, .xml or .json }"
     "{output          |      | disparities: FILE.png (16 bit, times 256, 0 = none) or FILE.pfm (float, inf = none) }"
     "{picture         |      | disparities in colors: far is blue, near is orange, none is black }"
     "{truth           |      | true disparities: PNG, 8 bit or 16 bit (times 256), 0 = unknown }"

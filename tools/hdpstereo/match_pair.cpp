@@ -212,6 +212,12 @@ void matchPair(const CommandLineParser& parser)
     const String output = parser.get<String>(parser.has("output") ? "output" : "@out");
     if (!output.empty())
         writeAndTell(output, encodeDisparity(extensionOf(output), disparity));
+    if (parser.has("save-findings"))
+    {
+        const String path = parser.get<String>("save-findings");
+        matcher->getPairModel().save(path);
+        std::cout << "written    " << path << std::endl;
+    }
     if (parser.has("picture"))
         writePicture(parser.get<String>("picture"), left, sgbm, disparity);
     if (parser.has("point-cloud"))

@@ -85,6 +85,13 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
     options << "version" << HDPSTEREO_VERSION;
     options << "numDisparities"
             << (parser.has("num-disparities") ? parser.get<String>("num-disparities") : "width / 5");
+    if (parser.has("findings"))
+    {
+        options << "findings"
+                << "{";
+        cv::stereo::PairModel::load(parser.get<String>("findings")).write(options);
+        options << "}";
+    }
     options << "matcher"
             << "{";
     matcher.write(options);
@@ -103,7 +110,7 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
 
 size_t matchPairs(const CommandLineParser& parser)
 {
-    for (const char* option : { "output", "picture", "truth", "point-cloud", "compare" })
+    for (const char* option : { "output", "picture", "truth", "point-cloud", "compare", "save-findings" })
         if (parser.has(option))
             CV_Error(Error::StsBadArg, format("--%s is for one pair, and not for --batch", option));
     const String format = parser.get<String>("format"), lefts = parser.get<String>("@left");

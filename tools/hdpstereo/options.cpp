@@ -45,7 +45,11 @@ Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
     const auto preset = presets.find(parser.get<String>("preset"));
     if (preset == presets.end())
         CV_Error(Error::StsBadArg, "--preset=" + parser.get<String>("preset") + " is unknown, see --help");
-    return HDPTreeMatcher::create(integerOf(parser, "min-disparity"), numDisparitiesOf(parser, width), preset->second);
+    const Ptr<HDPTreeMatcher> matcher =
+        HDPTreeMatcher::create(integerOf(parser, "min-disparity"), numDisparitiesOf(parser, width), preset->second);
+    if (parser.has("findings"))
+        matcher->setPairModel(cv::stereo::PairModel::load(parser.get<String>("findings")));
+    return matcher;
 }
 
 Mat inPixels(const Mat& disparity16, int minDisparity)

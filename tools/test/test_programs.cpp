@@ -343,6 +343,28 @@ TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
         EXPECT_EQ(1, run(folder, program + wrong).status) << wrong;
 }
 
+TEST(HDPStereo_Programs, findings_of_another_pair)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String model = folder.path("rig.yml"), program = "hdpstereo" + pairOf(folder), map = folder.path("map.pfm"),
+                 again = folder.path("again.pfm");
+    EXPECT_EQ(0, run(folder, program + " " + map + " --save-findings=" + model).status);
+    const Execution good = run(folder, program + " " + again + " --findings=" + model);
+    EXPECT_EQ(0, good.status) << good.errors;
+    EXPECT_EQ(readText(map), readText(again));
+
+    folder.write("small.png", Mat(cv::imread(folder.path("dataset/a/left.png")), Rect(0, 0, 100, 100)));
+    const String small = folder.path("small.png");
+    const Execution other = run(folder, "hdpstereo " + small + " " + small + " --findings=" + model);
+    EXPECT_EQ(1, other.status);
+    EXPECT_EQ(0u, other.errors.find("error: left must have 160 x 120 pixels as the pair model, not 100 x 100"))
+        << other.errors;
+    EXPECT_EQ(1, run(folder, program + " --findings=" + map).status);
+    EXPECT_EQ(1, run(folder, program + " --save-findings=/no/such/folder/rig.yml").status);
+    EXPECT_EQ(1, run(folder, "hdpstereo --batch a b c --save-findings=" + model).status);
+}
+
 //! The most that a program takes, in KiB
 long peakMemory(const DatasetFolder& folder, const String& command)
 {

@@ -14,10 +14,10 @@
 #include "opencv2/calib3d.hpp"
 #endif
 #include "opencv2/hdpstereo/disparity_prediction.hpp"
+#include "opencv2/hdpstereo/pair_model.hpp"
 #include "opencv2/hdpstereo/tree_strategy.hpp"
 
-namespace cv {
-namespace stereo {
+namespace cv { namespace stereo {
 
 //! @addtogroup hdpstereo
 //! @{
@@ -69,6 +69,7 @@ on several parameters or on the images is checked by compute(), before any work.
 - 16 times the disparities, and 16 times (minDisparity - 1), do not fit into CV_16S;
 - the cost is not COST_CENSUS with scanlines, Params::fillOcclusions or Params::useTemporalPrediction;
 - Params::predictionModel has too few layers;
+- the images are not those of the PairModel that is set;
 - the output array has a fixed type other than CV_16SC1 and CV_32FC1;
 - a TreeStrategy throws, or does not leave a permutation of the edges. Only this is found while matching; the matcher
   stays usable, and the output array is unchanged.
@@ -501,6 +502,20 @@ public:
      */
     CV_WRAP virtual void getConfidence(OutputArray confidence) const = 0;
 
+    /** @brief Sets what is known of the next pairs: nothing is estimated from them then.
+
+    What the model says is done, whatever Params::maxRowOffset and Params::useLightAlignment are; Params::noiseThreshold
+    is compared with its noise. HDPTreeMatcher::Findings are then those of the model, which are about its whole images.
+    The disparity range is not taken from it. save() does not store it, and clear() does not forget it.
+    @param model That of an earlier pair, or of a tile of it. An empty one: pairs are estimated again.
+    @throws cv::Exception if a value is not valid; the matcher is unchanged.
+     */
+    CV_WRAP virtual void setPairModel(const PairModel& model) = 0;
+
+    //! Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute() and
+    //! after one that threw an exception.
+    CV_WRAP virtual PairModel getPairModel() const = 0;
+
     //! Returns what the last compute() found out about the pair.
     CV_WRAP virtual HDPTreeMatcher::Findings getFindings() const = 0;
 
@@ -557,7 +572,6 @@ public:
 
 //! @}
 
-} // namespace stereo
-} // namespace cv
+}} // namespace cv::stereo
 
 #endif

@@ -174,7 +174,8 @@ class hdpstereo_test(TestCase):
     def test_parameters(self):
         matcher = cv.stereo.HDPTreeMatcher.create(-3, 40, PRESETS['PAPER'])
         setters = set(name[3:] for name in dir(matcher) if name.startswith('set'))
-        self.assertEqual(set(), setters - set(PARAMETERS) - set(['TreeStrategy', 'Params']), 'one is not tested')
+        self.assertEqual(set(), setters - set(PARAMETERS) - set(['TreeStrategy', 'Params', 'PairModel']),
+                         'one is not tested')
         fields = set(name for name in dir(matcher.getParams()) if not name.startswith('_'))
         only_matcher = set(['minDisparity', 'numDisparities', 'speckleWindowSize', 'speckleRange', 'disp12MaxDiff'])
         self.assertEqual(fields, set(field(name) for name in PARAMETERS) - only_matcher |
@@ -444,6 +445,22 @@ class hdpstereo_test(TestCase):
         self.assertIn('cost aggregation', stages)
         self.assertEqual(len(stages), len(milliseconds))
         self.assertGreater(np.sum(milliseconds), 0)
+
+    def test_pair_model(self):
+        matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
+        self.assertTrue(matcher.getPairModel().empty())
+        expected = matcher.compute(self.left, self.right)
+        model = matcher.getPairModel()
+        height, width = self.truth.shape
+        self.assertEqual((width, height, 5, 10), (model.width, model.height, len(model.rows), len(model.light)))
+        with tempfile.TemporaryDirectory() as folder:
+            model.save(os.path.join(folder, 'model.yml'))
+            matcher.setPairModel(cv.stereo.PairModel.load(os.path.join(folder, 'model.yml')))
+        self.assertSame(expected, matcher.compute(self.left, self.right))
+        matcher.setPairModel(model.tile(0, 0, 64, 48))
+        self.assertEqual((48, 64), matcher.compute(self.left[:48, :64], self.right[:48, :64]).shape)
+        matcher.setPairModel(cv.stereo.PairModel())
+        self.assertSame(expected, matcher.compute(self.left, self.right))
 
     # ---- Tree strategies
 

@@ -1,0 +1,110 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_PAIR_MODEL_HPP
+#define OPENCV_HDPSTEREO_PAIR_MODEL_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv { namespace stereo {
+
+//! @addtogroup hdpstereo
+//! @{
+
+/** @brief All that HDPTreeMatcher::compute() estimates from a pair before it is matched, as one value.
+
+HDPTreeMatcher::getPairModel() returns that of the last pair. HDPTreeMatcher::setPairModel() sets it for the next ones,
+and nothing is estimated from these: the frames of one rig, or the tiles of one pair, which by themselves would differ
+in what is estimated, and so at their borders.
+
+@code{.cpp}
+    matcher->compute(left, right, disparity); // of a part that shows what the whole does, or of the whole at a quarter
+    const PairModel model = matcher->getPairModel();
+    model.save("rig.yml");
+    matcher->setPairModel(model.tile(tile));
+    matcher->compute(left(tile), right(tile), disparity);
+@endcode
+
+Points of the right image are counted from the centre of the image as it is matched: moved to the right by minDisparity,
+with addedColumns more on the left. With a minDisparity of 0 this is the image itself.
+ */
+struct CV_EXPORTS_W_SIMPLE PairModel
+{
+    //! An empty model, of no images: see HDPTreeMatcher::setPairModel()
+    CV_WRAP PairModel();
+
+    //! Whether it is of no images
+    CV_WRAP bool empty() const { return width == 0; }
+
+    /** @brief Returns the model for a part of the images.
+
+    Rows and light depend on the place in the image; the tile's pixels get those of the whole there.
+    @param x First column of the tile in the whole images: a multiple of 24 * 2^(layers - 2), or compute() throws. So
+    the pyramid and all that is looked at in a grid are the same. 384 is one for up to 6 layers, 1400 disparities.
+    @param y First row of the tile, likewise.
+    @param tileWidth Of the tile, > 0.
+    @param tileHeight Of the tile, > 0.
+    @throws cv::Exception if the model is empty, or the tile not inside of the images.
+     */
+    CV_WRAP PairModel tile(int x, int y, int tileWidth, int tileHeight) const;
+
+    //! The same of a rectangle
+    PairModel tile(const Rect& rect) const { return tile(rect.x, rect.y, rect.width, rect.height); }
+
+    CV_PROP_RW int width;          //!< of the images, in pixels, > 0; 0: the model is empty. Up to 2^24
+    CV_PROP_RW int height;         //!< of the images, in pixels, likewise
+    CV_PROP_RW int depth;          //!< of the images: CV_8U or CV_16U
+    CV_PROP_RW int x;              //!< first column of the tile that is matched, >= 0; 0 without tiles
+    CV_PROP_RW int y;              //!< first row of the tile, >= 0
+    CV_PROP_RW int tileWidth;      //!< of the tile, in pixels, > 0; width without tiles
+    CV_PROP_RW int tileHeight;     //!< of the tile, likewise
+    CV_PROP_RW int minDisparity;   //!< that the images were matched with. A matcher keeps its own range
+    CV_PROP_RW int numDisparities; //!< the same, > 0
+    CV_PROP_RW int addedColumns;   //!< that a negative minDisparity added on the left of the images, >= 0
+
+    //! Coefficients of HDPTreeMatcher::Findings::rows: 5 finite numbers.
+    CV_PROP_RW std::vector<double> rows;
+    //! Whether the rows of the right image are moved by them
+    CV_PROP_RW bool areRowsMoved;
+
+    //! Coefficients of HDPTreeMatcher::Findings::light: 10 finite numbers.
+    CV_PROP_RW std::vector<double> light;
+    //! Whether the light of the right image is changed by them, for HDPTreeMatcher::COST_CENSUS
+    CV_PROP_RW bool isLightChanged;
+
+    CV_PROP_RW double noise;   //!< as HDPTreeMatcher::Findings::noise, of noiseLayer: finite, >= 0
+    CV_PROP_RW int noiseLayer; //!< the layer in which it was measured, 0..15; 0 is the image
+
+    CV_PROP_RW int bits;       //!< that levels of CV_16U have: 8..16. For CV_8U 8
+    CV_PROP_RW int brightness; //!< what a dark pair is brightened by, for HDPTreeMatcher::COST_CENSUS: 1, 2 or 4
+
+    //! First column, 0..7, of a block of JPEG compression, and the mean step between blocks in grey levels of 0 to 255,
+    //! finite, >= 0; 0: there are none in this image, and nothing is smoothed in either. See Params::noiseThreshold.
+    CV_PROP_RW int leftBlockStart;
+    CV_PROP_RW double leftBlockStep;  //!< see leftBlockStart
+    CV_PROP_RW int rightBlockStart;   //!< the same of the right image
+    CV_PROP_RW double rightBlockStep; //!< the same of the right image
+
+    /** @brief Writes the model to a file.
+    @param filename XML, YAML or JSON, by its extension.
+    @throws cv::Exception if it cannot be written. */
+    CV_WRAP void save(const String& filename) const;
+
+    /** @brief Reads what save() has written.
+    @param filename XML, YAML or JSON.
+    @throws cv::Exception if the file cannot be read, or a value is missing or not valid. */
+    CV_WRAP static PairModel load(const String& filename);
+
+    /** @brief Reads what write() has stored.
+    @throws cv::Exception if a value is missing or not valid; the model is unchanged. */
+    void read(const FileNode& fn);
+
+    //! Stores all fields by name.
+    void write(FileStorage& fs) const;
+};
+
+//! @}
+
+}} // namespace cv::stereo
+
+#endif

@@ -1,0 +1,268 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "pair_model.hpp"
+
+#include "../base/grey_levels.hpp"
+#include "../scanlines/sparse_matches.hpp"
+
+#include <cmath>
+
+namespace cv { namespace stereo {
+
+using namespace hdp;
+
+namespace {
+
+const int maxWhole = 1 << 24; // pixels of a side: columns are exact in floats
+
+//! Calls visit(name, value, whether it is valid, what is) for all fields but the vectors.
+template <typename Model, typename Visit> void visitFields(Model& m, const Visit& visit)
+{
+    const auto isStep = [](double step) { return std::isfinite(step) && step >= 0; };
+    const char* const notNegative = "finite and >= 0";
+    visit("width", m.width, m.width > 0 && m.width <= maxWhole, "1..2^24");
+    visit("height", m.height, m.height > 0 && m.height <= maxWhole, "1..2^24");
+    visit("depth", m.depth, m.depth == CV_8U || m.depth == CV_16U, "CV_8U or CV_16U");
+    visit("tileWidth", m.tileWidth, m.tileWidth > 0 && m.tileWidth <= m.width, "1..width");
+    visit("tileHeight", m.tileHeight, m.tileHeight > 0 && m.tileHeight <= m.height, "1..height");
+    visit("x", m.x, m.x >= 0 && m.x <= m.width - m.tileWidth, "0..width - tileWidth");
+    visit("y", m.y, m.y >= 0 && m.y <= m.height - m.tileHeight, "0..height - tileHeight");
+    visit("minDisparity", m.minDisparity, std::abs((double)m.minDisparity) <= maxWhole, "-2^24..2^24");
+    visit("numDisparities", m.numDisparities, m.numDisparities > 0, "> 0");
+    visit("addedColumns", m.addedColumns, m.addedColumns >= 0 && m.addedColumns <= maxWhole, "0..2^24");
+    visit("areRowsMoved", m.areRowsMoved, true, "");
+    visit("isLightChanged", m.isLightChanged, true, "");
+    visit("noise", m.noise, isStep(m.noise), notNegative);
+    visit("noiseLayer", m.noiseLayer, m.noiseLayer >= 0 && m.noiseLayer <= 15, "0..15");
+    visit("bits", m.bits, m.bits >= 8 && m.bits <= (m.depth == CV_8U ? 8 : 16), "8..16, and 8 for CV_8U");
+    visit("brightness", m.brightness, m.brightness == 1 || m.brightness == 2 || m.brightness == 4, "1, 2 or 4");
+    visit("leftBlockStart", m.leftBlockStart, m.leftBlockStart >= 0 && m.leftBlockStart < BlockGrid::side, "0..7");
+    visit("leftBlockStep", m.leftBlockStep, isStep(m.leftBlockStep), notNegative);
+    visit("rightBlockStart", m.rightBlockStart, m.rightBlockStart >= 0 && m.rightBlockStart < BlockGrid::side, "0..7");
+    visit("rightBlockStep", m.rightBlockStep, isStep(m.rightBlockStep), notNegative);
+}
+
+struct Checker
+{
+    template <typename T> void operator()(const char* name, T, bool isValid, const char* expected) const
+    {
+        if (!isValid)
+            CV_Error(Error::StsOutOfRange, format("PairModel: %s must be %s", name, expected));
+    }
+};
+
+struct Writer
+{
+    FileStorage& fs;
+
+    template <typename T> void operator()(const char* name, T value, bool, const char*) const { fs << name << value; }
+    void operator()(const char* name, bool value, bool, const char*) const { fs << name << (int)value; }
+};
+
+void checkIsNumber(const FileNode& node, const char* name)
+{
+    if (!node.isInt() && !node.isReal())
+        CV_Error(Error::StsParseError, format("PairModel: %s must be a number", name));
+}
+
+struct Reader
+{
+    const FileNode& fn;
+
+    template <typename T> void operator()(const char* name, T& value, bool, const char*) const
+    {
+        checkIsNumber(fn[name], name);
+        value = (T)(double)fn[name];
+    }
+    void operator()(const char* name, bool& value, bool, const char*) const
+    {
+        checkIsNumber(fn[name], name);
+        value = (double)fn[name] != 0;
+    }
+};
+
+void readNumbers(const FileNode& fn, const char* name, std::vector<double>& numbers)
+{
+    const FileNode node = fn[name];
+    if (!node.isSeq())
+        CV_Error(Error::StsParseError, format("PairModel: %s must be a sequence of numbers", name));
+    numbers.clear();
+    for (const FileNode& number : node)
+    {
+        checkIsNumber(number, name);
+        numbers.push_back((double)number);
+    }
+}
+
+void checkNumbers(const std::vector<double>& numbers, size_t count, const char* name)
+{
+    bool isValid = numbers.size() == count;
+    for (const double number : numbers)
+        isValid = isValid && std::isfinite(number);
+    if (!isValid)
+        CV_Error(Error::StsOutOfRange, format("PairModel: %s must be %d finite numbers", name, (int)count));
+}
+
+//! In 0 .. side - 1, as a column that begins a block
+int blockStart(int column) { return (column % BlockGrid::side + BlockGrid::side) % BlockGrid::side; }
+
+} // namespace
+
+PairModel::PairModel()
+    : width(0), height(0), depth(CV_8U), x(0), y(0), tileWidth(0), tileHeight(0), minDisparity(0), numDisparities(0),
+      addedColumns(0), rows(RowModel::terms, 0.), areRowsMoved(false), light(LightModel::terms, 0.),
+      isLightChanged(false), noise(0), noiseLayer(0), bits(8), brightness(1), leftBlockStart(0), leftBlockStep(0),
+      rightBlockStart(0), rightBlockStep(0)
+{
+    light[0] = 1;
+}
+
+PairModel PairModel::tile(int firstColumn, int firstRow, int columns, int rowCount) const
+{
+    if (empty())
+        CV_Error(Error::StsBadArg, "PairModel: an empty model has no tiles");
+    PairModel model = *this;
+    model.x = firstColumn;
+    model.y = firstRow;
+    model.tileWidth = columns;
+    model.tileHeight = rowCount;
+    checkPairModel(model);
+    return model;
+}
+
+void PairModel::write(FileStorage& fs) const
+{
+    visitFields(*this, Writer{ fs });
+    fs << "rows" << rows << "light" << light;
+}
+
+void PairModel::read(const FileNode& fn)
+{
+    PairModel model;
+    visitFields(model, Reader{ fn });
+    readNumbers(fn, "rows", model.rows);
+    readNumbers(fn, "light", model.light);
+    checkPairModel(model);
+    *this = model;
+}
+
+void PairModel::save(const String& filename) const
+{
+    FileStorage fs(filename, FileStorage::WRITE);
+    if (!fs.isOpened())
+        CV_Error(Error::StsError, "cannot write '" + filename + "'");
+    fs << "pairModel"
+       << "{";
+    write(fs);
+    fs << "}";
+}
+
+PairModel PairModel::load(const String& filename)
+{
+    const FileStorage fs(filename, FileStorage::READ);
+    if (!fs.isOpened() || !fs["pairModel"].isMap())
+        CV_Error(Error::StsParseError, "'" + filename + "' must be a file with a pairModel");
+    PairModel model;
+    model.read(fs["pairModel"]);
+    return model;
+}
+
+namespace hdp {
+
+void checkPairModel(const PairModel& model)
+{
+    if (model.empty())
+        return;
+    visitFields(model, Checker());
+    checkNumbers(model.rows, RowModel::terms, "rows");
+    checkNumbers(model.light, LightModel::terms, "light");
+}
+
+void checkPairModelOf(const PairModel& model, Size size, int type, int layers)
+{
+    if (model.empty())
+        return;
+    if (model.depth != CV_MAT_DEPTH(type))
+        CV_Error(Error::StsUnmatchedFormats,
+                 format("left must have %d bits per level as the pair model, see setPairModel()",
+                        model.depth == CV_8U ? 8 : 16));
+    if (size != Size(model.tileWidth, model.tileHeight))
+        CV_Error(Error::StsUnmatchedSizes,
+                 format("left must have %d x %d pixels as the pair model, not %d x %d, see setPairModel()",
+                        model.tileWidth, model.tileHeight, size.width, size.height));
+    const int least = 1 << (layers - 1); // a pixel of the top layer
+    if (std::min(size.width, size.height) < least)
+        CV_Error(Error::StsOutOfRange, format("left must have %d x %d pixels or more for %d layers, not %d x %d", least,
+                                              least, layers, size.width, size.height));
+    const int step = std::max(least, (int)SparseMatches::spacing << std::max(layers - 2, 0)); // of the coarsest grid
+    if (model.x % step != 0 || model.y % step != 0)
+        CV_Error(Error::StsOutOfRange, format("PairModel: x and y must be multiples of %d for %d layers, not %d and %d",
+                                              step, layers, model.x, model.y));
+}
+
+GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size)
+{
+    GivenPair given;
+    const int moved = plan.extension + plan.minDisparity; // columns of the right image
+    given.isGiven = !model.empty();
+    given.alignment.frame = ImageFrame(wholeSize(model, size) + Size(plan.extension, 0));
+    if (!given.isGiven)
+        return given;
+    const int brightness = plan.isCensus ? model.brightness : 1;
+    LevelFindings& levels = given.levels;
+    levels.bits = model.bits;
+    while (1 << levels.brightening < brightness)
+        ++levels.brightening;
+    const double unit = greyScale * brightness;
+    levels.leftBlocks.begin = blockStart(model.leftBlockStart - model.x + plan.extension);
+    levels.leftBlocks.step = model.leftBlockStep * unit;
+    levels.rightBlocks.begin = blockStart(model.rightBlockStart - model.x + moved);
+    levels.rightBlocks.step = model.rightBlockStep * unit;
+
+    // Where the matched image of the model begins: with another range it is moved by other columns.
+    ImageFrame& frame = given.alignment.frame;
+    frame.whole.width = model.width + model.addedColumns;
+    frame.origin = Point(model.x + model.addedColumns + model.minDisparity - moved, model.y);
+    PairFindings& findings = given.alignment.findings;
+    std::copy(model.rows.begin(), model.rows.end(), findings.rows.coefficients.val);
+    findings.hasRows = model.areRowsMoved;
+    std::copy(model.light.begin(), model.light.end(), findings.light.coefficients.val);
+    findings.light = findings.light.scaled(brightness);
+    findings.hasLight = model.isLightChanged;
+    findings.noise.deviation = model.noise * brightness;
+    findings.noise.layer = model.noiseLayer;
+    return given;
+}
+
+PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities, const LevelFindings& levels,
+                      const PairFindings& findings)
+{
+    PairModel model;
+    const double unit = greyScale << levels.brightening;
+    const LightModel light = findings.light.scaled(1. / (1 << levels.brightening));
+    model.width = model.tileWidth = size.width;
+    model.height = model.tileHeight = size.height;
+    model.depth = depth;
+    model.minDisparity = plan.minDisparity;
+    model.numDisparities = numDisparities;
+    model.addedColumns = plan.extension;
+    model.rows.assign(findings.rows.coefficients.val, findings.rows.coefficients.val + RowModel::terms);
+    model.areRowsMoved = findings.hasRows;
+    model.light.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
+    model.isLightChanged = findings.hasLight;
+    model.noise = findings.noise.deviation / (1 << levels.brightening);
+    model.noiseLayer = findings.noise.layer;
+    model.bits = levels.bits;
+    model.brightness = 1 << levels.brightening;
+    model.leftBlockStart = blockStart(levels.leftBlocks.begin - plan.extension);
+    model.leftBlockStep = levels.leftBlocks.step / unit;
+    model.rightBlockStart = blockStart(levels.rightBlocks.begin - plan.extension - plan.minDisparity);
+    model.rightBlockStep = levels.rightBlocks.step / unit;
+    return model;
+}
+
+} // namespace hdp
+
+}} // namespace cv::stereo
