@@ -41,4 +41,5 @@ same library of OpenCV, it is that of cv2, too.)doc");
     addTreeStrategies(module);
     addPredictionModel(module);
     addMatcher(module);
+    addStereoRig(module);
 }
