@@ -1,11 +1,11 @@
-# The programs of samples/; hdp_live if OpenCV has videos.
+# The programs of samples/; hdp_camera if OpenCV has videos.
 
 file(GLOB samples CONFIGURE_DEPENDS samples/*.cpp)
 set(samples_libraries opencv_hdpstereo opencv_imgcodecs)
 if(TARGET opencv_videoio)
   list(APPEND samples_libraries opencv_videoio)
 else()
-  list(FILTER samples EXCLUDE REGEX "/hdp_live[.]cpp$")
+  list(FILTER samples EXCLUDE REGEX "/hdp_camera[.]cpp$")
 endif()
 if(TARGET opencv_highgui)
   list(APPEND samples_libraries opencv_highgui)

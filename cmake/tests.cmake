@@ -106,11 +106,11 @@ if(HDPSTEREO_SAMPLES)
     aloe.png --num-disparities=256)
   add_check(sample_own_tree samples example_hdpstereo_hdp_own_tree ${aloe})
   set(missing "")
-  if(NOT TARGET example_hdpstereo_hdp_live)
+  if(NOT TARGET example_hdpstereo_hdp_camera)
     set(missing "opencv_videoio")
   endif()
-  add_optional_check(sample_live samples "${missing}" example_hdpstereo_hdp_live
-    "${samples_data}/left%02d.jpg" "${samples_data}/right%02d.jpg" --frames=3 --no-gui --output=live.avi)
+  add_optional_check(sample_camera samples "${missing}" example_hdpstereo_hdp_camera
+    "${samples_data}/left%02d.jpg" "${samples_data}/right%02d.jpg" --frames=3 --no-gui --output=camera.avi)
 endif()
 if(HDPSTEREO_TOOLS)
   add_check(program_hdpstereo tools hdpstereo_program ${aloe} aloe_map.png --compare --picture=aloe_picture.png

@@ -21,6 +21,7 @@ void addTreeStrategies(py::module_& module);
 void addPredictionModel(py::module_& module);
 void addPairModel(py::module_& module);
 void addMatcher(py::module_& module);
+void addStereoRig(py::module_& module);
 
 //! The class is known as one of the package, not of the module in it.
 inline void setPackage(py::object& type) { type.attr("__module__") = "hdpstereo"; }

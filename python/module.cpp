@@ -42,4 +42,5 @@ same library of OpenCV, it is that of cv2, too.)doc");
     addPredictionModel(module);
     addPairModel(module);
     addMatcher(module);
+    addStereoRig(module);
 }

@@ -16,6 +16,7 @@ declare -A uses=(
     [map]="base pair cost"
     [video]="base pair cost forest"
     [paper]="base cost forest"
+    [rig]="base"
     [plan]="base pair cost forest scanlines map video paper"
 )
 

@@ -8,6 +8,7 @@
 #include "opencv2/hdpstereo/disparity_prediction.hpp"
 #include "opencv2/hdpstereo/hdp_tree_matcher.hpp"
 #include "opencv2/hdpstereo/pair_model.hpp"
+#include "opencv2/hdpstereo/stereo_rig.hpp"
 
 /** @defgroup hdpstereo Non-local stereo matching with hierarchical disparity prediction
 
@@ -32,7 +33,9 @@ cv::stereo::HDPTreeMatcher is a cv::StereoMatcher, so a program that uses cv::St
 The spanning tree is pluggable, see cv::stereo::TreeStrategy; the distribution that drives the prediction
 is a cv::stereo::DisparityPredictionModel.
 
-Tutorials: @ref tutorial_hdpstereo_matching, @ref tutorial_hdpstereo_own_tree
+cv::stereo::StereoRig leads from raw images of two cameras, and calibrations of several programs, to depth.
+
+Tutorials: @ref tutorial_hdpstereo_matching, @ref tutorial_hdpstereo_own_tree, @ref tutorial_hdpstereo_cameras
 */
 
 #endif

@@ -9,14 +9,18 @@ Fast non-local stereo matching: disparities of a rectified pair, for numpy array
     matcher = hdpstereo.HDPTreeMatcher.create(num_disparities=128, preset='quality', disp12_max_diff=1)
     disparity = matcher.compute(left, right, as_float=True)  # pixels; NaN where there is none
     confidence = matcher.getConfidence()  # 0 .. 255
+
+StereoRig reads calibrations, rectifies raw pairs, and makes depth of disparities.
 '''
 
-from ._hdpstereo import (CV_16S, CV_32F, DisparityPredictionModel, HDPTreeMatcher, PairModel, TreeState, TreeStrategy,
-                         __version__, createMinimumSpanningTree, createRandomTree, createSegmentTree, getNumThreads,
-                         setNumThreads)
+from ._hdpstereo import (CV_16S, CV_32F, DisparityPredictionModel, HDPTreeMatcher, PairModel, RigDrift,
+                         StereoCalibration, StereoRig, TreeState, TreeStrategy, __version__,
+                         createMinimumSpanningTree, createRandomTree, createSegmentTree, getNumThreads,
+                         readStereoCalibration, setNumThreads)
 
-__all__ = ['CV_16S', 'CV_32F', 'DisparityPredictionModel', 'HDPTreeMatcher', 'PairModel', 'TreeState', 'TreeStrategy',
-           'createMinimumSpanningTree', 'createRandomTree', 'createSegmentTree', 'getNumThreads', 'setNumThreads']
+__all__ = ['CV_16S', 'CV_32F', 'DisparityPredictionModel', 'HDPTreeMatcher', 'PairModel', 'RigDrift', 'StereoCalibration',
+           'StereoRig', 'TreeState', 'TreeStrategy', 'createMinimumSpanningTree', 'createRandomTree',
+           'createSegmentTree', 'getNumThreads', 'readStereoCalibration', 'setNumThreads']
 
 # Parameters by name, and repr(), which has the form of the call that creates the matcher
 

@@ -31,7 +31,8 @@ HEADERS = pathlib.Path(__file__).resolve().parents[2] / 'include' / 'opencv2' / 
 OTHERS = {'minDisparity': 3, 'numDisparities': 17, 'blockSize': 5, 'speckleWindowSize': 100, 'speckleRange': 2,
           'disp12MaxDiff': 1, 'disparityDepth': hdpstereo.CV_32F, 'delta0': 0.125, 'beta': 0.5}
 CLASSES = (hdpstereo.TreeState, TreeStrategy, DisparityPredictionModel, HDPTreeMatcher, HDPTreeMatcher.Params,
-           HDPTreeMatcher.Findings, hdpstereo.PairModel)
+           HDPTreeMatcher.Findings, hdpstereo.PairModel, hdpstereo.StereoCalibration, hdpstereo.StereoRig,
+           hdpstereo.RigDrift)
 
 
 def create_pair(shape=(120, 160), background=4, foreground=11):
@@ -104,6 +105,82 @@ class Test(unittest.TestCase):
         self.assertEqual(text, str(context.exception))
 
 
+CAMCHAIN = '''\
+cam0:
+  camera_model: pinhole
+  distortion_coeffs: [-0.1, 0.01, 0.0, 0.0]
+  distortion_model: radtan
+  intrinsics: [200.0, 200.0, 80.0, 60.0]
+  resolution: [160, 120]
+cam1:
+  T_cn_cnm1:
+  - [1.0, 0.0, 0.0, -0.1]
+  - [0.0, 1.0, 0.0, 0.0]
+  - [0.0, 0.0, 1.0, 0.0]
+  - [0.0, 0.0, 0.0, 1.0]
+  camera_model: pinhole
+  distortion_coeffs: [-0.1, 0.01, 0.0, 0.0]
+  distortion_model: radtan
+  intrinsics: [200.0, 200.0, 80.0, 60.0]
+  resolution: [160, 120]
+'''
+
+
+class Rig(Test):
+    def setUp(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.path = pathlib.Path(folder) / 'camchain.yaml'
+            self.path.write_text(CAMCHAIN, encoding='utf-8')
+            self.calibration = hdpstereo.readStereoCalibration(self.path)
+            self.half = hdpstereo.readStereoCalibration(str(self.path), imageSize=(80, 60))
+
+    def test_calibration(self):
+        self.assertEqual((160, 120), self.calibration.imageSize)
+        self.assertEqual((80, 60), self.half.imageSize)
+        self.assertEqual(100, self.half.cameraMatrix1[0, 0])
+        np.testing.assert_allclose([[-0.1], [0], [0]], self.calibration.T)
+        self.assertFalse(self.calibration.isFisheye)
+        other = hdpstereo.StereoCalibration()
+        for name in ('imageSize', 'cameraMatrix1', 'distCoeffs1', 'cameraMatrix2', 'distCoeffs2', 'R', 'T'):
+            setattr(other, name, getattr(self.calibration, name))
+        other.distCoeffs2 = np.zeros(5)
+        self.assertEqual((1, 5), hdpstereo.StereoRig(other).getCalibration().distCoeffs2.shape)
+        with self.assertRaisesRegex(ValueError, 'none.yaml'):
+            hdpstereo.readStereoCalibration('none.yaml')
+
+    def test_depth(self):
+        rig = hdpstereo.StereoRig.create(self.calibration, 40, size=(150, 110))
+        self.assertEqual((150, 110), rig.getSize())
+        self.assertAlmostEqual(0.1, rig.getBaseline())
+        left, right = rig.rectify(LEFT, RIGHT)
+        self.assertEqual(((110, 150, 3), np.uint8), (left.shape, left.dtype))
+        masks = rig.getMasks()
+        self.assertEqual(((110, 150), np.uint8), (masks[1].shape, masks[1].dtype))
+        R1, R2, P1, P2, Q = rig.getRectification()
+        np.testing.assert_allclose(np.eye(3), R1, atol=1e-6)
+        self.assertEqual(((3, 3), (3, 4), (4, 4)), (R2.shape, P2.shape, Q.shape))
+        self.assertAlmostEqual(rig.getFocalLength(), P1[0, 0])
+        disparity = HDPTreeMatcher(0, 16).compute(left, right, as_float=True)
+        depth = rig.computeDepth(disparity)
+        np.testing.assert_allclose(0.1 * P1[0, 0] / disparity[disparity > 0], depth[disparity > 0], rtol=1e-5)
+        self.assertEqual(np.uint16, rig.computeDepth(disparity, millimetres=True).dtype)
+        with self.assertRaisesRegex(ValueError, 'left'):
+            rig.rectify(LEFT[:50], RIGHT[:50])
+
+    def test_drift(self):
+        rig = hdpstereo.StereoRig(self.calibration)
+        _, R2, _, P2, _ = rig.getRectification()
+        drift = hdpstereo.RigDrift.create(P2, rig.getSize(), memory=10)
+        self.assertFalse(drift.add([0] * 5))
+        self.assertTrue(drift.add([0.5, 0, 0, 0, 0]))
+        self.assertEqual(1, drift.getFrames())
+        values, deviations = drift.getEstimate()
+        self.assertLess(abs(values[0] - np.degrees(0.5 / P2[0, 0])), 0.02)
+        self.assertEqual(4, len(deviations))
+        self.assertGreater(drift.correct(self.calibration, R2).R[1, 2], 0.001)
+        self.assertEqual((3, 3), drift.getRotation().shape)
+
+
 class Interface(Test):
     def declared(self, header, pattern):
         names = re.findall(pattern, (HEADERS / header).read_text(encoding='utf-8'))
@@ -126,6 +203,11 @@ class Interface(Test):
             self.assertTrue(callable(getattr(hdpstereo, name, None)), name)
         for name in self.declared('tree_strategy.hpp', r'    virtual [\w:<>]+ (\w+)\('):
             self.assertTrue(callable(getattr(TreeStrategy, name, None)), name)
+        rig = [hdpstereo, hdpstereo.StereoRig, hdpstereo.RigDrift]
+        for name in self.declared('stereo_rig.hpp', r'(?:CV_WRAP|CV_EXPORTS_W) (?:static |virtual )*[\w:<>]+ (\w+)\('):
+            self.assertTrue(any(callable(getattr(place, name, None)) for place in rig), name)
+        for name in self.declared('stereo_rig.hpp', r'CV_PROP_RW \w+ (\w+);'):
+            self.assertTrue(hasattr(hdpstereo.StereoCalibration, name), name)
         for header, wrapped in (('hdp_tree_matcher.hpp', HDPTreeMatcher),
                                 ('disparity_prediction.hpp', DisparityPredictionModel)):
             for name, value in self.declared(header, r'\n +([A-Z][A-Z_0-9]+) = (-?\d+)'):

@@ -41,6 +41,16 @@ def match(left: npt.NDArray[np.uint8], right: npt.NDArray[np.uint8]) -> Tuple[np
     return disparity, findings.stages if findings.areRowsMoved else []
 
 
+def depth(left: npt.NDArray[np.uint8], right: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
+    rig = hdpstereo.StereoRig(hdpstereo.readStereoCalibration(pathlib.Path('left.yaml'), 'right.yaml'), fieldOfView=80)
+    rectified = rig.rectify(left, right)
+    metres: npt.NDArray[np.float32] = rig.computeDepth(HDPTreeMatcher().compute(*rectified))
+    drift = hdpstereo.RigDrift(rig.getRectification()[3], rig.getSize())
+    if drift.add([0, 0.1, 0, 0, 0]):
+        print(drift.correct(rig.getCalibration(), rig.getRectification()[1]).T[0])
+    return metres
+
+
 matcher = HDPTreeMatcher()
 matcher.setNoiseThreshold('wide')  # type: ignore[arg-type]
 matcher.setMaxRowOffset(1.5)  # type: ignore[arg-type]

@@ -541,14 +541,18 @@ TEST(HDPStereo_Programs, read_16_bit)
 }
 
 //! Two numbered sequences, with the calibration of cameras that are rectified already
-TEST(HDPStereo_Programs, live)
+TEST(HDPStereo_Programs, camera)
 {
     const DatasetFolder folder;
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 22);
-    for (const char* number : { "01", "02", "03" })
+    cv::utils::fs::createDirectories(folder.path("lefts"));
+    cv::utils::fs::createDirectories(folder.path("rights"));
+    for (const String number : { "01", "02", "03" })
     {
-        folder.write(String("left") + number + ".png", pair.left);
-        folder.write(String("right") + number + ".png", pair.right);
+        folder.write("left" + number + ".png", pair.left);
+        folder.write("right" + number + ".png", pair.right);
+        folder.write("lefts/" + number + ".png", pair.left);
+        folder.write("rights/" + number + ".png", pair.right);
     }
     const Mat camera = (Mat_<double>(3, 3) << 200, 0, 79.5, 0, 200, 59.5, 0, 0, 1), none = Mat::zeros(1, 5, CV_64F);
     const String intrinsics = folder.path("intrinsics.yml"), extrinsics = folder.path("extrinsics.yml");
@@ -557,17 +561,37 @@ TEST(HDPStereo_Programs, live)
     out << "R" << Mat::eye(3, 3, CV_64F) << "T" << (Mat_<double>(3, 1) << -2, 0, 0);
     in.release();
     out.release();
-    const String command = "example_hdpstereo_hdp_live " + folder.path("left%02d.png") + " " +
-                           folder.path("right%02d.png") + " --no-gui --num-disparities=32 -i=" + intrinsics +
-                           " -e=" + extrinsics;
-    const Execution all = run(folder, command + " --output=" + folder.path("shown%02d.png"));
+    const String program = "example_hdpstereo_hdp_camera ", options = " --no-gui --num-disparities=32 -c=" + intrinsics +
+                           " --calibration2=" + extrinsics + " --unit=0.1";
+    const String command = program + folder.path("left%02d.png") + " " + folder.path("right%02d.png") + options;
+    const Execution all = run(folder, command + " --output=" + folder.path("shown%02d.png") + " --watch");
     EXPECT_EQ(0, all.status) << all.errors;
-    EXPECT_EQ(0u, all.output.find("3 frames, ")) << all.output;
+    EXPECT_NE(String::npos, all.output.find("3 frames, ")) << all.output;
+    EXPECT_NE(String::npos, all.output.find("right camera after ")) << all.output;
     EXPECT_EQ(Size(320, 120), cv::imread(folder.path("shown02.png")).size());
     EXPECT_NE(String::npos, all.output.find("flicker 0.00 px")) << all.output; // the frames are the same
     const String single = run(folder, command + " --frames=2 --scale=0.5 --single-frames").output;
     EXPECT_EQ(0u, single.find("2 frames, ")) << single;
     EXPECT_EQ(1, run(folder, command + " --preset=tree").status);
+
+    // Folders; and one picture with both images
+    const String results = folder.path("results");
+    EXPECT_EQ(0u, run(folder, program + folder.path("lefts") + " " + folder.path("rights") + options + " --results=" +
+                                  results).output.find("3 frames, "));
+    const Mat depth = cv::imread(results + "/000002_depth.png", IMREAD_ANYDEPTH);
+    const Mat disparity = cv::imread(results + "/000002_disparity.pfm", IMREAD_ANYDEPTH);
+    ASSERT_EQ(CV_16UC1, depth.type());
+    ASSERT_EQ(pair.left.size(), depth.size());
+    EXPECT_NEAR(1000 * 200 * 0.2 / disparity.at<float>(60, 100), depth.at<ushort>(60, 100), 1);
+    const Mat metres = cv::imread(results + "/000002_depth.pfm", IMREAD_ANYDEPTH);
+    EXPECT_NEAR(metres.at<float>(60, 100), depth.at<ushort>(60, 100) / 1000., 0.001);
+    EXPECT_TRUE(cv::utils::fs::exists(results + "/000002_points.ply"));
+    Mat both;
+    cv::hconcat(pair.left, pair.right, both);
+    folder.write("both.png", both);
+    EXPECT_EQ(0u, run(folder, program + folder.path("both.png") + options).output.find("1 frames, "));
+    EXPECT_NE(String::npos, run(folder, program + folder.path("both.png") + " --no-gui -c=" + intrinsics).errors.find(
+                                "intrinsics.yml': T/data is missing"));
 
     for (int type : { CV_8UC1, CV_16UC1, CV_8UC4 })
     {
@@ -580,7 +604,7 @@ TEST(HDPStereo_Programs, live)
         }
         EXPECT_EQ(0u, run(folder, command + " --frames=1").output.find("1 frames, ")) << "type " << type;
     }
-    EXPECT_EQ(1, run(folder, "example_hdpstereo_hdp_live no/such/video.avi --no-gui").status);
+    EXPECT_EQ(1, run(folder, program + "no/such/video.avi --no-gui").status);
 }
 
 }} // namespace opencv_test

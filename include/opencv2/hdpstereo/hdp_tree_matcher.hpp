@@ -9,6 +9,7 @@
 #include "opencv2/core/version.hpp"
 #if CV_VERSION_MAJOR >= 5
 #include "opencv2/geometry/2d.hpp"
+#include "opencv2/geometry/3d.hpp"
 #include "opencv2/stereo.hpp"
 #else
 #include "opencv2/calib3d.hpp"

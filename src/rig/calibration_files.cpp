@@ -1,0 +1,432 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "calibration_files.hpp"
+
+#include <cmath>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+typedef std::vector<CalibrationText> Texts;
+
+// Numbers of a calibration are below this: its squares and products stay finite.
+const double largest = 1e6;
+
+struct Camera
+{
+    Size size;
+    Matx33d matrix;
+    std::vector<double> distortion;
+    bool isFisheye;
+};
+
+Matx33d cameraMatrix(double fx, double fy, double cx, double cy) { return Matx33d(fx, 0, cx, 0, fy, cy, 0, 0, 1); }
+
+Size sizeOf(const CalibrationText& text, double width, double height, const std::string& path)
+{
+    const int most = 1 << 15;
+    if (!(width >= 1 && width <= most && height >= 1 && height <= most) || width != std::floor(width) ||
+        height != std::floor(height))
+        text.fail(path, format("whole numbers from 1 to %d", most));
+    return Size((int)width, (int)height);
+}
+
+StereoCalibration join(const Camera& left, const Camera& right, const Matx33d& R, const Vec3d& T)
+{
+    StereoCalibration calibration;
+    calibration.imageSize = left.size;
+    calibration.cameraMatrix1 = Mat(left.matrix, true);
+    calibration.distCoeffs1 = Mat(left.distortion, true);
+    calibration.cameraMatrix2 = Mat(right.matrix, true);
+    calibration.distCoeffs2 = Mat(right.distortion, true);
+    calibration.R = Mat(R, true);
+    calibration.T = Mat(T, true);
+    calibration.isFisheye = left.isFisheye;
+    return calibration;
+}
+
+void requireAlike(const CalibrationText& text, const Camera& left, const Camera& right)
+{
+    if (left.size != right.size)
+        CV_Error(Error::StsParseError,
+                 format("'%s': the right camera has images of %d x %d pixels, the left one of %d x %d",
+                        text.file().c_str(), right.size.width, right.size.height, left.size.width, left.size.height));
+    if (left.isFisheye != right.isFisheye)
+        CV_Error(Error::StsParseError, "'" + text.file() + "': one camera is a fisheye, the other one is not");
+}
+
+//! A pose as a matrix of 4 x 4
+void readPose(const CalibrationText& text, const std::string& path, Matx33d& R, Vec3d& T)
+{
+    const std::vector<double> values = text.numbers(path, 16);
+    const Matx44d pose(values.data());
+    if (pose.row(3) != Matx14d(0, 0, 0, 1))
+        text.fail(path, "a pose, with 0, 0, 0, 1 in its last row");
+    R = pose.get_minor<3, 3>(0, 0);
+    T = Vec3d(pose(0, 3), pose(1, 3), pose(2, 3));
+}
+
+//! The names that Kalibr, EuRoC and ROS have for models; count: of the coefficients, 0 if it varies
+bool isFisheyeModel(const CalibrationText& text, const std::string& path, size_t& count)
+{
+    const std::string model = text.word(path);
+    count = model == "none" || model == "plumb_bob" || model == "rational_polynomial" ? 0 : 4;
+    if (model == "equidistant" || model == "fisheye")
+        return true;
+    if (count == 4 && model != "radtan" && model != "radial-tangential")
+        text.fail(path,
+                  "one of plumb_bob, rational_polynomial, radtan, radial-tangential, equidistant and none, not '" +
+                      model + "'");
+    return false;
+}
+
+//! What Kalibr and EuRoC have in common
+Camera readPinhole(const CalibrationText& text, const std::string& camera, const std::string& coefficients)
+{
+    if (text.word(camera + "camera_model") != "pinhole")
+        text.fail(camera + "camera_model", "pinhole, not '" + text.word(camera + "camera_model") + "'");
+    Camera result;
+    const std::vector<double> size = text.numbers(camera + "resolution", 2);
+    result.size = sizeOf(text, size[0], size[1], camera + "resolution");
+    const std::vector<double> in = text.numbers(camera + "intrinsics", 4);
+    result.matrix = cameraMatrix(in[0], in[1], in[2], in[3]);
+    size_t count;
+    result.isFisheye = isFisheyeModel(text, camera + "distortion_model", count);
+    result.distortion = count == 0 ? std::vector<double>(4) : text.numbers(camera + coefficients, count);
+    return result;
+}
+
+StereoCalibration readKalibr(const CalibrationText& text)
+{
+    const Camera left = readPinhole(text, "cam0/", "distortion_coeffs");
+    const Camera right = readPinhole(text, "cam1/", "distortion_coeffs");
+    requireAlike(text, left, right);
+    Matx33d R;
+    Vec3d T;
+    readPose(text, "cam1/T_cn_cnm1", R, T);
+    return join(left, right, R, T);
+}
+
+StereoCalibration readEuroc(const Texts& texts)
+{
+    Camera cameras[2];
+    Matx33d R[2]; // from the camera to the body
+    Vec3d T[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        cameras[i] = readPinhole(texts[i], "", "distortion_coefficients");
+        readPose(texts[i], texts[i].has("T_BS/data") || !texts[i].has("T_BS") ? "T_BS/data" : "T_BS", R[i], T[i]);
+    }
+    requireAlike(texts[1], cameras[0], cameras[1]);
+    return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * (T[0] - T[1]));
+}
+
+StereoCalibration readRos(const Texts& texts)
+{
+    Camera cameras[2];
+    Matx33d R[2]; // rectification
+    double offsets[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        const CalibrationText& text = texts[i];
+        Camera& camera = cameras[i];
+        camera.size = sizeOf(text, text.number("image_width"), text.number("image_height"), "image_width");
+        camera.matrix = Matx33d(text.numbers("camera_matrix/data", 9).data());
+        size_t count;
+        camera.isFisheye = isFisheyeModel(text, "distortion_model", count);
+        camera.distortion = text.numbers("distortion_coefficients/data", count);
+        if (camera.distortion.empty()) // of images that are rectified
+            camera.distortion.resize(4);
+        R[i] = Matx33d(text.numbers("rectification_matrix/data", 9).data());
+        const std::vector<double> P = text.numbers("projection_matrix/data", 12);
+        if (!(P[0] > 0))
+            text.fail("projection_matrix/data", "of a focal length above 0");
+        offsets[i] = P[3] / P[0];
+    }
+    requireAlike(texts[1], cameras[0], cameras[1]);
+    return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * Vec3d(offsets[1] - offsets[0], 0, 0));
+}
+
+//! Each matrix is in one of the texts: M1 and so on.
+const CalibrationText& textWith(const Texts& texts, const std::string& name)
+{
+    return texts.size() > 1 && (texts[1].has(name) || (!texts[0].has(name) && (name == "R" || name == "T"))) ? texts[1]
+                                                                                                             : texts[0];
+}
+
+std::vector<double> readMatrix(const Texts& texts, const std::string& name, size_t count)
+{
+    return textWith(texts, name).numbers(name + "/data", count);
+}
+
+StereoCalibration readOpenCV(const Texts& texts, Size imageSize, double unit)
+{
+    Camera cameras[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        cameras[i].size = imageSize;
+        cameras[i].matrix = Matx33d(readMatrix(texts, i ? "M2" : "M1", 9).data());
+        cameras[i].distortion = readMatrix(texts, i ? "D2" : "D1", 0);
+        const CalibrationText& text = textWith(texts, "fisheye_model");
+        cameras[i].isFisheye = text.has("fisheye_model") && text.number("fisheye_model") != 0;
+    }
+    if (imageSize.empty())
+        CV_Error(Error::StsBadArg, "imageSize must be given: '" + texts[0].file() + "' does not have it");
+    for (int i = 0; i < 2; ++i)
+    {
+        const Matx33d& K = cameras[i].matrix;
+        const Point2d offset(K(0, 2) / imageSize.width - 0.5, K(1, 2) / imageSize.height - 0.5);
+        if (std::max(std::abs(offset.x), std::abs(offset.y)) > 0.25)
+            textWith(texts, i ? "M2" : "M1")
+                .fail(i ? "M2" : "M1",
+                      format("of a principal point near the middle: is it for images of %d x %d pixels?",
+                             imageSize.width, imageSize.height));
+    }
+    const std::vector<double> T = readMatrix(texts, "T", 3);
+    return join(cameras[0], cameras[1], Matx33d(readMatrix(texts, "R", 9).data()), Vec3d(T.data()) * unit);
+}
+
+//! Sections of the ZED's files, by the size of the images
+struct ZedMode
+{
+    const char* name;
+    Size size;
+};
+
+const ZedMode zedModes[] = { { "2K", Size(2208, 1242) }, { "FHD", Size(1920, 1080) },     { "HD", Size(1280, 720) },
+                             { "VGA", Size(672, 376) },  { "FHD1200", Size(1920, 1200) }, { "SVGA", Size(960, 600) },
+                             { "4K", Size(3840, 2160) }, { "QHDPLUS", Size(3200, 1800) } };
+
+bool haveSameAspect(Size a, Size b)
+{
+    // A pixel may be cut off.
+    return std::abs((double)a.width * b.height / b.width - a.height) <= 1;
+}
+
+//! The mode of this size; otherwise the first one of the aspect that the file has
+const ZedMode& zedModeOf(const CalibrationText& text, Size imageSize)
+{
+    for (const bool isScaled : { false, true })
+        for (const ZedMode& mode : zedModes)
+            if ((isScaled ? haveSameAspect(imageSize, mode.size) : imageSize == mode.size) &&
+                text.has(std::string("LEFT_CAM_") + mode.name + "/FX"))
+                return mode;
+    std::string names;
+    for (const ZedMode& mode : zedModes)
+        if (text.has(std::string("LEFT_CAM_") + mode.name + "/FX"))
+            names += format("%s%d x %d", names.empty() ? "" : ", ", mode.size.width, mode.size.height);
+    if (names.empty())
+        text.fail("LEFT_CAM_HD/FX", "the focal length of the left camera");
+    CV_Error(Error::StsBadArg, format("imageSize must be that of one camera: '%s' is for %s, not %d x %d",
+                                      text.file().c_str(), names.c_str(), imageSize.width, imageSize.height));
+}
+
+Camera readZedCamera(const CalibrationText& text, const std::string& side, const ZedMode& mode)
+{
+    const std::string section = side + "_CAM_" + mode.name + "/";
+    const std::string distortion =
+        text.has(section + "K1") || !text.hasBelow(side + "_DISTO/") ? section : side + "_DISTO/";
+    Camera camera;
+    camera.size = mode.size;
+    camera.matrix = cameraMatrix(text.number(section + "FX"), text.number(section + "FY"), text.number(section + "CX"),
+                                 text.number(section + "CY"));
+    camera.isFisheye = distortion != section && !text.has(distortion + "P1");
+    for (const char* name : { "K1", "K2", "P1", "P2", "K3", "K4", "K5", "K6" })
+    {
+        const bool isTangential = name[0] == 'P', isRational = name[0] == 'K' && name[1] > '3';
+        const bool isOptional = isRational && !camera.isFisheye;
+        if (!(isTangential && camera.isFisheye) && !(isOptional && !text.has(distortion + name)) &&
+            camera.distortion.size() < (camera.isFisheye ? 4 : 8))
+            camera.distortion.push_back(text.number(distortion + name));
+    }
+    return camera;
+}
+
+//! As the vendor's open drivers give them to cv::stereoRectify, which knows the sign of the translation by itself
+StereoCalibration readZed(const CalibrationText& text, Size imageSize)
+{
+    if (imageSize.empty())
+        CV_Error(Error::StsBadArg, "imageSize must be given: '" + text.file() + "' is for cameras of several sizes");
+    const ZedMode& mode = zedModeOf(text, imageSize);
+    const Camera left = readZedCamera(text, "LEFT", mode), right = readZedCamera(text, "RIGHT", mode);
+    requireAlike(text, left, right);
+    const auto stereo = [&](const std::string& name) {
+        const std::string ofMode = "STEREO/" + name + "_" + mode.name;
+        return text.number(text.has(ofMode) || !text.has("STEREO/" + name) ? ofMode : "STEREO/" + name);
+    };
+    const Vec3d rotation(stereo("RX"), stereo("CV"), stereo("RZ"));
+    const Vec3d position(text.number("STEREO/BASELINE"), stereo("TY"), stereo("TZ"));
+    Matx33d R;
+    Rodrigues(rotation, R);
+    return join(left, right, R, -1e-3 * position);
+}
+
+bool hasAny(const Texts& texts, const std::vector<const char*>& prefixes)
+{
+    for (const CalibrationText& text : texts)
+        for (const char* prefix : prefixes)
+            if (text.hasBelow(prefix))
+                return true;
+    return false;
+}
+
+void requireFiles(const Texts& texts, size_t count, const char* kind)
+{
+    if (texts.size() != count)
+        CV_Error(Error::StsBadArg,
+                 "'" + texts[0].file() + "' is of " + kind + ", which has " +
+                     (count == 1 ? "one file for both cameras" : "a file for each camera: second must be given"));
+}
+
+StereoCalibration readKind(const Texts& texts, Size imageSize, double unit)
+{
+    if (hasAny(texts, { "LEFT_CAM_", "RIGHT_CAM_", "STEREO/" }))
+    {
+        requireFiles(texts, 1, "the ZED");
+        return readZed(texts[0], imageSize);
+    }
+    if (hasAny(texts, { "cam0/", "cam1/" }))
+    {
+        requireFiles(texts, 1, "Kalibr");
+        return readKalibr(texts[0]);
+    }
+    if (hasAny(texts, { "camera_matrix", "rectification_matrix", "projection_matrix" }))
+    {
+        requireFiles(texts, 2, "ROS");
+        return readRos(texts);
+    }
+    if (hasAny(texts, { "T_BS", "sensor_type", "intrinsics" }))
+    {
+        requireFiles(texts, 2, "EuRoC");
+        return readEuroc(texts);
+    }
+    if (hasAny(texts, { "M1/", "D1/", "M2/", "D2/", "R/", "T/" }))
+        return readOpenCV(texts, imageSize, unit);
+    CV_Error(Error::StsParseError,
+             "'" + texts[0].file() + "' is no calibration of OpenCV, ROS, Kalibr, EuRoC or the ZED that is known");
+}
+
+//! Camera matrices for images of another size
+void scale(const std::string& source, Size size, StereoCalibration& calibration)
+{
+    const Size old = calibration.imageSize;
+    if (!haveSameAspect(size, old))
+        CV_Error(Error::StsBadArg, format("%s is for images of %d x %d pixels: those of %d x %d have another aspect",
+                                          source.c_str(), old.width, old.height, size.width, size.height));
+    const double x = (double)size.width / old.width, y = (double)size.height / old.height;
+    const Matx33d scaling(x, 0, 0.5 * x - 0.5, 0, y, 0.5 * y - 0.5, 0, 0, 1); // pixels are around whole numbers
+    for (Mat* matrix : { &calibration.cameraMatrix1, &calibration.cameraMatrix2 })
+        *matrix = Mat(scaling * Matx33d(*matrix), true);
+    calibration.imageSize = size;
+}
+
+// Of checkCalibration(): each changes the field to its documented form.
+
+[[noreturn]] void failOf(const std::string& source, const std::string& field, const char* expected)
+{
+    CV_Error(Error::StsBadArg, source + ": " + field + " must be " + expected);
+}
+
+void checkNumbers(const std::string& source, const std::string& field, Mat& matrix)
+{
+    if (matrix.channels() != 1 || matrix.dims > 2 || matrix.empty())
+        failOf(source, field, "a matrix of one channel");
+    Mat numbers;
+    matrix.convertTo(numbers, CV_64F);
+    if (!checkRange(numbers, true, 0, -largest, largest))
+        failOf(source, field, "of finite numbers of a magnitude below 1000000");
+    matrix = numbers;
+}
+
+void checkCamera(const std::string& source, const std::string& number, Size size, bool isFisheye, Mat& matrix, Mat& D)
+{
+    const std::string name = "cameraMatrix" + number, coefficients = "distCoeffs" + number;
+    checkNumbers(source, name, matrix);
+    if (matrix.size() != Size(3, 3))
+        failOf(source, name, "3 x 3");
+    const Matx33d K(matrix);
+    if (!(K(0, 0) >= 1 && K(1, 1) >= 1))
+        failOf(source, name, "of focal lengths above 1 pixel");
+    if (K(0, 1) != 0 || K(1, 0) != 0 || K(2, 0) != 0 || K(2, 1) != 0 || K(2, 2) != 1)
+        failOf(source, name, "of the form fx, 0, cx, 0, fy, cy, 0, 0, 1");
+    if (!(K(0, 2) >= 0 && K(0, 2) <= size.width && K(1, 2) >= 0 && K(1, 2) <= size.height))
+        failOf(source, name, format("of a principal point in the image of %d x %d", size.width, size.height).c_str());
+    checkNumbers(source, coefficients, D);
+    D = D.reshape(1, 1);
+    const int count = D.cols;
+    if (isFisheye && count != 4)
+        failOf(source, coefficients, "4 numbers with fisheye");
+    if (count != 4 && count != 5 && count != 8 && count != 12 && count != 14)
+        failOf(source, coefficients, "4, 5, 8, 12 or 14 numbers");
+}
+
+void checkPose(const std::string& source, StereoCalibration& calibration)
+{
+    checkNumbers(source, "R", calibration.R);
+    if (calibration.R.size() != Size(3, 3))
+        failOf(source, "R", "3 x 3");
+    const Matx33d R(calibration.R);
+    if (norm(R * R.t(), Matx33d::eye(), NORM_INF) > 1e-2 || determinant(R) < 0)
+        failOf(source, "R", "a rotation");
+    Matx31d w;
+    Matx33d u, vt;
+    SVD::compute(R, w, u, vt);
+    calibration.R = Mat(u * vt, true); // files have few digits
+
+    checkNumbers(source, "T", calibration.T);
+    if (calibration.T.total() != 3)
+        failOf(source, "T", "3 numbers");
+    calibration.T = calibration.T.reshape(1, 3);
+    const Vec3d right = -(Matx33d(calibration.R).t() * Vec3d(calibration.T.ptr<double>()));
+    if (norm(right) < 1 / largest)
+        failOf(source, "T", "a baseline above 0");
+    if (std::abs(right[0]) < std::max(std::abs(right[1]), std::abs(right[2])))
+        failOf(source, "T", "that of cameras side by side");
+    if (right[0] < 0)
+        failOf(source, "T", "that of a second camera to the right of the first one: exchange them, and their images");
+}
+
+} // namespace
+
+StereoCalibration toCalibration(const Texts& texts, Size imageSize, double unit)
+{
+    StereoCalibration calibration = readKind(texts, imageSize, unit);
+    std::string source = "'" + texts[0].file() + "'";
+    if (texts.size() > 1)
+        source += " with '" + texts[1].file() + "'";
+    checkCalibration(source, calibration);
+    if (!imageSize.empty())
+        scale(source, imageSize, calibration);
+    return calibration;
+}
+
+void checkCalibration(const std::string& source, StereoCalibration& calibration)
+{
+    StereoCalibration c = calibration;
+    const int most = 1 << 15;
+    if (c.imageSize.width < 1 || c.imageSize.height < 1 || c.imageSize.width > most || c.imageSize.height > most)
+        failOf(source, "imageSize", "from 1 x 1 to 32768 x 32768");
+    checkCamera(source, "1", c.imageSize, c.isFisheye, c.cameraMatrix1, c.distCoeffs1);
+    checkCamera(source, "2", c.imageSize, c.isFisheye, c.cameraMatrix2, c.distCoeffs2);
+    checkPose(source, c);
+    calibration = c;
+}
+
+}}} // namespace cv::stereo::hdp
+
+cv::stereo::StereoCalibration cv::stereo::readStereoCalibration(const String& first, const String& second,
+                                                                Size imageSize, double unit)
+{
+    CV_TRACE_FUNCTION();
+    if (imageSize != Size() && (imageSize.width < 1 || imageSize.height < 1))
+        CV_Error(Error::StsOutOfRange, "imageSize must be above 0, or not given");
+    if (!(unit > 0 && unit <= 1e6))
+        CV_Error(Error::StsOutOfRange, "unit must be above 0, and not above 1000000");
+    std::vector<hdp::CalibrationText> texts(1, hdp::readCalibrationText(first));
+    if (!second.empty())
+        texts.push_back(hdp::readCalibrationText(second));
+    return hdp::toCalibration(texts, imageSize, unit);
+}

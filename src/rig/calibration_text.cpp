@@ -1,0 +1,278 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "calibration_text.hpp"
+
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <locale>
+#include <sstream>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+const size_t maxBytes = 1 << 20; // calibrations have a few thousand
+
+std::string trimmed(const std::string& text)
+{
+    const char* const blanks = " \t\r";
+    const size_t first = text.find_first_not_of(blanks);
+    return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string withoutQuotes(const std::string& word)
+{
+    const bool isQuoted = word.size() >= 2 && (word[0] == '"' || word[0] == '\'') && word.back() == word[0];
+    return isQuoted ? word.substr(1, word.size() - 2) : word;
+}
+
+//! Up to a mark of comments that follows a blank and is in no quotes
+std::string withoutComment(const std::string& line, const char* marks)
+{
+    char quote = 0;
+    for (size_t i = 0; i < line.size(); ++i)
+    {
+        const bool isAfterBlank = i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t';
+        if (quote)
+            quote = line[i] == quote ? 0 : quote;
+        else if (isAfterBlank && std::strchr(marks, line[i]))
+            return line.substr(0, i);
+        else if (isAfterBlank && (line[i] == '"' || line[i] == '\''))
+            quote = line[i];
+    }
+    return line;
+}
+
+void failAt(const std::string& file, int line, const std::string& what)
+{
+    CV_Error(Error::StsParseError, format("'%s': line %d %s", file.c_str(), line, what.c_str()));
+}
+
+std::string inUpperCase(std::string text)
+{
+    for (char& c : text)
+        c = (char)std::toupper((uchar)c);
+    return text;
+}
+
+} // namespace
+
+class IniReader
+{
+public:
+    static void read(std::istream& lines, CalibrationText& text)
+    {
+        std::string line, section;
+        for (int number = 1; std::getline(lines, line); ++number)
+        {
+            line = trimmed(withoutComment(line, "#;"));
+            const size_t equals = line.find('=');
+            if (line.empty())
+                continue;
+            if (line[0] == '[' && line.back() == ']')
+                section = inUpperCase(trimmed(line.substr(1, line.size() - 2)));
+            else if (equals == std::string::npos || equals == 0)
+                failAt(text.file_, number, "is neither [SECTION] nor KEY=VALUE");
+            else
+                text.addField(section + "/" + inUpperCase(trimmed(line.substr(0, equals))),
+                              { withoutQuotes(trimmed(line.substr(equals + 1))) }, number);
+        }
+    }
+};
+
+//! Line by line; a list in brackets may go over some of them.
+class YamlReader
+{
+public:
+    static void read(std::istream& lines, CalibrationText& text)
+    {
+        YamlReader reader(text);
+        std::string line;
+        for (reader.line_ = 1; std::getline(lines, line); ++reader.line_)
+            reader.readLine(line);
+        if (reader.depth_ > 0)
+            failAt(text.file_, reader.line_ - 1, "is the last one, and a list has no closing bracket");
+    }
+
+private:
+    //! What following lines that are indented by more belong to
+    struct Parent
+    {
+        size_t indentation;
+        std::string path;
+    };
+
+    explicit YamlReader(CalibrationText& text) : text_(text), line_(0), depth_(0) {}
+
+    void readLine(const std::string& line)
+    {
+        if (line.find('\0') != std::string::npos)
+            failAt(text_.file_, line_, "has a byte 0: this is no text");
+        const std::string content = trimmed(withoutComment(line, "#"));
+        if (content.empty() || content == "---" || content == "..." || line[0] == '%')
+            return;
+        if (depth_ > 0)
+            return readList(content);
+        const size_t indentation = line.find_first_not_of(' ');
+        if (line[indentation] == '\t')
+            failAt(text_.file_, line_, "is indented by a tab: YAML wants blanks");
+        if (content == "-" || content.compare(0, 2, "- ") == 0)
+            return readItem(indentation, content);
+
+        const size_t colon = findColon(content);
+        if (colon == std::string::npos || colon == 0)
+            failAt(text_.file_, line_, "is neither 'key: value' nor an item of a list");
+        while (!parents_.empty() && parents_.back().indentation >= indentation)
+            parents_.pop_back();
+        path_ = (parents_.empty() ? "" : parents_.back().path + "/") + withoutQuotes(trimmed(content.substr(0, colon)));
+        text_.addField(path_, {}, line_);
+        parents_.push_back({ indentation, path_ });
+        readValue(trimmed(content.substr(colon + 1)));
+    }
+
+    static size_t findColon(const std::string& content)
+    {
+        size_t colon = content.find(':');
+        while (colon != std::string::npos && colon + 1 < content.size() && content[colon + 1] != ' ' &&
+               content[colon + 1] != '\t')
+            colon = content.find(':', colon + 1);
+        return colon;
+    }
+
+    //! It may be indented as its key is.
+    void readItem(size_t indentation, std::string content)
+    {
+        while (!parents_.empty() && parents_.back().indentation > indentation)
+            parents_.pop_back();
+        if (parents_.empty())
+            failAt(text_.file_, line_, "is an item of a list without a name");
+        path_ = parents_.back().path;
+        while (content == "-" || content.compare(0, 2, "- ") == 0)
+            content = trimmed(content.substr(1));
+        readValue(content);
+    }
+
+    void readValue(std::string value)
+    {
+        if (value.compare(0, 1, "!") == 0) // a tag, such as OpenCV's !!opencv-matrix
+            value = trimmed(value.substr(std::min(value.find(' '), value.size())));
+        if (value.empty())
+            return;
+        if (value[0] == '|' || value[0] == '>')
+            failAt(text_.file_, line_, "begins a text of several lines, which is not read");
+        if (value[0] == '[' || value[0] == '{')
+            return readList(value);
+        text_.fields_[path_].push_back(withoutQuotes(value));
+    }
+
+    //! What is between brackets and commas
+    void readList(const std::string& content)
+    {
+        std::string word;
+        for (const char c : content + ",")
+        {
+            const bool opens = c == '[' || c == '{', closes = c == ']' || c == '}';
+            if (!opens && !closes && c != ',')
+            {
+                word += c;
+                continue;
+            }
+            word = trimmed(word);
+            if (!word.empty() && depth_ == 0)
+                failAt(text_.file_, line_, "goes on after the closing bracket");
+            if (!word.empty())
+                text_.fields_[path_].push_back(withoutQuotes(word));
+            word.clear();
+            depth_ += opens ? 1 : closes ? -1 : 0;
+            if (depth_ < 0)
+                failAt(text_.file_, line_, "closes a bracket that was not opened");
+        }
+    }
+
+    CalibrationText& text_;
+    int line_, depth_; // brackets that are open
+    std::string path_; // of the value that is being read
+    std::vector<Parent> parents_;
+};
+
+CalibrationText::CalibrationText(const std::string& file, const std::string& text) : file_(file), isIni_(false)
+{
+    const bool hasMark = text.compare(0, 3, "\xEF\xBB\xBF") == 0; // of UTF-8
+    std::istringstream lines(hasMark ? text.substr(3) : text);
+    std::string line;
+    while (line.empty() && std::getline(lines, line))
+        line = trimmed(withoutComment(line, "#;"));
+    isIni_ = line.compare(0, 1, "[") == 0;
+    lines.clear();
+    lines.seekg(0);
+    if (isIni_)
+        IniReader::read(lines, *this);
+    else
+        YamlReader::read(lines, *this);
+}
+
+void CalibrationText::addField(const std::string& path, const std::vector<std::string>& words, int line)
+{
+    if (!fields_.insert(std::make_pair(path, words)).second)
+        failAt(file_, line, "has '" + path + "' for the second time");
+}
+
+bool CalibrationText::hasBelow(const std::string& prefix) const
+{
+    const auto next = fields_.lower_bound(prefix);
+    return next != fields_.end() && next->first.compare(0, prefix.size(), prefix) == 0;
+}
+
+void CalibrationText::fail(const std::string& path, const std::string& expected) const
+{
+    CV_Error(Error::StsParseError,
+             "'" + file_ + "': " + path + (has(path) ? " must be " : " is missing, which must be ") + expected);
+}
+
+std::string CalibrationText::word(const std::string& path) const
+{
+    if (!has(path) || fields_.at(path).size() != 1)
+        fail(path, "one word");
+    return fields_.at(path)[0];
+}
+
+std::vector<double> CalibrationText::numbers(const std::string& path, size_t count) const
+{
+    const std::string expected = count == 0   ? "finite numbers"
+                                 : count == 1 ? "a finite number"
+                                              : format("%d finite numbers", (int)count);
+    if (!has(path) || (count > 0 && fields_.at(path).size() != count))
+        fail(path, expected);
+    std::vector<double> values;
+    for (const std::string& word : fields_.at(path))
+    {
+        std::istringstream stream(word);
+        stream.imbue(std::locale::classic());
+        double value;
+        if (!(stream >> value) || stream.peek() != EOF || !std::isfinite(value))
+            fail(path, expected + ", not '" + word + "'");
+        values.push_back(value);
+    }
+    return values;
+}
+
+double CalibrationText::number(const std::string& path) const { return numbers(path, 1)[0]; }
+
+CalibrationText readCalibrationText(const std::string& file)
+{
+    std::ifstream stream(file.c_str(), std::ios::binary);
+    std::string text(maxBytes + 1, '\0');
+    stream.read(&text[0], (std::streamsize)text.size());
+    text.resize((size_t)std::max<std::streamsize>(stream.gcount(), 0));
+    if (text.empty())
+        CV_Error(Error::StsObjectNotFound, "cannot read the calibration '" + file + "'");
+    if (text.size() > maxBytes)
+        CV_Error(Error::StsParseError, "'" + file + "' is too large for a calibration");
+    return CalibrationText(file, text);
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,254 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "opencv2/hdpstereo/stereo_rig.hpp"
+
+#include "../base/tunable.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cv { namespace stereo {
+
+namespace {
+
+HDP_TUNABLE(double, frameDeviation, 0.03, "pixels",
+            "of the rows that one frame tells, until frames tell it themselves");
+HDP_TUNABLE(double, modelDeviation, 0.02, "pixels", "of rows in the mean of any number of frames: lenses and matching");
+HDP_TUNABLE(double, contradiction, 6, "deviations", "of a frame from those before");
+HDP_TUNABLE(double, certainty, 2, "deviations", "of yaw and focal length, from which they are corrected");
+const int maxContradictions = 5; // in a row
+const int firstFrames = 5;       // are too few to contradict
+
+const int terms = 4; // pitch, yaw, roll in radians, relative growth of the focal length
+typedef Vec<double, terms> Terms;
+
+const int samples = 8; // places, along each side of the image
+const int rowTerms = 5;
+
+//! Rotation in rectified coordinates: x to the right, y down. Positive: up, to the right, clockwise.
+Matx33d rotationOf(const Terms& turn)
+{
+    // Points of the image go the opposite way.
+    Matx33d R;
+    Rodrigues(Vec3d(-turn[0], -turn[1], -turn[2]), R);
+    return R;
+}
+
+class RigDriftImpl CV_FINAL : public RigDrift
+{
+public:
+    RigDriftImpl(const Matx33d& cameraMatrix, Size size, int memory)
+        : K_(cameraMatrix), size_(size), memory_(memory), frames_(0), contradictions_(0)
+    {
+        Matx<double, terms, terms> information;
+        for (const Point2d& place : places())
+        {
+            slopes_.push_back(slopesAt(place));
+            information += slopes_.back() * slopes_.back().t();
+        }
+        inverse_ = information.inv(DECOMP_SVD);
+        for (int i = 0; i < terms; ++i)
+            unit_[i] = std::sqrt(inverse_(i, i) * samples * samples);
+    }
+
+    bool add(const std::vector<double>& rows) CV_OVERRIDE
+    {
+        if (rows.size() != rowTerms || !checkRange(rows, true, 0, -1e6, 1e6))
+            CV_Error(Error::StsBadArg, "rows must be five finite numbers");
+        if (std::count(rows.begin(), rows.end(), 0.) == rowTerms)
+            return false;
+        const Terms found = fit(rows);
+        if (contradicts(found))
+        {
+            if (++contradictions_ < maxContradictions)
+                return false;
+            frames_ = 0;
+        }
+        contradictions_ = 0;
+        ++frames_;
+        const double count = std::min(frames_, memory_);
+        for (int i = 0; i < terms; ++i)
+        {
+            const double difference = frames_ == 1 ? 0 : found[i] - mean_[i];
+            if (frames_ == 1)
+            {
+                mean_[i] = found[i];
+                variance_[i] = 0;
+            }
+            mean_[i] += difference / count;
+            variance_[i] += (difference * difference * (count - 1) / count - variance_[i]) / count;
+        }
+        return true;
+    }
+
+    int getFrames() const CV_OVERRIDE { return frames_; }
+
+    void getEstimate(std::vector<double>& values, std::vector<double>& deviations) const CV_OVERRIDE
+    {
+        const double degrees = 180 / CV_PI, units[] = { degrees, degrees, degrees, 100 };
+        const Terms mean = frames_ ? mean_ : Terms(), deviation = standardDeviations();
+        values.resize(terms);
+        deviations.resize(terms);
+        for (int i = 0; i < terms; ++i)
+        {
+            values[i] = mean[i] * units[i];
+            deviations[i] = deviation[i] * units[i];
+        }
+    }
+
+    Mat getRotation() const CV_OVERRIDE { return Mat(rotationOf(certainTerms()), true); }
+
+    StereoCalibration correct(const StereoCalibration& calibration, InputArray R2Array) const CV_OVERRIDE
+    {
+        const Mat R2Mat = R2Array.getMat(), &R = calibration.R, &T = calibration.T;
+        if (R2Mat.size() != Size(3, 3) || R2Mat.channels() != 1)
+            CV_Error(Error::StsBadArg, "R2 must be a rotation, 3 x 3");
+        if (R.size() != Size(3, 3) || T.total() != 3 || R.type() != CV_64F || T.type() != CV_64F ||
+            calibration.cameraMatrix2.size() != Size(3, 3) || calibration.cameraMatrix2.type() != CV_64F)
+            CV_Error(Error::StsBadArg, "calibration must have R, T and cameraMatrix2 of CV_64F");
+        const Terms turn = certainTerms();
+        const Matx33d R2(R2Mat), turned = R2.t() * rotationOf(turn) * R2;
+        StereoCalibration corrected = calibration;
+        corrected.R = Mat(turned * Matx33d(R), true);
+        corrected.T = Mat(turned * Vec3d(T.ptr<double>()), true); // the camera turns where it is
+        corrected.cameraMatrix2 = calibration.cameraMatrix2.clone();
+        corrected.cameraMatrix2.at<double>(0, 0) *= 1 + turn[3];
+        corrected.cameraMatrix2.at<double>(1, 1) *= 1 + turn[3];
+        return corrected;
+    }
+
+private:
+    //! From the image's centre
+    std::vector<Point2d> places() const
+    {
+        std::vector<Point2d> result;
+        for (int i = 0; i < samples; ++i)
+            for (int j = 0; j < samples; ++j)
+                result.push_back(
+                    Point2d(((j + 0.5) / samples - 0.5) * size_.width, ((i + 0.5) / samples - 0.5) * size_.height));
+        return result;
+    }
+
+    //! By how much lower a point appears than it would without the turn. place: the column where it is, and the row
+    //! where it would be, as Findings::rows has it
+    double rowAt(const Matx33d& backward, double growth, Point2d place) const
+    {
+        const double x = place.x + 0.5 * (size_.width - 1), y = place.y + 0.5 * (size_.height - 1);
+        double seen = y;
+        for (int step = 0; step < 4; ++step)
+        {
+            const Vec3d ray((x - K_(0, 2)) / K_(0, 0) / (1 + growth), (seen - K_(1, 2)) / K_(1, 1) / (1 + growth), 1);
+            const Vec3d before = backward * ray;
+            seen += y - (K_(1, 1) * before[1] / before[2] + K_(1, 2));
+        }
+        return seen - y;
+    }
+
+    //! Of small turns
+    Terms slopesAt(Point2d place) const
+    {
+        const double step = 1e-5;
+        Terms slopes;
+        for (int i = 0; i < terms; ++i)
+        {
+            Terms turn;
+            turn[i] = step;
+            slopes[i] = (rowAt(rotationOf(turn).t(), turn[3], place) - rowAt(rotationOf(-turn).t(), -turn[3], place)) /
+                        (2 * step);
+        }
+        return slopes;
+    }
+
+    //! Least squares over the image
+    Terms fit(const std::vector<double>& rows) const
+    {
+        const std::vector<Point2d> all = places();
+        Terms turn;
+        for (int step = 0; step < 5; ++step) // a turn of a degree is nearly linear
+        {
+            const Matx33d backward = rotationOf(turn).t();
+            Terms sum;
+            for (size_t i = 0; i < all.size(); ++i)
+            {
+                const double u = all[i].x, v = all[i].y;
+                const double row = rows[0] + rows[1] * u + rows[2] * v + rows[3] * u * v + rows[4] * v * v;
+                sum += slopes_[i] * (row - rowAt(backward, turn[3], all[i]));
+            }
+            turn += inverse_ * sum;
+        }
+        return turn;
+    }
+
+    //! Of a term, from frame to frame. The first guess counts as a frame.
+    double frameVariance(int term) const
+    {
+        const double count = std::min(frames_, memory_), guess = unit_[term] * frameDeviation;
+        return variance_[term] + guess * guess / count;
+    }
+
+    double modelVariance(int term) const { return std::pow(unit_[term] * modelDeviation, 2); }
+
+    Terms standardDeviations() const
+    {
+        Terms result;
+        for (int i = 0; i < terms; ++i)
+            result[i] = frames_ ? std::sqrt(frameVariance(i) / std::min(frames_, memory_) + modelVariance(i))
+                                : std::numeric_limits<double>::infinity();
+        return result;
+    }
+
+    bool contradicts(const Terms& found) const
+    {
+        if (frames_ < firstFrames)
+            return false;
+        for (int i = 0; i < terms; ++i)
+            if (std::abs(found[i] - mean_[i]) > contradiction * std::sqrt(frameVariance(i) + modelVariance(i)))
+                return true;
+        return false;
+    }
+
+    //! Pitch and roll are what rows tell; of the others only what is certain.
+    Terms certainTerms() const
+    {
+        if (frames_ == 0)
+            return Terms();
+        Terms turn = mean_;
+        const Terms deviation = standardDeviations();
+        for (const int i : { 1, 3 })
+            if (std::abs(turn[i]) < certainty * deviation[i])
+                turn[i] = 0;
+        return turn;
+    }
+
+    const Matx33d K_; // of the rectified camera
+    const Size size_;
+    const int memory_;
+    std::vector<Terms> slopes_; // of the places
+    Matx<double, terms, terms> inverse_;
+    Terms unit_; // standard deviation of a term, if rows have one of 1 pixel
+    int frames_, contradictions_;
+    Terms mean_, variance_; // of the frames
+};
+
+} // namespace
+
+Ptr<RigDrift> RigDrift::create(InputArray P2, Size imageSize, int memory)
+{
+    const Mat P = P2.getMat();
+    if (P.rows != 3 || (P.cols != 3 && P.cols != 4) || P.channels() != 1 || !checkRange(P))
+        CV_Error(Error::StsBadArg, "P2 must be a projection, 3 x 3 or 3 x 4");
+    Mat K;
+    P.colRange(0, 3).convertTo(K, CV_64F);
+    if (!(K.at<double>(0, 0) > 1 && K.at<double>(1, 1) > 1))
+        CV_Error(Error::StsBadArg, "P2 must have focal lengths above 1 pixel");
+    if (imageSize.width < 16 || imageSize.height < 16)
+        CV_Error(Error::StsOutOfRange, "imageSize must be 16 x 16 or larger");
+    if (memory < 1)
+        CV_Error(Error::StsOutOfRange, "memory must be 1 or above");
+    return makePtr<RigDriftImpl>(Matx33d(K), imageSize, memory);
+}
+
+}} // namespace cv::stereo

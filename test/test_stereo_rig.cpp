@@ -1,0 +1,270 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "raw_pair.hpp"
+
+#include "../src/rig/rectification.hpp"
+#include "calibration_texts.hpp"
+#include "helpers.hpp"
+
+#include "opencv2/core/utils/filesystem.hpp"
+
+namespace opencv_test { namespace {
+
+struct Lens
+{
+    const char* name;
+    int coefficients;
+    bool isFisheye;
+    double fieldOfView;
+};
+
+const Lens lenses[] = { { "pinhole4", 4, false, 0 },   { "pinhole5", 5, false, 0 },    { "pinhole8", 8, false, 0 },
+                        { "pinhole12", 12, false, 0 }, { "pinhole14", 14, false, 0 },  { "pinhole_wide", 5, false, 75 },
+                        { "fisheye", 4, true, 0 },     { "fisheye_wide", 4, true, 90 } };
+
+void PrintTo(const Lens& lens, std::ostream* out) { *out << lens.name; }
+
+StereoCalibration calibrationOf(const Lens& lens)
+{
+    StereoCalibration c = makeCalibration(lens.coefficients, lens.isFisheye);
+    if (lens.isFisheye) // of 120 degrees
+        for (Mat* matrix : { &c.cameraMatrix1, &c.cameraMatrix2 })
+            *matrix = Mat(Matx33d(230, 0, 239, 0, 231, 180, 0, 0, 1), true);
+    return c;
+}
+
+//! Pixels whose neighbours have the same surface, and that both images show
+Mat innerPixels(const Mat& depth, const StereoRig& rig)
+{
+    Mat left, right, nearest, farthest;
+    rig.getMasks(left, right);
+    for (Mat* mask : { &left, &right })
+        cv::erode(*mask, *mask, Mat::ones(9, 9, CV_8U), Point(-1, -1), 1, cv::BORDER_CONSTANT, Scalar(0));
+    cv::erode(depth, nearest, Mat::ones(9, 9, CV_8U));
+    cv::dilate(depth, farthest, Mat::ones(9, 9, CV_8U));
+    Mat inner = left & (farthest < nearest * 1.1f) & (depth < 100);
+    for (int y = 0; y < depth.rows; ++y)
+        for (int x = 0; x < depth.cols; ++x)
+        {
+            const int matched = cvRound(x - rig.getFocalLength() * rig.getBaseline() / depth.at<float>(y, x));
+            if (matched < 0 || !right.at<uchar>(y, matched))
+                inner.at<uchar>(y, x) = 0;
+        }
+    return inner;
+}
+
+typedef testing::TestWithParam<Lens> HDPStereo_RigDepth;
+
+TEST_P(HDPStereo_RigDepth, isThatOfTheScene)
+{
+    const StereoCalibration c = calibrationOf(GetParam());
+    const Ptr<StereoRig> rig = StereoRig::create(c, GetParam().fieldOfView);
+    Mat R1, R2, P1, P2, Q;
+    rig->getRectification(R1, R2, P1, P2, Q);
+    EXPECT_NEAR(cvtest::norm(c.T, NORM_L2), rig->getBaseline(), 1e-9);
+    EXPECT_NEAR(P1.at<double>(0, 0), rig->getFocalLength(), 1e-9);
+
+    const double near = 0.7 * rig->getFocalLength() / 400; // a disparity of 68 pixels
+    // A sphere before a slanted wall
+    const RawScene scene(Vec3d(0.2, -0.1, 0.97), 1.8 * near, Vec3d(0.1, 0, 1.5 * near), 0.3 * near, near * 0.012);
+    Mat left, right, disparity, depth;
+    rig->rectify(scene.render(c, 0), scene.render(c, 1), left, right);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 80, HDPTreeMatcher::PRESET_QUALITY);
+    matcher->setDisparityDepth(CV_32F);
+    matcher->compute(left, right, disparity);
+    rig->computeDepth(disparity, depth);
+
+    const Mat truth = scene.depth(R1, P1, rig->getSize()), inner = innerPixels(truth, *rig);
+    EXPECT_GT(cv::countNonZero(inner), 30000);
+    Mat error;
+    cv::divide(depth - truth, truth, error);
+    cv::patchNaNs(error, 1); // no disparity
+    EXPECT_NEAR(0, cv::mean(error, inner)[0], 0.001);
+    EXPECT_GT(cv::countNonZero((cv::abs(error) < 0.005) & inner), 0.97 * cv::countNonZero(inner));
+
+    Mat points, z;
+    cv::reprojectImageTo3D(disparity, points, Q);
+    cv::extractChannel(points, z, 2);
+    EXPECT_LT(cvtest::norm(z, depth, NORM_INF, inner), 1e-4);
+}
+
+INSTANTIATE_TEST_CASE_P(Lenses, HDPStereo_RigDepth, testing::ValuesIn(lenses));
+
+TEST(HDPStereo_StereoRig, seesAPlaneAtTwoMetres)
+{
+    StereoCalibration c = makeCalibration();
+    c.R = Mat::eye(3, 3, CV_64F);
+    c.T = (Mat_<double>(3, 1) << -0.3, 0, 0);
+    const Ptr<StereoRig> rig = StereoRig::create(c);
+    const RawScene scene(Vec3d(0, 0, 1), 2, Vec3d(), 0, 0.012);
+    Mat left, right, disparity, metres, millimetres, mask, rightMask;
+    rig->rectify(scene.render(c, 0), scene.render(c, 1), left, right);
+    rig->getMasks(mask, rightMask);
+    HDPTreeMatcher::create(0, 96, HDPTreeMatcher::PRESET_QUALITY)->compute(left, right, disparity);
+    rig->computeDepth(disparity, metres);
+    rig->computeDepth(disparity, millimetres, CV_16U);
+    const Rect inner(100, 10, 370, 340);
+
+    EXPECT_NEAR(2, cv::mean(metres(inner))[0], 0.006); // 0.17 pixels of disparity: fractions tend to whole ones
+    EXPECT_NEAR(2000, cv::mean(millimetres(inner))[0], 6);
+    EXPECT_GT(cv::countNonZero(cv::abs(metres(inner) - 2) < 0.01), 0.99 * inner.area());
+    EXPECT_EQ(0, cv::countNonZero(mask == 0)); // nothing is empty without a field of view
+}
+
+TEST(HDPStereo_StereoRig, masksWhatNoRawPixelReaches)
+{
+    for (const bool isFisheye : { false, true })
+    {
+        const StereoCalibration c = makeCalibration(isFisheye ? 4 : 5, isFisheye);
+        const Ptr<StereoRig> rig = StereoRig::create(c, 100, Size(500, 300));
+        const Mat white(c.imageSize, CV_8U, Scalar(255));
+        Mat left, right, masks[2];
+        rig->rectify(white, white, left, right);
+        rig->getMasks(masks[0], masks[1]);
+        expectIdentical(left, masks[0]);
+        expectIdentical(right, masks[1]);
+        EXPECT_EQ(Size(500, 300), left.size());
+        EXPECT_EQ(0, left.at<uchar>(0, 0));
+        EXPECT_EQ(255, left.at<uchar>(150, 250));
+    }
+}
+
+//! A lens whose polynomial turns back at r = sqrt(1 / 0.9): it would show the picture's middle again.
+TEST(HDPStereo_StereoRig, masksWhereTheDistortionFoldsBack)
+{
+    const Mat lens = (Mat_<double>(1, 4) << -0.3, 0, 0, 0);
+    EXPECT_NEAR(std::atan(std::sqrt(1 / 0.9)), hdp::maxUnfoldedAngle(lens, false), 0.002);
+    EXPECT_NEAR(89.9 * CV_PI / 180, hdp::maxUnfoldedAngle(Mat::zeros(1, 4, CV_64F), true), 1e-9);
+    StereoCalibration c = makeCalibration(4);
+    c.distCoeffs1 = c.distCoeffs2 = lens;
+    Mat left, right, R1, R2, P1, P2, Q;
+    const Ptr<StereoRig> rig = StereoRig::create(c, 160, Size(800, 600));
+    rig->getMasks(left, right);
+    rig->getRectification(R1, R2, P1, P2, Q);
+    const Matx33d toCamera = Matx33d(R1).t() * Matx33d(Mat(P1.colRange(0, 3))).inv();
+    for (int y = 0; y < left.rows; y += 7)
+        for (int x = 0; x < left.cols; x += 7)
+        {
+            const Vec3d ray = toCamera * Vec3d(x, y, 1);
+            const bool isBeyond = ray[0] * ray[0] + ray[1] * ray[1] > 1.15 * ray[2] * ray[2] || ray[2] < 0;
+            EXPECT_FALSE(isBeyond && left.at<uchar>(y, x)) << x << ", " << y;
+        }
+}
+
+TEST(HDPStereo_StereoRig, rectifiesAllTypesOfImages)
+{
+    const StereoCalibration c = makeCalibration();
+    const Ptr<StereoRig> rig = StereoRig::create(c);
+    RNG rng(5);
+    Mat smoothed = randomImage(rng, c.imageSize, CV_8UC1), grey, ignored;
+    cv::GaussianBlur(smoothed, smoothed, Size(), 3);
+    rig->rectify(smoothed, smoothed, grey, ignored);
+    for (const int type : { CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3 })
+    {
+        Mat image, result;
+        cv::merge(std::vector<Mat>(CV_MAT_CN(type), smoothed), image);
+        image.convertTo(image, CV_MAT_DEPTH(type));
+        rig->rectify(image, image, result, ignored);
+        ASSERT_EQ(type, result.type());
+        Mat channel;
+        cv::extractChannel(result, channel, 0);
+        channel.convertTo(channel, CV_8U);
+        EXPECT_LE(cvtest::norm(grey, channel, NORM_INF), 1);
+    }
+    Mat same = smoothed.clone(); // in place
+    rig->rectify(same, same, same, ignored);
+    expectIdentical(grey, same);
+}
+
+TEST(HDPStereo_StereoRig, computesDepthOfWhatHasADisparity)
+{
+    const Ptr<StereoRig> rig = StereoRig::create(makeCalibration());
+    const double product = rig->getBaseline() * rig->getFocalLength();
+    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+    const Mat pixels = (Mat_<float>(1, 7) << 16, 0.5f, 0, -1, nan, inf, 1e-30f);
+    const Mat whole = (Mat_<short>(1, 4) << 256, 8, 0, -16);
+    Mat depth;
+    rig->computeDepth(pixels, depth);
+    ASSERT_EQ(CV_32FC1, depth.type());
+    EXPECT_FLOAT_EQ((float)(product / 16), depth.at<float>(0));
+    EXPECT_FLOAT_EQ((float)(product / 0.5), depth.at<float>(1));
+    for (int i = 2; i < 6; ++i)
+        EXPECT_TRUE(cvIsNaN(depth.at<float>(i))) << i;
+    rig->computeDepth(whole, depth, CV_16U);
+    ASSERT_EQ(CV_16UC1, depth.type());
+    EXPECT_EQ(cvRound(1000 * product / 16), depth.at<ushort>(0));
+    EXPECT_EQ(product / 0.5 > 65.535 ? 0 : cvRound(2000 * product), depth.at<ushort>(1));
+    EXPECT_EQ(0, depth.at<ushort>(2));
+    EXPECT_EQ(0, depth.at<ushort>(3));
+    rig->computeDepth(whole, depth, CV_16U, 17);
+    EXPECT_EQ(0, depth.at<ushort>(0));
+}
+
+TEST(HDPStereo_StereoRig, refusesWhatIsImpossible)
+{
+    const StereoCalibration good = makeCalibration();
+    const auto expectBad = [&](const std::function<void(StereoCalibration&)>& change, const std::string& name) {
+        StereoCalibration c = makeCalibration();
+        change(c);
+        expectRejected([&] { StereoRig::create(c); }, name);
+    };
+    expectBad([](StereoCalibration& c) { c = StereoCalibration(); }, "imageSize");
+    expectBad([](StereoCalibration& c) { c.cameraMatrix1.release(); }, "cameraMatrix1");
+    expectBad([](StereoCalibration& c) { c.cameraMatrix2.at<double>(1, 0) = 1; }, "cameraMatrix2");
+    expectBad([](StereoCalibration& c) { c.distCoeffs1 = Mat::zeros(1, 6, CV_64F); }, "distCoeffs1");
+    expectBad([](StereoCalibration& c) { c.isFisheye = true; }, "distCoeffs1");
+    expectBad([](StereoCalibration& c) { c.distCoeffs2.at<double>(2) = std::nan(""); }, "distCoeffs2");
+    expectBad([](StereoCalibration& c) { c.R.at<double>(1, 1) = -1; }, "R must be a rotation");
+    expectBad([](StereoCalibration& c) { c.T.release(); }, "T ");
+    for (const double angle : { -1., 0.5, 171., std::nan("") })
+        expectRejected([&] { StereoRig::create(good, angle); }, "fieldOfView");
+    expectRejected([&] { StereoRig::create(good, 0, Size(0, 5)); }, "size");
+
+    const Ptr<StereoRig> rig = StereoRig::create(good);
+    const Mat image(good.imageSize, CV_8U, Scalar(1)), other(10, 10, CV_8U), deep(good.imageSize, CV_32F);
+    Mat a, b;
+    expectRejected([&] { rig->rectify(Mat(), image, a, b); }, "left");
+    expectRejected([&] { rig->rectify(image, other, a, b); }, "right");
+    expectRejected([&] { rig->rectify(deep, deep, a, b); }, "left");
+    expectRejected([&] { rig->rectify(image, Mat(good.imageSize, CV_8UC3), a, b); }, "one type");
+    EXPECT_TRUE(a.empty() && b.empty());
+    expectRejected([&] { rig->computeDepth(image, a); }, "disparity");
+    expectRejected([&] { rig->computeDepth(deep, a, CV_8U); }, "depthType");
+    expectRejected([&] { rig->computeDepth(Mat(), a); }, "disparity");
+}
+
+//! The pairs of a drone in HDPSTEREO_DATA/raw_euroc: two cameras that were calibrated once
+TEST(HDPStereo_StereoRig, bringsRowsOfARealRigTogether)
+{
+    const char* const data = std::getenv("HDPSTEREO_DATA");
+    const std::string folder = std::string(data ? data : "") + "/raw_euroc/";
+    std::vector<String> names;
+    if (data && cv::utils::fs::exists(folder))
+        cv::glob(folder + "left/*.png", names);
+    if (names.empty())
+        throw SkipTestException("HDPSTEREO_DATA does not name a folder with raw_euroc");
+    const Ptr<StereoRig> rig =
+        StereoRig::create(readStereoCalibration(folder + "cam0_sensor.yaml", folder + "cam1_sensor.yaml"));
+    EXPECT_NEAR(0.11, rig->getBaseline(), 0.001);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64);
+    for (const String& name : names)
+    {
+        String other = name;
+        other.replace(name.rfind("/left/"), 6, "/right/");
+        Mat left, right, disparity;
+        rig->rectify(cv::imread(name, IMREAD_GRAYSCALE), cv::imread(other, IMREAD_GRAYSCALE), left, right);
+        matcher->compute(left, right, disparity);
+        const std::vector<double> m = matcher->getFindings().rows;
+        double squares = 0;
+        for (int i = 0; i < 64; ++i)
+        {
+            const double u = (i % 8 - 3.5) / 8 * left.cols, v = (i / 8 - 3.5) / 8 * left.rows;
+            squares += std::pow(m[0] + m[1] * u + m[2] * v + m[3] * u * v + m[4] * v * v, 2) / 64;
+        }
+        EXPECT_LT(std::sqrt(squares), 0.2) << name << Mat(m);
+        EXPECT_NE(0, m[0]);
+    }
+}
+
+}} // namespace opencv_test
