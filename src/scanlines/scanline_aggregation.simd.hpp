@@ -174,14 +174,12 @@ private:
     //! The candidates' costs C(p, d) + large at both columns of a step
     template <int planes> CV_ALWAYS_INLINE void costs(int step, ByteLanes (&cost)[2]) const
     {
-        const uchar *left[groups], *low[groups], *high[groups];
+        const uchar *left[groups], *low[groups];
         for (int r = 0; r < groups; ++r)
         {
-            const Column& column = tables_.column(step - r);
             const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
             left[r] = left_[r] + 4 * x;
-            low[r] = right_[r] - x + column.first[0];
-            high[r] = right_[r] - x + column.first[1];
+            low[r] = right_[r] - x + tables_.column(step - r).first[0];
         }
         const ByteLanes prior = ByteLanes::load(tables_.prior(step));
         if (tables_.column(step).isContiguous)
@@ -192,6 +190,9 @@ private:
         }
         else
         {
+            const uchar* high[groups];
+            for (int r = 0; r < groups; ++r)
+                high[r] = right_[r] - 2 * (ptrdiff_t)(step - r) + tables_.column(step - r).first[1];
             const auto load = [&](ptrdiff_t offset) { return ByteLanes::loadHalves(low, high, offset); };
             cost[0] = prior + costs<planes, 0>(left, load);
             cost[1] = prior + costs<planes, 1>(left, load);

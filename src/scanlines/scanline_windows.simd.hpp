@@ -38,50 +38,12 @@ public:
     //! Enters a row of windows. above: the row before, if there is one; isFollowed: for the vertical direction alone
     void enter(const Window* row, const Window* above, bool isFollowed)
     {
-        // Bytes may alias everything but what is local.
-        const uchar* const orders[Window::runs] = { orders_[0], orders_[1] };
-        // An odd last column belongs to the pixel of the layer above that the one before belongs to.
-        const int pairs = pairs_, lastWindow = p_.windows->cols - 1;
-        const int lanesUsed = p_.validCandidates();
-        Column* column = columns_;
-        short *firstOfLow = first_[0], *firstOfHigh = first_[1];
-        uchar *prior = priors_, *intoRight = intoRight_, *intoLeft = intoLeft_ + Window::candidates,
-              *intoBelow = intoBelow_;
-        Window before = row[0];
-        bool wasContiguous = false; // the window before
-        for (int x = 0; x < pairs; ++x)
-        {
-            const Window own = row[std::min(x, lastWindow)];
-            const bool isContiguous = own.isContiguous();
-            column->first[0] = own.first[0];
-            column->first[1] = own.first[1];
-            column->isContiguous = isContiguous & (groups_ == 1 || wasContiguous);
-            firstOfLow[0] = firstOfLow[1] = own.first[0];
-            firstOfHigh[0] = firstOfHigh[1] = own.first[1];
-
-            for (int run = 0; run < Window::runs; ++run)
-                std::memcpy(prior + run * Window::runLength, priorOf(own, run), Window::runLength);
-            for (int i = lanesUsed; i < Window::candidates; ++i)
-                prior[i] = 255;
-
-            if (!isFollowed)
-            {
-                transition(orders, before, own, intoRight);
-                transition(orders, own, before, intoLeft);
-            }
-            if (above)
-                transition(orders, above[std::min(x, lastWindow)], own, intoBelow);
-
-            ++column;
-            firstOfLow += 2;
-            firstOfHigh += 2;
-            prior -= Window::candidates;
-            intoRight -= Window::candidates;
-            intoLeft -= Window::candidates;
-            intoBelow -= Window::candidates;
-            before = own;
-            wasContiguous = isContiguous;
-        }
+        enterColumns(row);
+        enterPriors(row);
+        if (!isFollowed)
+            enterSides(row);
+        if (above)
+            enterBelow(row, above);
     }
 
     const Column& column(int step) const { return columns_[step]; }
@@ -113,24 +75,107 @@ private:
                             p_.penalties.prior * std::abs(distance + i * subpixelScale) / (2 * subpixelScale));
     }
 
+    // Bytes may alias everything but what is local.
+
+    //! Calls enter(own, x) for the window of each pair of columns. An odd last column belongs to the pixel of the layer
+    //! above that the one before belongs to.
+    template <class Enter> CV_ALWAYS_INLINE void forEachWindow(const Window* row, const Enter& enter) const
+    {
+        const int pairs = pairs_, windows = std::min(pairs, p_.windows->cols);
+        for (int x = 0; x < windows; ++x)
+            enter(row[x], x);
+        for (int x = windows; x < pairs; ++x)
+            enter(row[windows - 1], x);
+    }
+
+    //! Where the candidates begin
+    void enterColumns(const Window* row)
+    {
+        Column* const columns = columns_;
+        short *const firstOfLow = first_[0], *const firstOfHigh = first_[1];
+        bool wasContiguous = false; // the window before
+        const bool isSingle = groups_ == 1;
+        forEachWindow(row, [&](const Window& own, int x) {
+            const bool isContiguous = own.isContiguous();
+            Column& column = columns[x];
+            column.first[0] = firstOfLow[2 * x] = firstOfLow[2 * x + 1] = own.first[0];
+            column.first[1] = firstOfHigh[2 * x] = firstOfHigh[2 * x + 1] = own.first[1];
+            column.isContiguous = isContiguous && (isSingle || wasContiguous);
+            wasContiguous = isContiguous;
+        });
+    }
+
+    void enterPriors(const Window* row)
+    {
+        uchar* const priors = priors_;
+        const int lanesUsed = p_.validCandidates();
+        forEachWindow(row, [&](const Window& own, int x) {
+            uchar* const prior = priors - (ptrdiff_t)x * Window::candidates;
+            for (int run = 0; run < Window::runs; ++run)
+                std::memcpy(prior + run * Window::runLength, priorOf(own, run), Window::runLength);
+        });
+        if (lanesUsed < Window::candidates)
+            for (int x = 0; x < pairs_; ++x)
+                std::fill_n(priors - (ptrdiff_t)x * Window::candidates + lanesUsed, Window::candidates - lanesUsed,
+                            (uchar)255);
+    }
+
     const uchar* priorOf(const Window& own, int run) const
     {
         const int distance = own.first[run] * subpixelScale - own.predicted[run];
         return priorTable_[clamped(distance, -priorRange, priorRange - 1) + priorRange];
     }
 
-    //! Which lanes of `from` have the candidates of `to`
-    static void transition(const uchar* const (&orders)[Window::runs], const Window& from, const Window& to,
-                           uchar* order)
+    //! The lanes of a window
+    struct Lanes
     {
-        for (int run = 0; run < Window::runs; ++run)
+        const uchar* of[Window::runs]; // that of a disparity, or 255, for each run
+
+        //! Which of them have the candidates of `to`
+        CV_ALWAYS_INLINE void order(const Window& to, uchar* order) const
         {
-            uint64 lanesOf[Window::runs];
-            for (int other = 0; other < Window::runs; ++other)
-                std::memcpy(&lanesOf[other], orders[other] + to.first[run] - from.first[other], Window::runLength);
-            lanesOf[0] &= lanesOf[1]; // runs do not overlap: at least one of the two is 255
-            std::memcpy(order + run * Window::runLength, &lanesOf[0], Window::runLength);
+            for (int run = 0; run < Window::runs; ++run)
+            {
+                uint64 lanes[Window::runs];
+                for (int own = 0; own < Window::runs; ++own)
+                    std::memcpy(&lanes[own], of[own] + to.first[run], Window::runLength);
+                lanes[0] &= lanes[1]; // runs do not overlap: at least one of the two is 255
+                std::memcpy(order + run * Window::runLength, &lanes[0], Window::runLength);
+            }
         }
+    };
+
+    static Lanes lanesOf(const Window& window, const uchar* low, const uchar* high)
+    {
+        const Lanes lanes = { { low - window.first[0], high - window.first[1] } };
+        return lanes;
+    }
+
+    void enterSides(const Window* row)
+    {
+        const uchar *const low = orders_[0], *const high = orders_[1];
+        uchar *const intoRight = intoRight_, *const intoLeft = intoLeft_ + Window::candidates;
+        Window before = row[0];
+        Lanes lanesBefore = lanesOf(before, low, high);
+        forEachWindow(row, [&](const Window& own, int x) {
+            const ptrdiff_t at = -(ptrdiff_t)x * Window::candidates;
+            const Lanes lanes = lanesOf(own, low, high);
+            lanesBefore.order(own, intoRight + at);
+            lanes.order(before, intoLeft + at);
+            before = own;
+            lanesBefore = lanes;
+        });
+    }
+
+    void enterBelow(const Window* row, const Window* above)
+    {
+        const uchar *const low = orders_[0], *const high = orders_[1];
+        uchar* const intoBelow = intoBelow_;
+        const int lastWindow = p_.windows->cols - 1;
+        forEachWindow(row, [&](const Window& own, int x) {
+            lanesOf(above[std::min(x, lastWindow)], low, high)
+                .order(own, intoBelow - (ptrdiff_t)x * Window::candidates);
+        });
     }
 
     //! What is stored for the pixels of the layer above lies from right to left, as in the groups of a step.

@@ -108,8 +108,8 @@ public:
         MIDDLE, // adds to them
         LAST    // takes the winners, of scanlines that are side by side in memory
     };
-    //! What the compiler knows of the candidates: all pixels have those of so many rows of costs, or
-    enum Rows
+    //! What the compiler knows of the candidates: all pixels have those of so many vectors, or
+    enum Vectors
     {
         ANY = 0, // all have the same ones
         OWN = -1 // each pixel has its own
@@ -130,7 +130,7 @@ public:
     {
         if (!p_.volume.isUniform)
             return follow<role, OWN>(direction);
-        switch (p_.volume.of(0).rows()) // of 17, 33 and 65 candidates, as top layers have
+        switch (vectorsOf(p_.volume.of(0).interval)) // of 17, 33 and 65 candidates, as top layers have
         {
         case 2:
             return follow<role, 2>(direction);
@@ -138,15 +138,22 @@ public:
             return follow<role, 3>(direction);
         case 5:
             return follow<role, 5>(direction);
+        case 9:
+            return follow<role, 9>(direction);
         default:
             return follow<role, ANY>(direction);
         }
     }
 
 private:
-    template <int role, int rows> void follow(const Direction& direction)
+    static int vectorsOf(const DisparityInterval& candidates)
     {
-        const bool isUniform = rows != OWN;
+        return (int)alignSize(candidates.size(), WordLanes::count) / WordLanes::count;
+    }
+
+    template <int role, int vectors> void follow(const Direction& direction)
+    {
+        const bool isUniform = vectors != OWN;
         // Local, as stores may alias all else
         const CostVolume& volume = p_.volume;
         const CostVolume::Candidates all = volume.of(0);
@@ -181,17 +188,13 @@ private:
                 const size_t start = isUniform ? (size_t)pixel * stride : candidates.start();
                 int large = p_.large[weights[i > 0 ? 2 * pixel + direction.edge : 0]];
                 const Pixel own = {
-                    interval.first,
-                    interval.size(),
-                    rows > 0 ? rows * CostVolume::row : (int)alignSize(interval.size(), WordLanes::count),
-                    costs + start,
-                    sums + start,
-                    role == LAST ? total : sums + start
+                    interval.first, interval.size(), (vectors > 0 ? vectors : vectorsOf(interval)) * WordLanes::count,
+                    costs + start,  sums + start,    role == LAST ? total : sums + start
                 };
                 if (!isUniform && !last[k].reaches(own))
                     large = enter(own, large, last[k], before + k * lineLength);
                 const Lowest lowest =
-                    step<role, rows>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
+                    step<role, vectors>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
                 if (role == LAST)
                     setWinner(total, interval, lowest, k, winners);
             }
@@ -258,7 +261,7 @@ private:
     };
 
     //! L of a pixel, from that of the pixel before; finds the lowest sum in the last direction.
-    template <int role, int rows>
+    template <int role, int vectors>
     CV_ALWAYS_INLINE Lowest step(const Pixel& own, const WordLanes& small, int large, const short* before, short* here,
                                  LastPixel& last) const
     {
@@ -267,14 +270,14 @@ private:
         before += own.first;
         here += own.first;
         WordLanes minimum = noCandidate, lowestSum = WordLanes::repeat(SHRT_MAX), position = lowestSum;
-        const int count = rows > 0 ? rows * CostVolume::row : own.count;
+        const int count = vectors > 0 ? vectors * WordLanes::count : own.count;
         const short* const padding = padding_ - own.size;
         for (int d = 0; d < count; d += WordLanes::count)
         {
             const WordLanes beside = WordLanes::load(before + d - 1).min(WordLanes::load(before + d + 1)) + small;
             const WordLanes best = WordLanes::load(before + d).min(beside).min(jump);
             WordLanes l = WordLanes::load(own.costs + d) + (best - least);
-            if (rows <= 0 || d >= (rows - 1) * CostVolume::row)
+            if (vectors <= 0 || d == count - WordLanes::count)
                 l = l.max(WordLanes::load(padding + d));
             l.store(here + d);
             minimum = minimum.min(l);
@@ -285,7 +288,7 @@ private:
             position = position.replaced(lowestSum, sum, WordLanes::repeat(d));
             lowestSum = lowestSum.min(sum);
         }
-        if (rows == OWN)
+        if (vectors == OWN)
         {
             for (int d = 0; d < margin; d += WordLanes::count)
             {
