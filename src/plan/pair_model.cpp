@@ -74,7 +74,7 @@ struct Reader
     template <typename T> void operator()(const char* name, T& value, bool, const char*) const
     {
         checkIsNumber(fn[name], name);
-        value = (T)(double)fn[name];
+        value = saturate_cast<T>((double)fn[name]);
     }
     void operator()(const char* name, bool& value, bool, const char*) const
     {
