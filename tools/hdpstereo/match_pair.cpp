@@ -4,6 +4,7 @@
 #include "files.hpp"
 #include "options.hpp"
 
+#include <algorithm>
 #include <iostream>
 
 #include "opencv2/imgcodecs.hpp"
@@ -61,6 +62,23 @@ static void printTimes(const HDPTreeMatcher& matcher)
         sum += findings.stageTimes[i];
     }
     std::cout << format("%-11s%-24s%10.1f ms\n", "", "all stages", sum);
+}
+
+//! If rows tell that something is wrong with the pair. A swapped one has hardly a corner in common.
+static void warnOfPair(const HDPTreeMatcher& matcher)
+{
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    const double believable = 3; // pixels
+    if (matcher.getMaxRowOffset() == 0)
+        return;
+    if (findings.noise == 0 && std::count(findings.rows.begin(), findings.rows.end(), 0.) == (int)findings.rows.size())
+        std::cerr
+            << "warning: hardly a corner of the left image was found in the right one: are the two swapped, the pair "
+               "not rectified, or --min-disparity and --num-disparities not those of the scene?\n";
+    else if (std::abs(findings.rows[0]) > believable)
+        std::cerr << format("warning: the rows of the right image are off by %.1f pixels: is the pair rectified, or "
+                            "swapped?\n",
+                            std::abs(findings.rows[0]));
 }
 
 //! Pixels of known truth that the right image shows: inside of it, and behind no other pixel
@@ -204,6 +222,7 @@ void matchPair(const CommandLineParser& parser)
     const Mat disparity = computeDisparity(*matcher, left, right);
 
     printTimes(*matcher);
+    warnOfPair(*matcher);
     const Mat sgbm = parser.has("compare") ? compareWithSGBM(*matcher, left, right) : Mat();
     if (!truth.empty() && !sgbm.empty())
         printErrors("StereoSGBM, 3WAY", sgbm, truth);

@@ -383,6 +383,17 @@ long peakMemory(const DatasetFolder& folder, const String& command)
     return usage.ru_maxrss;
 }
 
+TEST(HDPStereo_Programs, warns_of_a_swapped_pair)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(320, 240), 64, 5);
+    folder.write("left.png", pair.left);
+    folder.write("right.png", pair.right);
+    const String left = folder.path("left.png"), right = folder.path("right.png"), out = " " + folder.path("out.png");
+    EXPECT_EQ("", run(folder, "hdpstereo " + left + " " + right + out).errors);
+    EXPECT_EQ(0u, run(folder, "hdpstereo " + right + " " + left + out).errors.find("warning: "));
+}
+
 TEST(HDPStereo_Programs, batch_of_folders)
 {
     const DatasetFolder folder;

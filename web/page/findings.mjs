@@ -16,8 +16,26 @@ function addFinding(term, text) {
     );
 }
 
+// What seems to be wrong with a pair, by its rows; null if nothing does
+export function pairProblem({ noise, rows }) {
+    if (!rows.sought) return null;
+    if (noise === 0 && rows.model.every(value => value === 0))
+        return (
+            'Hardly a corner of the left image was found in the right one. Are the two swapped? Is the pair rectified, ' +
+            'which means that a point is in the same row of both? Do the disparities begin and end where they should?'
+        );
+    const off = Math.abs(rows.model[0]);
+    return off > 3
+        ? `The rows of the right image are off by ${off.toFixed(1)} pixels. Are the images swapped, or not rectified? ` +
+              'A point should be in the same row of both.'
+        : null;
+}
+
 export function showFindings(result) {
     const { noise, noiseThreshold, rows, light, ratios, times } = result.found;
+    const problem = pairProblem(result.found);
+    get('problem').textContent = problem ?? '';
+    get('problem').hidden = !problem;
     get('found').replaceChildren();
     const largest = Math.max(
         ...rows.model.map((value, i) => Math.abs(value) * [1, result.width / 2, result.height / 2, 0, 0][i]),

@@ -281,6 +281,16 @@ test('what the matcher found, and a parameter that changes the map', async () =>
     assert.deepEqual(await download('pfm'), before);
 });
 
+test('a swapped pair gets a hint', async () => {
+    assert.equal(await page.isVisible('#problem'), false);
+    await page.click('#swap');
+    await matched();
+    assert.match(await page.textContent('#problem'), /swapped/);
+    await page.click('#swap');
+    await matched();
+    assert.equal(await page.isVisible('#problem'), false);
+});
+
 test('one picture with both side by side; JPEG', async () => {
     await openFiles(writePng('both.png', sideBySide(builtIn.images)));
     await matched();

@@ -756,6 +756,33 @@ class hdpstereo_test(TestCase):
         rejected = matcher.compute(self.left, self.right) == -16
         self.assertGreater(np.mean(rejected == (validated == -16)), 0.9)
 
+    def test_rig(self):
+        h, w = self.truth.shape
+        calibration = cv.stereo.StereoCalibration()
+        calibration.imageSize = (w, h)
+        calibration.cameraMatrix1 = np.array([[200, 0, w / 2], [0, 200, h / 2], [0, 0, 1.0]])
+        calibration.cameraMatrix2 = calibration.cameraMatrix1
+        calibration.distCoeffs1 = calibration.distCoeffs2 = np.zeros((1, 5))
+        calibration.R = np.eye(3)
+        calibration.T = np.array([[-0.1], [0], [0]])
+        rig = cv.stereo.StereoRig.create(calibration)
+        left, right = rig.rectify(self.left, self.right)
+        self.assertEqual(self.left.shape, left.shape)
+        self.assertEqual((w, h), rig.getSize())
+        disparity = cv.stereo.HDPTreeMatcher.create(0, 32).compute(left, right)
+        depth = rig.computeDepth(disparity)
+        near = disparity > 16
+        np.testing.assert_allclose(rig.getFocalLength() * 1.6 / disparity[near], depth[near], rtol=1e-4)
+        _, R2, _, P2, _ = rig.getRectification()
+        drift = cv.stereo.RigDrift.create(P2, rig.getSize())
+        self.assertTrue(drift.add([0.5, 0, 0, 0, 0]))
+        values, deviations = drift.getEstimate()
+        self.assertLess(abs(values[0] - np.degrees(0.5 / P2[0, 0])), 0.02)
+        self.assertEqual(4, len(deviations))
+        self.assertGreater(drift.correct(calibration, R2).R[1, 2], 0.001)
+        with self.assertRaisesRegex(cv.error, 'none.yaml'):
+            cv.stereo.readStereoCalibration('none.yaml')
+
 
 if __name__ == '__main__':
     unittest.main()
