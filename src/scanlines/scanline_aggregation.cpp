@@ -49,14 +49,18 @@ void ScanlineScratch::prepare(int width, int numDisparities)
     const size_t stepBytes = 2 * maxBlock * CandidateWindow::candidates,
                  blockBytes = (pairs + maxBlock - 1) * stepBytes;
     const size_t blockColumns = maxBlock * (2 * pairs + 2 * margin);
-    costs.resize(blockBytes);
-    fromRight.resize(blockBytes);
-    fromAbove.assign((2 * pairs + 2 * margin) * CandidateWindow::candidates, 0);
-    columns.assign(upperColumns, Column()); // of the margins' candidates, too, the addresses are valid
+    costs.resize(blockBytes + alignment);
+    fromRight.resize(blockBytes + alignment);
+    fromAbove.assign((2 * pairs + 2 * margin) * CandidateWindow::candidates + alignment, 0);
     for (std::vector<uchar>* stored : { &priors, &intoRight, &intoLeft, &intoBelow })
         stored->resize(upperColumns * CandidateWindow::candidates);
-    for (std::vector<short>& run : first)
-        run.resize(2 * pairs);
+    isContiguous.assign(upperColumns, 0);
+    for (int run = 0; run < CandidateWindow::runs; ++run)
+    {
+        first[run].assign(upperColumns, 0); // of the margins' candidates, too, the addresses are valid
+        distance[run].resize(upperColumns);
+        firstOfColumn[run].resize(2 * pairs);
+    }
     const int length = CandidateWindow::runLength, farthest = numDisparities + CandidateWindow::candidates;
     for (int run = 0; run < CandidateWindow::runs; ++run)
     {

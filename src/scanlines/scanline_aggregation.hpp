@@ -74,12 +74,8 @@ struct ScanlineScratch
     enum
     {
         maxBlock = 2,
-        margin = 2 * maxBlock // of all that is stored by column, on both sides
-    };
-    struct Column // of the layer above
-    {
-        short first[CandidateWindow::runs];
-        bool isContiguous; // and so are those of the other rows of the block in the same step
+        margin = 2 * maxBlock, // of all that is stored by column, on both sides
+        alignment = 64         // of costs and directions: vectors that are in two lines of the cache take longer
     };
 
     //! What is stored of a direction, per row of a block: for the columns of all steps, and of a step more at both ends
@@ -90,10 +86,13 @@ struct ScanlineScratch
     //! Provides the memory for a layer of this width and number of disparities, and clears what a sweep starts from.
     CV_EXPORTS void prepare(int width, int numDisparities);
 
-    std::vector<uchar> costs, fromRight, fromAbove;            // CandidateWindow::candidates per pixel of a block
-    std::vector<Column> columns;                               // of the layer above
+    std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel of a block
+    // By column of the layer above: the first candidate of each run, and its distance from what is predicted; whether
+    // there is one run, and so there is for the other rows of the block in the same step
+    std::vector<short> first[CandidateWindow::runs], distance[CandidateWindow::runs];
+    std::vector<uchar> isContiguous;
     std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // CandidateWindow::candidates per such column
-    std::vector<short> first[CandidateWindow::runs];           // by column
+    std::vector<short> firstOfColumn[CandidateWindow::runs];   // by column of the layer
     // Which lanes have the candidates of a run that begins i disparities after one of these, in the middle and i on:
     // 255 for those that it does not have
     std::vector<uchar> orders[CandidateWindow::runs];

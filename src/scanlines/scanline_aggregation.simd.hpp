@@ -47,7 +47,7 @@ All of these are bytes, and the differences saturate at 0 by themselves. What ag
 is oracle::Scanlines of test/oracles.hpp; the two are compared.
 
 Rows are done in blocks of ByteLanes::groups, skewed: when group r is at column x of the block's row r, group r + 1 is
-at column x - 2 of the next row. So it finds what the group before left there two steps ago, and all groups enter a
+at column x - 2 of the next row. So it finds what the group before left there a step ago, and all groups enter a
 pixel of the layer above, which is two columns wide, at the same step. A step is a pair of columns, for group r those of
 pixel t - r of the layer above. Groups that are beside the image compute what nobody reads: all that is stored by column
 has a margin. The direction from below is that from above of a sweep upward, which has the lower row of a block in its
@@ -58,8 +58,8 @@ public:
     Sweep(const ScanlineProblem& problem, bool isUpward, ScanlineScratch& scratch)
         : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
           planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)),
-          zero_(ByteLanes::repeat(0)), blockCosts_(scratch.costs.data()), fromRight_(scratch.fromRight.data()),
-          fromAbove_(scratch.fromAbove.data() + margin * Window::candidates), tables_(problem, groups, scratch),
+          zero_(ByteLanes::repeat(0)), blockCosts_(aligned(scratch.costs)), fromRight_(aligned(scratch.fromRight)),
+          fromAbove_(aligned(scratch.fromAbove) + margin * Window::candidates), tables_(problem, groups, scratch),
           windows_(0), upperRow_(-1), entersUpperRow_(false), isUpward_(isUpward)
     {
         for (int r = 0; r < groups; ++r)
@@ -116,7 +116,8 @@ private:
         margin = ScanlineScratch::margin
     };
     static_assert(groups <= (int)ScanlineScratch::maxBlock, "the scratch memory is for larger blocks");
-    typedef ScanlineScratch::Column Column;
+
+    static uchar* aligned(std::vector<uchar>& stored) { return alignPtr(stored.data(), ScanlineScratch::alignment); }
 
     //! Prepares a block of rows, y in the first group: what follows from the windows, if they are new, from the grey
     //! levels, and the rows' pointers. isFollowed: for the vertical direction alone
@@ -179,10 +180,10 @@ private:
         {
             const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
             left[r] = left_[r] + 4 * x;
-            low[r] = right_[r] - x + tables_.column(step - r).first[0];
+            low[r] = right_[r] - x + tables_.first(0, step - r);
         }
         const ByteLanes prior = ByteLanes::load(tables_.prior(step));
-        if (tables_.column(step).isContiguous)
+        if (tables_.isContiguous(step))
         {
             const auto load = [&](ptrdiff_t offset) { return ByteLanes::load(low, offset); };
             cost[0] = prior + costs<planes, 0>(left, load);
@@ -192,7 +193,7 @@ private:
         {
             const uchar* high[groups];
             for (int r = 0; r < groups; ++r)
-                high[r] = right_[r] - 2 * (ptrdiff_t)(step - r) + tables_.column(step - r).first[1];
+                high[r] = right_[r] - 2 * (ptrdiff_t)(step - r) + tables_.first(1, step - r);
             const auto load = [&](ptrdiff_t offset) { return ByteLanes::loadHalves(low, high, offset); };
             cost[0] = prior + costs<planes, 0>(left, load);
             cost[1] = prior + costs<planes, 1>(left, load);
@@ -367,7 +368,7 @@ private:
     {
         const float blunt = p_.shape.blunt, sharp = p_.shape.sharp;
         const int last = p_.validCandidates() - 1, large = p_.penalties.large, maxDisparity = p_.maxDisparity;
-        const short *firstOfLow = tables_.first(0), *firstOfHigh = tables_.first(1);
+        const short *firstOfLow = tables_.firstOfColumn(0), *firstOfHigh = tables_.firstOfColumn(1);
         const uchar *winners = winners_[group], *costs = costs_[group];
         const unsigned* sums = sums_[group];
         const int toBefore = shiftOfByte(0), toSum = shiftOfByte(1), toAfter = shiftOfByte(2);

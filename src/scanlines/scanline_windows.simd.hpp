@@ -19,17 +19,19 @@ class ScanlineWindows
 {
 public:
     typedef CandidateWindow Window;
-    typedef ScanlineScratch::Column Column;
 
     //! groups: rows of a block
     ScanlineWindows(const ScanlineProblem& problem, int groups, ScanlineScratch& scratch)
-        : p_(problem), groups_(groups), pairs_((problem.size.width + 1) / 2), columns_(scratch.columns.data() + margin),
-          priors_(firstStep(scratch.priors)), intoRight_(firstStep(scratch.intoRight)),
-          intoLeft_(firstStep(scratch.intoLeft)), intoBelow_(firstStep(scratch.intoBelow))
+        : p_(problem), groups_(groups), pairs_((problem.size.width + 1) / 2),
+          isContiguous_(scratch.isContiguous.data() + margin), priors_(firstStep(scratch.priors)),
+          intoRight_(firstStep(scratch.intoRight)), intoLeft_(firstStep(scratch.intoLeft)),
+          intoBelow_(firstStep(scratch.intoBelow))
     {
         for (int run = 0; run < Window::runs; ++run)
         {
-            first_[run] = scratch.first[run].data();
+            first_[run] = scratch.first[run].data() + margin;
+            distance_[run] = scratch.distance[run].data();
+            firstOfColumn_[run] = scratch.firstOfColumn[run].data();
             orders_[run] = scratch.orders[run].data() + scratch.orders[run].size() / 2;
         }
         preparePriorTable();
@@ -39,16 +41,18 @@ public:
     void enter(const Window* row, const Window* above, bool isFollowed)
     {
         enterColumns(row);
-        enterPriors(row);
+        enterPriors();
         if (!isFollowed)
             enterSides(row);
         if (above)
             enterBelow(row, above);
     }
 
-    const Column& column(int step) const { return columns_[step]; }
+    //! The first disparity of a run, and whether there is one, here and in the other rows of the block in the same step
+    int first(int run, int step) const { return first_[run][step]; }
+    bool isContiguous(int step) const { return isContiguous_[step] != 0; }
     //! The first disparity of a run, by column of the layer
-    const short* first(int run) const { return first_[run]; }
+    const short* firstOfColumn(int run) const { return firstOfColumn_[run]; }
     //! With the large penalty, which is a part of all costs in a sweep
     const uchar* prior(int step) const { return ofStep(priors_, step); }
     //! Orders of lanes, 255 for candidates that the window before does not have: from the left, from the right, and
@@ -89,41 +93,47 @@ private:
     }
 
     //! Where the candidates begin
-    void enterColumns(const Window* row)
+    void enterColumns(const Window* windows) const
     {
-        Column* const columns = columns_;
-        short *const firstOfLow = first_[0], *const firstOfHigh = first_[1];
-        bool wasContiguous = false; // the window before
+        const int pairs = pairs_, columns = std::min(pairs, p_.windows->cols), length = Window::runLength;
+        const short* const members = windows->first; // first, then predicted
+        for (int run = 0; run < Window::runs; ++run)
+        {
+            short *const first = first_[run], *const distance = distance_[run];
+            HDP_VECTORIZED for (int x = 0; x < columns; ++x)
+            {
+                const short begin = members[4 * x + run];
+                const int predicted = (ushort)members[4 * x + Window::runs + run];
+                first[x] = begin;
+                distance[x] = (short)clamped(begin * subpixelScale - predicted, -priorRange, priorRange - 1);
+            }
+            std::fill(first + columns, first + pairs, first[columns - 1]);
+            std::fill(distance + columns, distance + pairs, distance[columns - 1]);
+            short* const firstOfColumn = firstOfColumn_[run];
+            HDP_VECTORIZED for (int x = 0; x < pairs; ++x) firstOfColumn[2 * x] = firstOfColumn[2 * x + 1] = first[x];
+        }
+        const short *const low = first_[0], *const high = first_[1]; // 0 in the column before
+        uchar* const isContiguous = isContiguous_;
         const bool isSingle = groups_ == 1;
-        forEachWindow(row, [&](const Window& own, int x) {
-            const bool isContiguous = own.isContiguous();
-            Column& column = columns[x];
-            column.first[0] = firstOfLow[2 * x] = firstOfLow[2 * x + 1] = own.first[0];
-            column.first[1] = firstOfHigh[2 * x] = firstOfHigh[2 * x + 1] = own.first[1];
-            column.isContiguous = isContiguous && (isSingle || wasContiguous);
-            wasContiguous = isContiguous;
-        });
+        HDP_VECTORIZED for (int x = 0; x < pairs; ++x) isContiguous[x] =
+            (uchar)((high[x] - low[x] == length) & ((isSingle) | (high[x - 1] - low[x - 1] == length)));
     }
 
-    void enterPriors(const Window* row)
+    void enterPriors() const
     {
         uchar* const priors = priors_;
+        const short *const low = distance_[0], *const high = distance_[1];
         const int lanesUsed = p_.validCandidates();
-        forEachWindow(row, [&](const Window& own, int x) {
+        for (int x = 0; x < pairs_; ++x)
+        {
             uchar* const prior = priors - (ptrdiff_t)x * Window::candidates;
-            for (int run = 0; run < Window::runs; ++run)
-                std::memcpy(prior + run * Window::runLength, priorOf(own, run), Window::runLength);
-        });
+            std::memcpy(prior, priorTable_[low[x] + priorRange], Window::runLength);
+            std::memcpy(prior + Window::runLength, priorTable_[high[x] + priorRange], Window::runLength);
+        }
         if (lanesUsed < Window::candidates)
             for (int x = 0; x < pairs_; ++x)
                 std::fill_n(priors - (ptrdiff_t)x * Window::candidates + lanesUsed, Window::candidates - lanesUsed,
                             (uchar)255);
-    }
-
-    const uchar* priorOf(const Window& own, int run) const
-    {
-        const int distance = own.first[run] * subpixelScale - own.predicted[run];
-        return priorTable_[clamped(distance, -priorRange, priorRange - 1) + priorRange];
     }
 
     //! The lanes of a window
@@ -191,9 +201,8 @@ private:
     const ScanlineProblem& p_;
     const int groups_, pairs_; // pairs of columns
     // The scratch memory, from column or step 0 on
-    Column* const columns_;
-    uchar *const priors_, *const intoRight_, *const intoLeft_, *const intoBelow_;
-    short* first_[Window::runs];
+    short *first_[Window::runs], *distance_[Window::runs], *firstOfColumn_[Window::runs];
+    uchar *const isContiguous_, *const priors_, *const intoRight_, *const intoLeft_, *const intoBelow_;
     const uchar* orders_[Window::runs]; // of a run, by the distance of the candidates
     uchar priorTable_[2 * priorRange][Window::runLength];
 };
