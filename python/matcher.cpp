@@ -122,7 +122,13 @@ py::array toImage(const py::object& image, const char* name)
     return py::reinterpret_borrow<py::array>(image);
 }
 
-//! Pixels, NaN where a filter has rejected one
+//! An array that may be left out: None
+cv::Mat toInput(const py::object& array, const char* name, std::vector<py::array>& kept)
+{
+    return array.is_none() ? cv::Mat() : toMat(toImage(array, name), name, kept);
+}
+
+//! Pixels, NaN where one has no data or a filter has rejected it
 cv::Mat computeFloat(Matcher& self, const cv::Mat& left, const cv::Mat& right)
 {
     cv::Mat_<float> disparity; // an array of fixed type has the type of the result
@@ -230,10 +236,10 @@ preset: see create().)doc");
 Matches a rectified pair.
 
 left, right: images of one size and type: uint8 with one channel (grey), three (BGR) or four (BGR and alpha, which is
-ignored), or uint16 with one channel, of a camera of 10 to 16 bits. They are not copied if the pixels of a row are next
-to each other.
+ignored), uint16 with one channel, of a camera of 10 to 16 bits, or float32 with one channel, NaN = no data. They are
+not copied if the pixels of a row are next to each other.
 disparity: an array for the result, if given: int16 or float32, of the images' size.
-as_float: whether disparities are float32 in pixels, and NaN where a filter rejects one.
+as_float: whether disparities are float32 in pixels, and NaN where there is no data or a filter rejects one.
 
 Returns the disparities of the left image: int16, times 16, or float32 in pixels, see setDisparityDepth(). What a filter
 rejects is (minDisparity - 1) * 16, or minDisparity - 1. Raises ValueError if images or parameters do not fit.)doc");

@@ -20,6 +20,7 @@ FIELDS_BY_HAND = {'treeStrategy': 'TreeStrategy', 'predictionModel': 'Optional[D
 INHERITED = ('minDisparity', 'numDisparities', 'blockSize', 'speckleWindowSize', 'speckleRange', 'disp12MaxDiff')
 
 SCALARS = {'int': 'int', 'double': 'float', 'bool': 'bool'}  # and their names in Python
+INPUTS = {'InputArray': 'Optional[npt.NDArray[Any]]'}
 OUTPUTS = {
     'OutputArray': ('cv::Mat', 'Optional[npt.NDArray[Any]]'),
     'CV_OUT std::vector<double>&': ('std::vector<double>', 'npt.NDArray[np.float64]'),
@@ -152,7 +153,8 @@ class Method:
     def __init__(self, header, result, name, arguments, documentation, briefs):
         self.name = name
         self.result = result
-        self.inputs = [a for a in arguments if a[0] in SCALARS]
+        self.inputs = [a for a in arguments if a[0] in SCALARS or a[0] in INPUTS]
+        self.arrays = [name for kind, name in arguments if kind in INPUTS]
         self.outputs = [a for a in arguments if a[0] in OUTPUTS]
         self.enumeration = None
         for enumeration, _, _ in header.enumerations():
@@ -178,6 +180,8 @@ class Method:
         text = in_python_words(text)
         if any(kind == 'OutputArray' for kind, _ in self.outputs):
             text = text.replace('Empty', 'None')
+        if self.arrays:
+            text = text.replace('Empty', 'None')
         briefs[self.name] = re.match(r'.*?[.](?=\s|$)', text, re.S)[0]
         return text
 
@@ -186,7 +190,12 @@ class Method:
         results = ['result'] if self.result != 'void' else []
         results += [name for _, name in self.outputs]
         lines = ['matcher.def("%s",' % self.name,
-                 '    [](Matcher& self%s) {' % ''.join(', %s %s' % a for a in self.inputs)]
+                 '    [](Matcher& self%s) {' % ''.join(', const py::object& %sArray' % name if kind in INPUTS else
+                                                       ', %s %s' % (kind, name) for kind, name in self.inputs)]
+        if self.arrays:
+            lines.append('        std::vector<py::array> kept;')
+        lines += ['        const cv::Mat %s = toInput(%sArray, "%s", kept);' % (name, name, name)
+                  for name in self.arrays]
         if self.result != 'void':
             lines.append('        %s result;' % self.result)
         lines += ['        %s %s;' % (OUTPUTS[kind][0], name) for kind, name in self.outputs]
@@ -207,7 +216,7 @@ class Method:
         kinds = [self.enumeration or SCALARS[self.result]] if self.result != 'void' else []
         kinds += [OUTPUTS[kind][1] for kind, _ in self.outputs]
         result = 'None' if not kinds else kinds[0] if len(kinds) == 1 else 'Tuple[%s]' % ', '.join(kinds)
-        arguments = ''.join(', %s: %s' % (name, SCALARS[kind]) for kind, name in self.inputs)
+        arguments = ''.join(', %s: %s' % (name, SCALARS.get(kind) or INPUTS[kind]) for kind, name in self.inputs)
         return '    def %s(self%s) -> %s: ...\n' % (self.name, arguments, result)
 
 

@@ -5,6 +5,8 @@
 
 #include "layer_matching.hpp"
 #include "map/disparity_confidence.hpp"
+#include "pair/missing_pixels.hpp"
+#include "plan/pair_inputs.hpp"
 #include "video/temporal_prior.hpp"
 
 namespace cv { namespace stereo {
@@ -36,20 +38,28 @@ public:
         result_ = Result(); // until this pair is matched
         const Mat left = leftArray.getMat(), right = rightArray.getMat();
         checkPair(left, right);
+        checkInputs(inputs_, left.size());
         const int depth = outputDepth(disparityArray);
         const PairPlan pairPlan = plan(p_, left.size(), left.type(), pairModel_);
         clock_.restart();
 
-        if (matchPair(left, right, pairPlan) == CONTRADICTED)
+        const bool mayMiss = inputs_.hasMasks() || left.depth() == CV_32F;
+        const auto complete = [&] { completePair(left, right, inputs_.leftMask, inputs_.rightMask, pair_); };
+        if (mayMiss)
+            clock_.run("missing pixels", complete);
+        else
+            complete(); // nothing is to be done
+        if (matchPair(pair_, pairPlan) == CONTRADICTED)
         {
             lastFrame_.clear();
-            matchPair(left, right, pairPlan);
+            matchPair(pair_, pairPlan);
         }
 
         disparityArray.create(left.size(), depth);
         Mat disparity = disparityArray.getMat();
         const Mat& finest = layers_[pairPlan.finest().layer].disparity;
-        clock_.run("output", [&] { outputDisparity(finest, pairPlan.output, output_, disparity); });
+        clock_.run("output", [&] { outputDisparity(finest, pairPlan.output, output_, disparity, pair_.masks.left); });
+        pair_.forgetImages();
         result_.isMatched = true;
         result_.model = pairPlan.given.isGiven
                             ? pairModel_
@@ -92,6 +102,10 @@ public:
         pairModel_ = model;
     }
     PairModel getPairModel() const CV_OVERRIDE { return result_.isMatched ? result_.model : PairModel(); }
+    void setMasks(InputArray leftMask, InputArray rightMask) CV_OVERRIDE
+    {
+        hdp::setMasks(leftMask, rightMask, inputs_);
+    }
 
     Findings getFindings() const CV_OVERRIDE
     {
@@ -170,7 +184,7 @@ public:
         else
             extended = ofLayer;
         extended.colRange(extension, extended.cols).copyTo(confidence);
-        if (pairPlan.output.hasFilters())
+        if (output_.hasRejected)
             confidence.setTo(Scalar(0), output_.rejected);
     }
 
@@ -223,7 +237,7 @@ private:
 
     //! From the images to the disparities of the finest layer. CONTRADICTED: the pair was matched as the next frame of
     //! a video, and is none.
-    Verdict matchPair(const Mat& left, const Mat& right, const PairPlan& pairPlan)
+    Verdict matchPair(const CompletePair& pair, const PairPlan& pairPlan)
     {
         const int finest = pairPlan.finest().layer;
         const GivenPair& given = pairPlan.given;
@@ -232,7 +246,7 @@ private:
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
             const int* const lastBrightening = lastFrame_.isEmpty() ? nullptr : &lastFrame_.key.brightening;
-            buildPairPyramids(left, right, pairPlan.pyramids, lastBrightening, pyramids_, images,
+            buildPairPyramids(pair.left, pair.right, pair.masks, pairPlan.pyramids, lastBrightening, pyramids_, images,
                               given.isGiven ? &given.levels : nullptr);
         });
         result_.brightness = 1 << pyramids_.levels.brightening;
@@ -297,10 +311,12 @@ private:
 
     MatcherParameters p_;
     PairModel pairModel_; // of the next pairs, if it is known
+    PairInputs inputs_;
     Result result_;
     StageClock clock_;
 
     // Memory that is kept between calls
+    CompletePair pair_;
     PairPyramids pyramids_;
     AlignmentBuffers alignmentBuffers_;
     std::vector<LayerResult> layers_; // by layer, as are the next ones

@@ -64,10 +64,11 @@ private:
         const CostPlan& cost = plan_.cost;
         const Mat &left = in_.images.left, &right = in_.images.right;
         if (cost.isCensus)
-            return own_.census.prepare(left, right, plan_.numDisparities, cost.windowSide, cost.tolerance);
+            return own_.census.prepare(left, right, plan_.numDisparities, cost.windowSide, cost.tolerance,
+                                       in_.images.masks);
         const ColorGradientParams params = { cost.colorTruncation, cost.gradientTruncation, cost.colorWeight,
                                              cost.windowSide };
-        own_.colorGradient.prepare(left, right, plan_.numDisparities, params);
+        own_.colorGradient.prepare(left, right, plan_.numDisparities, params, in_.images.masks);
     }
 
     //! Sections 3.1 to 3.3: over the candidates of disparity trees
@@ -189,8 +190,17 @@ private:
         if (plan_.fillsOcclusions)
             clock_.run("occlusions", [&] {
                 own_.census.ofDisparities(result_.winners, own_.residual);
-                fillOccluded(result_.winners, own_.residual, in_.images.right);
+                fillOcclusions();
             });
+    }
+
+    //! Pixels without data hide none from the right image.
+    void fillOcclusions()
+    {
+        const PairMasks& masks = in_.images.masks;
+        if (!masks.isEmpty())
+            own_.residual.setTo(Scalar(UCHAR_MAX), masks.left < 128); // hasData()
+        fillOccluded(result_.winners, own_.residual, in_.images.right, masks.right);
     }
 
     //! Scanlines over windows of candidates. The first pass takes them from the layer above, each other one from the
@@ -211,7 +221,7 @@ private:
                                    own_.residual);
             });
             if (plan_.fillsOcclusions)
-                clock_.run("occlusions", [&] { fillOccluded(result_.winners, own_.residual, in_.images.right); });
+                clock_.run("occlusions", [&] { fillOcclusions(); });
         }
     }
 

@@ -709,10 +709,12 @@ class Scanlines
 public:
     //! left, right: grey levels in quarters; windows: CandidateWindow, one for every 2 x 2 pixels.
     Scanlines(const Mat& left, const Mat& right, int blockSize, int numDisparities, int largest, const Mat& windows,
-              const hdp::ScanlinePenalties& penalties, bool hasFromBelow)
+              const hdp::ScanlinePenalties& penalties, bool hasFromBelow,
+              const hdp::PairMasks& masks = hdp::PairMasks())
         : left_(left), right_(right), census_(left, right, blockSize), size_(left.size()),
           numDisparities_(numDisparities), largest_(largest), windows_(windows), small_(penalties.small),
-          large_(penalties.large), edgeSlope_(penalties.edgeSlope), prior_(penalties.prior), hasFromBelow_(hasFromBelow)
+          large_(penalties.large), edgeSlope_(penalties.edgeSlope), prior_(penalties.prior),
+          hasFromBelow_(hasFromBelow), masks_(masks)
     {
     }
 
@@ -775,8 +777,16 @@ private:
         const int run = d >= w.first[0] && d < w.first[0] + 8 ? 0 : 1;
         const int difference =
             left_.at<ushort>(p) / 4 - right_.at<ushort>(p.y, clamped(p.x - d, size_.width)) / 4; // of whole levels
-        return census_(p.y, p.x, d) + std::min(std::abs(difference), 23) / 4 +
+        return limited(p, d, census_(p.y, p.x, d) + std::min(std::abs(difference), 23) / 4) +
                (int)std::floor(prior_ * std::abs(d - w.predicted[run] / 16.) / 2);
+    }
+
+    int limited(Point p, int d, int cost) const
+    {
+        if (masks_.isEmpty())
+            return cost;
+        const bool hasMatch = masks_.right.at<uchar>(p.y, clamped(p.x - d, size_.width)) >= 128;
+        return masks_.left.at<uchar>(p) < 128 ? 0 : hasMatch ? cost : std::min(cost, +hdp::CostLimits::ordinary);
     }
 
     //! L(p, d), from that of the pixel before
@@ -835,6 +845,7 @@ private:
     Mat windows_;
     int small_, large_, edgeSlope_, prior_;
     const bool hasFromBelow_;
+    const hdp::PairMasks masks_;
 };
 
 //! L(p, d) of a direction in a volume of costs, see aggregateVolume(): from the pixel that is step away. costs: C, rows

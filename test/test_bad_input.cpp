@@ -43,14 +43,14 @@ TEST(HDPStereo_BadInput, empty_images)
 
 TEST(HDPStereo_BadInput, depths_and_channels)
 {
-    for (int type : { CV_16UC3, CV_16UC4, CV_16SC1, CV_32FC1, CV_32FC3, CV_64FC1, CV_8SC1, CV_8UC2 })
+    for (int type : { CV_16UC3, CV_16UC4, CV_16SC1, CV_32FC3, CV_64FC1, CV_8SC1, CV_8UC2 })
     {
         const Mat image(12, 16, type, Scalar::all(7));
-        expectBadPair(image, image, "left must be CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1");
+        expectBadPair(image, image, "left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1");
         expectBadPair(Mat(12, 16, CV_8UC1), image, "right must have the type of left");
     }
-    for (int type : { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 })
-        for (int other : { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 })
+    for (int type : { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_32FC1 })
+        for (int other : { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_32FC1 })
             if (other != type)
                 expectBadPair(Mat(12, 16, type), Mat(12, 16, other), "right must have the type of left");
     const int sizes[] = { 4, 5, 6 };

@@ -9,7 +9,8 @@
 namespace opencv_test { namespace {
 
 //! The documentation of outputDisparity(), pixel by pixel, in 1/16 pixel. rejected: what a filter takes away.
-Mat_<int> expectedOutput(const Mat& finest, const hdp::OutputPlan& plan, Size size, Mat_<uchar>& rejected)
+Mat_<int> expectedOutput(const Mat& finest, const hdp::OutputPlan& plan, Size size, const Mat& mask,
+                         Mat_<uchar>& rejected)
 {
     Mat map = finest;
     for (int layer = plan.finestLayer - 1; layer >= 0; --layer)
@@ -21,18 +22,21 @@ Mat_<int> expectedOutput(const Mat& finest, const hdp::OutputPlan& plan, Size si
             const double disparity = map.at<ushort>(y, x + plan.extension) / 16.;
             output(y, x) = (plan.isWhole ? cvRound(disparity) * 16 : cvRound(disparity * 16)) + plan.minDisparity * 16;
         }
-    rejected = Mat_<uchar>::zeros(size);
+    const int invalid = (plan.minDisparity - 1) * 16;
+    rejected = mask.empty() ? Mat_<uchar>::zeros(size) : Mat_<uchar>(mask == 0);
+    output.setTo(invalid, rejected);
     if (plan.disp12MaxDiff > 0)
         for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x)
                 for (int other = 0; other < size.width; ++other)
                 {
                     const int column = x - cvRound(output(y, x) / 16.);
-                    if (column >= 0 && column < size.width && other - cvRound(output(y, other) / 16.) == column &&
+                    const bool haveData = output(y, x) != invalid && output(y, other) != invalid;
+                    if (haveData && column >= 0 && column < size.width &&
+                        other - cvRound(output(y, other) / 16.) == column &&
                         output(y, other) - output(y, x) > plan.disp12MaxDiff * 16)
                         rejected(y, x) = 255;
                 }
-    const int invalid = (plan.minDisparity - 1) * 16;
     output.setTo(invalid, rejected);
     if (plan.speckleWindowSize > 0)
     {
@@ -58,17 +62,21 @@ TEST(HDPStereo_DisparityOutput, is_what_StereoMatcher_promises)
         Mat finest = randomImage(rng, Size((size.width + plan.extension) / unit, size.height / unit), CV_16UC1,
                                  round % 2 ? 200 : 20);
         Mat_<uchar> rejected;
-        const Mat_<int> expected = expectedOutput(finest, plan, size, rejected);
+        Mat mask;
+        if (round % 4 < 2)
+            mask = randomImage(rng, size, CV_8UC1, 4);
+        const Mat_<int> expected = expectedOutput(finest, plan, size, mask, rejected);
 
         hdp::OutputBuffers buffers;
         Mat fixedPoint(size, CV_16S), inPixels(size, CV_32F), asFixedPoint;
-        hdp::outputDisparity(finest, plan, buffers, fixedPoint);
+        hdp::outputDisparity(finest, plan, buffers, fixedPoint, mask);
         expected.convertTo(asFixedPoint, CV_16S);
         expectIdentical(asFixedPoint, fixedPoint);
-        if (plan.hasFilters())
+        EXPECT_EQ(plan.hasFilters() || !mask.empty(), buffers.hasRejected);
+        if (buffers.hasRejected)
             expectIdentical(rejected, buffers.rejected);
 
-        hdp::outputDisparity(finest, plan, buffers, inPixels);
+        hdp::outputDisparity(finest, plan, buffers, inPixels, mask);
         for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x)
                 ASSERT_EQ(expected(y, x) / 16.f, inPixels.at<float>(y, x)) << x << ", " << y;

@@ -67,7 +67,7 @@ TEST(HDPStereo_PairPyramids, layers_of_both_images)
 
         hdp::PairPyramids pyramids;
         std::vector<hdp::LayerImages> images;
-        hdp::buildPairPyramids(left, right, plan, nullptr, pyramids, images);
+        hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, nullptr, pyramids, images);
         EXPECT_EQ(brightening, pyramids.levels.brightening);
         EXPECT_FALSE(pyramids.isDimmed);
         ASSERT_EQ((size_t)plan.layers, images.size());
@@ -115,7 +115,7 @@ TEST(HDPStereo_PairPyramids, keeps_the_brightening_of_the_last_frame)
     for (int last = 0; last <= 2; ++last)
     {
         hdp::PairPyramids pyramids;
-        hdp::buildPairPyramids(left, right, plan, &last, pyramids, images);
+        hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, &last, pyramids, images);
         EXPECT_EQ(last == 1 ? 1 : 2, pyramids.levels.brightening) << last;
         EXPECT_EQ(last == 1, pyramids.isDimmed) << last;
     }

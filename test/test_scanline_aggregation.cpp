@@ -26,6 +26,7 @@ struct Layer
 {
     Mat left, right, windows;
     int numDisparities, blockSize;
+    hdp::PairMasks masks;
 
     //! Patches of texture at several disparities; the windows are predicted from about these, with outliers.
     Layer(RNG& rng, Size size, int numDisparities_, int blockSize_)
@@ -57,13 +58,25 @@ struct Layer
         hdp::predictWindows(prediction, numDisparities, buffers, windows);
     }
 
+    //! Some pixels have no data, and some only a part of it.
+    void mask(RNG& rng)
+    {
+        for (Mat* side : { &masks.left, &masks.right })
+        {
+            *side = Mat(size(), CV_8UC1);
+            for (int y = 0; y < side->rows; ++y)
+                for (int x = 0; x < side->cols; ++x)
+                    side->at<uchar>(y, x) = (uchar)(rng.uniform(0, 3) ? 255 : rng.uniform(0, 256));
+        }
+    }
+
     Size size() const { return left.size(); }
     int largest() const { return scale * (numDisparities - 1); }
 
     hdp::CensusCost cost() const
     {
         hdp::CensusCost result;
-        result.prepare(left, right, numDisparities, blockSize);
+        result.prepare(left, right, numDisparities, blockSize, 0, masks);
         return result;
     }
 
@@ -71,9 +84,9 @@ struct Layer
     Mat expected(const hdp::ScanlinePenalties& penalties, bool hasFromBelow) const
     {
         Mat residual;
-        const Mat disparity =
-            oracle::Scanlines(left, right, blockSize, numDisparities, largest(), windows, penalties, hasFromBelow)
-                .match(residual);
+        const Mat disparity = oracle::Scanlines(left, right, blockSize, numDisparities, largest(), windows, penalties,
+                                                hasFromBelow, masks)
+                                  .match(residual);
         return beside(disparity, residual);
     }
 
@@ -114,7 +127,10 @@ TEST_P(HDPStereo_ScanlineAggregation, formula_in_small_images)
         for (int numDisparities : { 1, 2, 7, 15, 16, 17, 29, 70 })
         {
             SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
-            const Layer layer(rng, size, numDisparities, GetParam());
+            Layer layer(rng, size, numDisparities, GetParam());
+            for (bool hasFromBelow : { false, true })
+                expectFormula(layer, usualPenalties, hasFromBelow, buffers);
+            layer.mask(rng);
             for (bool hasFromBelow : { false, true })
                 expectFormula(layer, usualPenalties, hasFromBelow, buffers);
         }
@@ -164,7 +180,9 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
         for (int numDisparities : { 5, 16, 50 })
         {
             SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
-            const Layer layer(rng, size, numDisparities, GetParam());
+            Layer layer(rng, size, numDisparities, GetParam());
+            if (numDisparities > 5)
+                layer.mask(rng);
             const hdp::CensusCost cost = layer.cost();
             for (bool hasFromBelow : { false, true })
             {

@@ -7,7 +7,6 @@
 // right image.
 
 #include <algorithm>
-#include <cfloat>
 #include <climits>
 #include <cmath>
 #include <cstdlib>
@@ -240,52 +239,14 @@ static Ptr<HDPTreeMatcher> createMatcher(const Call& call, const DisparityRange&
     return matcher;
 }
 
-//! Pixels without data get the next level of their row that has some: a surface without texture, for the matcher.
-static void fillNoData(Mat& image, const Mat& valid)
-{
-    for (int y = 0; y < image.rows; y++)
-    {
-        float* const row = image.ptr<float>(y);
-        const uchar* const isValid = valid.ptr(y);
-        float level = 0;
-        for (int x = image.cols - 1; x >= 0; x--) // so that a row begins with the first one
-            level = isValid[x] ? row[x] : level;
-        for (int x = 0; x < image.cols; x++)
-            row[x] = level = isValid[x] ? row[x] : level;
-    }
-}
-
-//! A pair as the matcher takes it, and where its left image has data. Floats become 16 bit, from the darkest pixel of
-//! both to the brightest.
-static Mat prepare(Mat& left, Mat& right)
-{
-    const Mat valid = left == left, validRight = right == right; // NaN is not equal to itself
-    if (left.depth() != CV_32F)
-        return valid;
-    double minLeft = 0, maxLeft = 0, minRight = 0, maxRight = 0;
-    minMaxLoc(left, &minLeft, &maxLeft, nullptr, nullptr, valid);
-    minMaxLoc(right, &minRight, &maxRight, nullptr, nullptr, validRight);
-    fillNoData(left, valid);
-    fillNoData(right, validRight);
-    const double lowest = std::min(minLeft, minRight), highest = std::max(maxLeft, maxRight);
-    if (!std::isfinite(lowest) || !std::isfinite(highest))
-        CV_Error(Error::StsOutOfRange, "LEFT and RIGHT must be finite, but for NaN");
-    const double scale = USHRT_MAX / std::max(highest - lowest, FLT_MIN * 1.);
-    left.convertTo(left, CV_16U, scale, -lowest * scale);
-    right.convertTo(right, CV_16U, scale, -lowest * scale);
-    return valid;
-}
-
 //! Disparities of OpenCV's sign, NaN where there is none, and the confidence from 0 to 1
-static void match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, const Mat& valid, Mat& disparity,
-                  Mat& confidence)
+static void match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, Mat& disparity, Mat& confidence)
 {
     disparity.release();
     matcher.compute(left, right, disparity);
     matcher.getConfidence(confidence);
-    disparity.setTo(none, (disparity < matcher.getMinDisparity()) | ~valid);
+    disparity.setTo(none, disparity < matcher.getMinDisparity());
     confidence.convertTo(confidence, CV_32F, 1. / 255);
-    confidence.setTo(0, ~valid);
 }
 
 static void run(const Call& call)
@@ -294,11 +255,9 @@ static void run(const Call& call)
     const Rect leftImage(Point(), left.size()), rightImage(Point(), right.size());
     const DisparityRange range = readRange(call, left.size());
     makeAlike(left, right);
-    Mat left16 = left.clone(), right16 = right.clone();
-    const Mat valid = prepare(left16, right16), validRight = right == right;
     const Ptr<HDPTreeMatcher> matcher = createMatcher(call, range);
     Mat disparity, confidence;
-    match(*matcher, left16, right16, valid, disparity, confidence);
+    match(*matcher, left, right, disparity, confidence);
     disparity = -disparity(leftImage);
     if (!range.mins.empty())
         disparity.setTo(none, (disparity < range.mins - 0.5) | (disparity > range.maxs + 0.5));
@@ -308,11 +267,10 @@ static void run(const Call& call)
         return;
 
     // The right image is the left one of a scene that is mirrored.
-    Mat mirroredLeft, mirroredRight, mirroredValid;
-    flip(right16, mirroredLeft, 1);
-    flip(left16, mirroredRight, 1);
-    flip(validRight, mirroredValid, 1);
-    match(*matcher, mirroredLeft, mirroredRight, mirroredValid, disparity, confidence);
+    Mat mirroredLeft, mirroredRight;
+    flip(right, mirroredLeft, 1);
+    flip(left, mirroredRight, 1);
+    match(*matcher, mirroredLeft, mirroredRight, disparity, confidence);
     flip(disparity, disparity, 1);
     flip(confidence, confidence, 1);
     writeImage(call.value("Rd"), disparity(rightImage));

@@ -16,7 +16,7 @@ import re
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'python'))
-from wrap import DOXYGEN_WORDS, FIELDS_BY_HAND, OUTPUTS, SCALARS, Header, in_words  # noqa: E402
+from wrap import DOXYGEN_WORDS, FIELDS_BY_HAND, INPUTS, OUTPUTS, SCALARS, Header, in_words  # noqa: E402
 
 
 def plain(text):
@@ -28,17 +28,21 @@ def plain(text):
 
 def method(result, name, arguments):
     '''The binding of a method'''
-    inputs = [a for a in arguments if a[0] in SCALARS]
+    inputs = [a for a in arguments if a[0] in SCALARS or a[0] in INPUTS]
     outputs = [a for a in arguments if a[0] in OUTPUTS]
     if result not in SCALARS and result != 'void' or len(inputs) + len(outputs) < len(arguments):
         sys.exit('wrap.py cannot wrap %s: wrap it by hand' % name)
     lines = ['.function("%s", emscripten::optional_override([](HDPTreeMatcher& self%s) {' %
-             (name, ''.join(', %s %s' % a for a in inputs))]
+             (name, ''.join(', const val& %sImage' % name if kind in INPUTS else ', %s %s' % (kind, name)
+                            for kind, name in inputs))]
     if result != 'void':
         lines.append('    %s result = 0;' % result)
     lines += ['    %s %s;' % (OUTPUTS[kind][0], argument) for kind, argument in outputs]
-    lines.append('    run([&] { %sself.%s(%s); });' %
-                 ('result = ' if result != 'void' else '', name, ', '.join(argument for _, argument in arguments)))
+    call = ''.join('const cv::Mat %s = toInput(%sImage, "%s"); ' % (argument, argument, argument)
+                   for kind, argument in inputs if kind in INPUTS)
+    lines.append('    run([&] { %s%sself.%s(%s); });' %
+                 (call, 'result = ' if result != 'void' else '', name,
+                  ', '.join(argument for _, argument in arguments)))
     values = ['result'] * (result != 'void') + [argument for _, argument in outputs]
     if not outputs and values:
         lines.append('    return result;')

@@ -61,7 +61,7 @@ def wrong(disparity):
 
 def parameters(matcher):
     '''All parameters of a matcher by name, but objects.'''
-    names = [name[3:] for name in dir(matcher) if name.startswith('set')]
+    names = [name[3:] for name in dir(matcher) if name.startswith('set') and hasattr(matcher, 'get' + name[3:])]
     values = {name[0].lower() + name[1:]: getattr(matcher, 'get' + name)() for name in names}
     params = matcher.getParams()
     values.update((name, getattr(params, name)) for name in dir(params) if not name.startswith('_'))
@@ -435,6 +435,23 @@ class Matching(Test):
         matcher.setDisparityDepth(hdpstereo.CV_32F)
         self.assertSame(expected.astype(np.float32) / 16, matcher.compute(left, right))
 
+    def test_masks(self):
+        matcher = HDPTreeMatcher(0, 32)
+        left, right = LEFT[:, :, 1].astype(np.float32), RIGHT[:, :, 1].astype(np.float32)
+        without = matcher.compute(left, right)
+        mask = np.full(TRUTH.shape, 255, np.uint8)
+        mask[20:40, 50:80] = 0
+        matcher.setMasks(mask, None)
+        masked = matcher.compute(left, right, as_float=True)
+        np.testing.assert_array_equal(mask == 0, np.isnan(masked))
+        self.assertEqual(0, matcher.getConfidence()[mask == 0].max())
+        matcher.setMasks(None, rightMask=None)
+        self.assertSame(without, matcher.compute(left, right))
+        left[mask == 0] = np.nan
+        np.testing.assert_array_equal(masked, matcher.compute(left, right, as_float=True))
+        self.assertRaises(ValueError, lambda: matcher.setMasks(mask.astype(np.int16), None))
+        self.assertRaises(TypeError, lambda: matcher.setMasks('mask', None))
+
     def test_float(self):
         matcher = HDPTreeMatcher.create(-2, 32, disp12MaxDiff=1)
         expected = matcher.compute(LEFT, RIGHT)
@@ -520,7 +537,7 @@ class Matching(Test):
         matcher = HDPTreeMatcher(0, 32)
         expected = matcher.compute(LEFT, RIGHT)
         grey = LEFT[:, :, 0]
-        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1'
+        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1'
         for text, left, right in (
                 ('left must not be empty', LEFT[:0], RIGHT[:0]),
                 ('right must have the size of left', LEFT, RIGHT[:-1]),

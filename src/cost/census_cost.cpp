@@ -21,11 +21,15 @@ const int censusColumns = 32, censusRows = 16;
 HDP_DISPATCH(leftCensusRow)
 HDP_DISPATCH(rightCensusRow)
 HDP_DISPATCH(censusCostOfRow)
+HDP_DISPATCH(evaluateCensusCost)
+HDP_DISPATCH(countCensusCost)
 
 } // namespace
 
-void CensusCost::prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize, int tolerance)
+void CensusCost::prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize, int tolerance,
+                         const PairMasks& masks)
 {
+    limits_.prepare(masks, numDisparities);
     planes_.width = left.cols;
     planes_.count = (blockSize * blockSize / 2 + 7) / 8;
     prepareImage(left, blockSize / 2, tolerance, false, 0);
@@ -76,12 +80,16 @@ void CensusCost::prepareImage(const Mat& image, int radius, int tolerance, bool 
 
 void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
 {
-    CV_CPU_DISPATCH(evaluateCensusCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
+    dispatched::evaluateCensusCost(planes_, pixels, count, first, lanes, cost);
+    if (!limits_.isEmpty())
+        limits_.apply(pixels, count, first, lanes, 1, cost);
 }
 
 void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const
 {
-    CV_CPU_DISPATCH(countCensusCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
+    dispatched::countCensusCost(planes_, pixels, count, first, lanes, cost);
+    if (!limits_.isEmpty())
+        limits_.apply(pixels, count, first, lanes, cost);
 }
 
 void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
@@ -89,7 +97,11 @@ void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
     costs.create(disparity.size(), CV_8U);
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
+        {
             dispatched::censusCostOfRow(planes_, y, disparity.ptr<ushort>(y), costs.ptr(y));
+            if (!limits_.isEmpty())
+                limits_.apply(y, disparity.ptr<ushort>(y), costs.ptr(y));
+        }
     });
 }
 

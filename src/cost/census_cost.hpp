@@ -55,8 +55,10 @@ public:
     @param right Of the same size and type.
     @param numDisparities The number of candidates a pixel may be asked for.
     @param blockSize Side of the window: 3, 5 or 7.
-    @param tolerance A pixel is clearly darker by more than this, 0..mostTolerance, in the images' units. */
-    void prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize, int tolerance = 0);
+    @param tolerance A pixel is clearly darker by more than this, 0..mostTolerance, in the images' units.
+    @param masks What pixels without data may cost is limited, see CostLimits. */
+    void prepare(const Mat& left, const Mat& right, int numDisparities, int blockSize, int tolerance = 0,
+                 const PairMasks& masks = PairMasks());
 
     void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const CV_OVERRIDE;
 

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_MATCHING_COST_HPP
 #define OPENCV_HDPSTEREO_MATCHING_COST_HPP
 
-#include "opencv2/core.hpp"
+#include "cost_limits.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -21,6 +21,12 @@ public:
     @param lanes The number of candidates, 4, 8, 16 or 32; costs of those past the last one mean nothing.
     @param cost Receives M(pixels[i], first + k) at [i * lanes + k]. */
     virtual void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const = 0;
+
+    //! What pixels without data cost at most
+    const CostLimits& limits() const { return limits_; }
+
+protected:
+    CostLimits limits_;
 };
 
 // All costs hold the rows of the right image mirrored and padded, so that the candidates of a pixel follow one another

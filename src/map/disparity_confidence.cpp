@@ -178,6 +178,8 @@ void computeConfidence(const ConfidenceMaps& maps, int numDisparities, const Cos
     else
         sumDifferences(disparity, maps.upper, true, maxUpper, Constants::upperWindow, fromUpper);
     findStable(disparity, visibleMaxDiff, visible);
+    for (int y = 0; y < visible.rows && !cost.limits().isEmpty(); ++y)
+        cost.limits().hideUnmatched(y, disparity.ptr<ushort>(y), visible.ptr(y));
     confidence.create(disparity.size(), CV_8U);
     parallel_for_(Range(0, countStripes(disparity.rows, stripeRows)), [&](const Range& stripes) {
         Costs costs(cost, disparity, numDisparities);

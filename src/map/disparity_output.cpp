@@ -51,8 +51,9 @@ void removeSpeckles(Mat& disparity, const OutputPlan& plan, short invalid, Mat& 
 
 } // namespace
 
-void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity)
+void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity, const Mat& mask)
 {
+    buffers.hasRejected = plan.hasFilters() || !mask.empty();
     const Size extendedSize = disparity.size() + Size(plan.extension, 0);
     Mat extended = enlarge(finest, plan.finestLayer, extendedSize, buffers.enlarged);
     if (plan.isWhole)
@@ -66,12 +67,14 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
     if (isFloat)
         convert(map, CV_32F, 1. / unit, plan.minDisparity, disparity);
     Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
-    if (!isFloat || plan.hasFilters())
+    if (!isFloat || buffers.hasRejected)
         convert(map, CV_16S, 1, (double)plan.minDisparity * unit, fixedPoint);
-    if (!plan.hasFilters())
+    if (!buffers.hasRejected)
         return;
 
     const short invalid = (short)((plan.minDisparity - 1) * unit);
+    if (!mask.empty())
+        fixedPoint.setTo(Scalar(invalid), mask == 0);
     if (plan.disp12MaxDiff > 0)
         rejectOccluded(fixedPoint, plan.disp12MaxDiff, invalid);
     if (plan.speckleWindowSize > 0)

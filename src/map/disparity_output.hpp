@@ -26,18 +26,21 @@ struct OutputPlan
 //! Memory that is kept from pair to pair
 struct OutputBuffers
 {
-    Mat rejected; // CV_8UC1, 255 where a filter rejected the pixel
+    bool hasRejected = false;
+    Mat rejected; // CV_8UC1, 255 where a pixel has no data or a filter rejected it; if hasRejected
     std::vector<Mat> enlarged;
     Mat whole, fixedPoint, speckles;
 };
 
 /** From the disparities of the finest layer to what cv::StereoMatcher promises: those of every pixel of the image, from
-minDisparity on, less what the left-right check and the speckle filter reject.
+minDisparity on, less those without data and what the left-right check and the speckle filter reject.
 @param finest CV_16UC1 of the finest layer's size, a disparity map.
 @param plan What to do.
-@param buffers Memory to work in; OutputBuffers::rejected has a meaning if the plan has filters.
-@param disparity CV_16SC1 or CV_32FC1 of the image's size; receives the result. */
-CV_EXPORTS void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity);
+@param buffers Memory to work in; receives what was rejected.
+@param disparity CV_16SC1 or CV_32FC1 of the image's size; receives the result.
+@param mask Of the image, CV_8UC1, 0 where it has no data; empty: it has everywhere. */
+CV_EXPORTS void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity,
+                                const Mat& mask = Mat());
 
 }}} // namespace cv::stereo::hdp
 

@@ -8,6 +8,7 @@
 #include "map/occlusion_filling.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
 #include "../base/grey_levels.hpp"
+#include "../base/mask.hpp"
 #include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -25,15 +26,20 @@ int countBlank(const ushort* grey, int width)
     return (int)(std::find_if(grey, grey + width, [=](ushort level) { return level > black; }) - grey);
 }
 
+//! The number of columns, from the left border on, without data
+int countMasked(const uchar* mask, int width) { return (int)(std::find_if(mask, mask + width, hasData) - mask); }
+
 } // namespace
 
-void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right)
+void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right, const Mat& rightMask)
 {
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         OcclusionScratch scratch(disparity.cols);
         for (int y = rows.start; y < rows.end; ++y)
         {
-            const int blank = right.empty() ? 0 : countBlank(right.ptr<ushort>(y), right.cols);
+            const int blank = !rightMask.empty() ? countMasked(rightMask.ptr(y), rightMask.cols)
+                              : right.empty()    ? 0
+                                                 : countBlank(right.ptr<ushort>(y), right.cols);
             dispatched::fillOccludedRow(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, blank, scratch);
         }
     });

@@ -55,8 +55,10 @@ The surface is continued to the left border, half as steep as its first columns 
 @param disparity CV_16UC1, a disparity map; changed.
 @param residual Matching costs, CV_8UC1.
 @param right Grey levels of the right image, CV_16UC1, see greyLevels(): columns on its left are blank that are black,
-as rectification leaves them. None if empty. */
-CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right = Mat());
+as rectification leaves them. None if empty.
+@param rightMask If not empty, the mask of the right image: columns on its left without data are blank instead. */
+CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right = Mat(),
+                             const Mat& rightMask = Mat());
 
 }}} // namespace cv::stereo::hdp
 

@@ -45,8 +45,20 @@ HDP_DISPATCH(correlate)
 HDP_DISPATCH(cutWindow)
 HDP_DISPATCH(trackingSums)
 
-//! The best corner of every cell, by the smaller eigenvalue of the structure tensor
-void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matches)
+//! Whether all windows that are matched around pixels have data: CV_8UC1, 255 where, else 0; empty for an empty mask
+Mat windowsWithData(const Mat& mask)
+{
+    Mat has;
+    if (mask.empty())
+        return has;
+    compare(mask, Scalar(128), has, CMP_GE); // hasData()
+    const int width = CornerMatching::trackWidth + 1, height = CornerMatching::trackHeight + 2;
+    erode(has, has, Mat::ones(height, width, CV_8U), Point(-1, -1), 1, BORDER_REPLICATE);
+    return has;
+}
+
+//! The best corner of every cell, by the smaller eigenvalue of the structure tensor. has: see windowsWithData()
+void findCorners(const Mat& image, const Mat& has, int spacing, std::vector<CornerMatch>& matches)
 {
     const int margin = CornerMatching::searchSide / 2 + CornerMatching::searchRadius;
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
@@ -61,11 +73,13 @@ void findCorners(const Mat& image, int spacing, std::vector<CornerMatch>& matche
         for (int x : columns)
         {
             const double mean = 0.5 * (xx[x] + yy[x]), half = 0.5 * (xx[x] - yy[x]);
-            *scores++ = mean - std::sqrt(half * half + (double)xy[x] * xy[x]);
+            const bool counts = has.empty() || has.ptr(inside.y + y)[inside.x + x];
+            *scores++ = counts ? mean - std::sqrt(half * half + (double)xy[x] * xy[x]) : -1;
         }
     };
     std::vector<Point> corners;
     bestOfCells(grid, cell, cornerStep, -1, scoreRow, corners);
+    corners.erase(std::remove(corners.begin(), corners.end(), nowhere), corners.end());
     matches.assign(corners.size(), CornerMatch());
     for (size_t i = 0; i < corners.size(); ++i)
         matches[i].left = inside.tl() + corners[i];
@@ -211,15 +225,21 @@ int coarseLayer(Size size)
 
 } // namespace
 
-void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, int spacing, SearchWindows& windows,
-                       std::vector<CornerMatch>& matches)
+void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, int numDisparities, int spacing,
+                       SearchWindows& windows, std::vector<CornerMatch>& matches)
 {
-    findCorners(left, spacing, matches);
+    const Mat rightHas = windowsWithData(masks.right);
+    findCorners(left, windowsWithData(masks.left), spacing, matches);
     measureWindows(right, windows);
     parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
         std::vector<float> correlations; // of a corner, by rows, then by columns
         for (int i = range.start; i < range.end; ++i)
-            findMatch(left, right, windows, numDisparities, correlations, matches[i]);
+        {
+            CornerMatch& match = matches[i];
+            findMatch(left, right, windows, numDisparities, correlations, match);
+            if (match.isValid && !rightHas.empty())
+                match.isValid = rightHas.ptr((int)match.y)[(int)match.x] != 0;
+        }
     });
 }
 
@@ -232,8 +252,8 @@ void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMat
     });
 }
 
-void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, int numDisparities,
-                   CoarseMatches& coarse)
+void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
+                   int numDisparities, CoarseMatches& coarse)
 {
     coarse.matches.clear();
     coarse.layer = coarseLayer(left[0].size());
@@ -243,7 +263,15 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
     if (std::min(coarseLeft.rows, coarseLeft.cols) < 2 * (CornerMatching::searchSide + CornerMatching::searchRadius))
         return;
     const int cell = std::max<int>(minSpacing >> coarse.layer, minCoarseSpacing);
-    findCornerMatches(coarseLeft, coarseRight, layerDisparities(numDisparities, coarse.layer, true), cell,
+    PairMasks coarseMasks = masks;
+    for (int layer = 0; layer < coarse.layer && !masks.isEmpty(); ++layer)
+        for (Mat* mask : { &coarseMasks.left, &coarseMasks.right })
+        {
+            Mat half;
+            halveImage(*mask, half);
+            *mask = half;
+        }
+    findCornerMatches(coarseLeft, coarseRight, coarseMasks, layerDisparities(numDisparities, coarse.layer, true), cell,
                       coarse.windows, coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
 }

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_CORNER_MATCHES_HPP
 #define OPENCV_HDPSTEREO_CORNER_MATCHES_HPP
 
-#include "opencv2/core.hpp"
+#include "../base/mask.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -57,12 +57,13 @@ struct SearchArea
 /** Matches the corners of a coarse layer over all disparities and some rows by normalised cross-correlation.
 @param left CV_16UC1, values up to 1023.
 @param right Of the same size and type.
+@param masks Of this layer; what is matched has data.
 @param numDisparities Of the layer.
 @param spacing Side of a cell of the grid, at least.
 @param windows Memory to work in.
 @param matches Receives one match per corner, to whole pixels. */
-CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, int numDisparities, int spacing,
-                                  SearchWindows& windows, std::vector<CornerMatch>& matches);
+CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, int numDisparities,
+                                  int spacing, SearchWindows& windows, std::vector<CornerMatch>& matches);
 
 /** Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.
 @param left CV_16UC1, values up to 1023.
@@ -82,10 +83,11 @@ struct CoarseMatches
 /** The matches that row and light alignment have in common.
 @param left The left pyramid, CV_16UC1, values up to 1023; its layers may end anywhere.
 @param right The right one.
+@param masks Of the images.
 @param numDisparities Of the images.
 @param coarse Receives the result. */
-CV_EXPORTS void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, int numDisparities,
-                              CoarseMatches& coarse);
+CV_EXPORTS void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
+                              int numDisparities, CoarseMatches& coarse);
 
 }}} // namespace cv::stereo::hdp
 

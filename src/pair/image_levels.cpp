@@ -36,7 +36,7 @@ void convertRows(const Mat& image, Mat& converted, const Convert& convert)
 
 } // namespace
 
-int countBits(const Mat& left, const Mat& right)
+int countBits(const Mat& left, const Mat& right, double share)
 {
     int bits = minBits;
     if (left.depth() == CV_8U)
@@ -55,7 +55,7 @@ int countBits(const Mat& left, const Mat& right)
             }
         }
     });
-    while (bits < maxBits && sum(tooBright.col(bits - minBits))[0] > 2. * left.total() / pixelsPerBright)
+    while (bits < maxBits && sum(tooBright.col(bits - minBits))[0] > 2. * left.total() * share / pixelsPerBright)
         ++bits;
     return bits;
 }
@@ -114,7 +114,7 @@ void greyLevels(const Mat& image, int bits, Mat& grey)
     });
 }
 
-int countUnusedBits(const Mat& left, const Mat& right)
+int countUnusedBits(const Mat& left, const Mat& right, double share)
 {
     const int step = std::max(left.rows / rowsThatTell, 1);
     int unused = 0;
@@ -129,7 +129,7 @@ int countUnusedBits(const Mat& left, const Mat& right)
             HDP_VECTORIZED for (int x = 0; x < left.cols; ++x) count += (l[x] >= limit) + (r[x] >= limit);
             bright += count;
         }
-        if (bright * pixelsPerLamp > all)
+        if ((double)(bright * pixelsPerLamp) > all * share)
             break;
     }
     return unused;

@@ -13,8 +13,11 @@ namespace cv { namespace stereo { namespace hdp {
 
 /** Number of bits in use in a pair: 8 for images of 8 bits. For CV_16UC1, the minimum from 8 to 16 that is enough for
 all pixels of both images but one in 1024; what is brighter is white. Images of 8 bits times 2^k are then these images
-again, if more than one pixel in 1024 has a level of 128 or more. */
-CV_EXPORTS int countBits(const Mat& left, const Mat& right);
+again, if more than one pixel in 1024 has a level of 128 or more.
+@param left The images.
+@param right
+@param share Of the pixels that count; the others are black. */
+CV_EXPORTS int countBits(const Mat& left, const Mat& right, double share = 1);
 
 /** The colours or grey levels of an image in 8 bits, the upper ones of those in use. If fewer than 8 are in use, levels
 are doubled as often; what is brighter then is white.
@@ -35,8 +38,9 @@ CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey);
 /** How many upper bits a dark pair leaves unused: the maximum, up to 2, with which all pixels but one in 128 are below
 white when their levels are doubled as often. As few are lamps and what they shine on. More than 2 would make noise look
 like texture.
-@param left,right See greyLevels(). */
-CV_EXPORTS int countUnusedBits(const Mat& left, const Mat& right);
+@param left,right See greyLevels().
+@param share See countBits(). */
+CV_EXPORTS int countUnusedBits(const Mat& left, const Mat& right, double share = 1);
 
 }}} // namespace cv::stereo::hdp
 

@@ -29,6 +29,17 @@ void smooth(LayerImages& images, LayerImages& smoothed)
 
 bool isGrey(const std::vector<LayerImages>& images) { return images[0].right.depth() == CV_16U; } // see greyLevels()
 
+//! The right masks from the finest layer on; levels that are mixed from both have data if half of them does.
+void alignMask(const RowModel& model, const ImageFrame& frame, int finestLayer, std::vector<LayerImages>& images)
+{
+    Mat aligned;
+    alignRows(images[finestLayer].masks.right, model, frame, aligned);
+    std::vector<Mat> masks;
+    buildPyramid({ aligned }, images.size() - finestLayer, masks);
+    for (size_t i = 0; i < masks.size(); ++i)
+        images[finestLayer + i].masks.right = masks[i];
+}
+
 void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const std::vector<LayerImages>& images,
                    PairFindings& findings)
 {
@@ -46,7 +57,7 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
         left.push_back(buffers.leftLevels);
         right.push_back(buffers.rightLevels);
     }
-    matchCoarsely(left, right, plan.numDisparities, buffers.coarse);
+    matchCoarsely(left, right, images[0].masks, plan.numDisparities, buffers.coarse);
     findings.hasRows = estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings.rows, findings.noise);
     if (plan.findsLight && isGrey(images))
         findings.hasLight = estimateLight(buffers.coarse, findings.light);
@@ -67,6 +78,8 @@ void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector
     {
         alignRows(finest, findings.rows.ofLayer(plan.finestLayer), frame, buffers.right);
         finest = buffers.right;
+        if (!images[0].masks.isEmpty())
+            alignMask(findings.rows.ofLayer(plan.finestLayer), frame, plan.finestLayer, images);
     }
     if (findings.hasLight && isGrey(images))
         alignLight(finest, findings.light, frame);

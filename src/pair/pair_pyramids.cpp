@@ -14,8 +14,9 @@ void checkPair(const Mat& left, const Mat& right)
     if (left.empty())
         CV_Error(Error::StsBadArg, "left must not be empty");
     const int type = left.type();
-    if (left.dims != 2 || (type != CV_8UC1 && type != CV_8UC3 && type != CV_8UC4 && type != CV_16UC1))
-        CV_Error(Error::StsUnsupportedFormat, "left must be CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1");
+    if (left.dims != 2 ||
+        (type != CV_8UC1 && type != CV_8UC3 && type != CV_8UC4 && type != CV_16UC1 && type != CV_32FC1))
+        CV_Error(Error::StsUnsupportedFormat, "left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1");
     if (right.dims != 2 || right.size() != left.size())
         CV_Error(Error::StsUnmatchedSizes, "right must have the size of left");
     if (right.type() != left.type())
@@ -29,9 +30,36 @@ void checkPair(const Mat& left, const Mat& right)
 
 namespace {
 
-//! Grey levels of an extended pair, brightened if it is dark, and without the blocks of compression
-void makeLevels(const Mat& left, const Mat& right, const PyramidPlan& plan, const int* lastBrightening, bool isKnown,
-                PairPyramids& pyramids)
+//! Without the levels of what has no data
+Mat blackened(const Mat& image, const Mat& mask)
+{
+    if (mask.empty())
+        return image;
+    Mat blackened(image.size(), image.type(), Scalar::all(0));
+    image.copyTo(blackened, mask);
+    return blackened;
+}
+
+double shareWithData(const PairMasks& masks)
+{
+    return masks.isEmpty() ? 1
+                           : (countNonZero(masks.left) + (double)countNonZero(masks.right)) / (2. * masks.left.total());
+}
+
+//! Those of images that are extended and moved as the plan says
+void buildMasks(const PairMasks& masks, const PyramidPlan& plan, PairPyramids& pyramids)
+{
+    Mat extended, shifted;
+    shiftColumns(masks.right, plan.minDisparity, plan.extension, shifted);
+    copyMakeBorder(masks.left, extended, 0, 0, plan.extension, 0, BORDER_REPLICATE);
+    buildPyramid({ extended }, plan.layers, pyramids.leftMask);
+    buildPyramid({ shifted }, plan.layers, pyramids.rightMask);
+}
+
+//! Grey levels of an extended pair with its masks, brightened if it is dark, and without the blocks of compression.
+//! share: with data
+void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, double share, const PyramidPlan& plan,
+                const int* lastBrightening, bool isKnown, PairPyramids& pyramids)
 {
     LevelFindings& found = pyramids.levels;
     Mat &leftLevels = pyramids.leftLevels, &rightLevels = pyramids.rightLevels;
@@ -42,7 +70,8 @@ void makeLevels(const Mat& left, const Mat& right, const PyramidPlan& plan, cons
     convert(found.bits - found.brightening);
     if (!isKnown)
     {
-        const int unused = countUnusedBits(leftLevels, rightLevels);
+        const int unused =
+            countUnusedBits(blackened(leftLevels, masks.left), blackened(rightLevels, masks.right), share);
         pyramids.isDimmed = lastBrightening && unused == *lastBrightening + 1;
         found.brightening = unused - pyramids.isDimmed;
         if (found.brightening > 0)
@@ -60,8 +89,9 @@ void makeLevels(const Mat& left, const Mat& right, const PyramidPlan& plan, cons
 
 } // namespace
 
-void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan, const int* lastBrightening,
-                       PairPyramids& pyramids, std::vector<LayerImages>& images, const LevelFindings* given)
+void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks, const PyramidPlan& plan,
+                       const int* lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images,
+                       const LevelFindings* given)
 {
     const int minDisparity = plan.minDisparity, extension = plan.extension, layers = plan.layers;
     Mat extended = left, shifted = right;
@@ -75,16 +105,20 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& pla
         copyMakeBorder(left, pyramids.extendedLeft, 0, 0, extension, 0, BORDER_REPLICATE);
         extended = pyramids.extendedLeft;
     }
+    if (!masks.isEmpty())
+        buildMasks(masks, plan, pyramids);
+    const double share = shareWithData(masks);
     LevelFindings& levels = pyramids.levels;
     levels = given ? *given : LevelFindings();
     if (!given)
-        levels.bits = countBits(left, right);
+        levels.bits = countBits(blackened(left, masks.left), blackened(right, masks.right), share);
     if (!plan.isCensus)
         levels.brightening = 0;
     pyramids.isDimmed = false;
     if (plan.isCensus)
     {
-        makeLevels(extended, shifted, plan, lastBrightening, given != nullptr, pyramids);
+        const PairMasks moved = masks.isEmpty() ? masks : PairMasks({ pyramids.leftMask[0], pyramids.rightMask[0] });
+        makeLevels(extended, shifted, moved, share, plan, lastBrightening, given != nullptr, pyramids);
         buildPyramid({ pyramids.leftLevels }, layers, pyramids.leftGrey);
         buildPyramid({ pyramids.rightLevels }, layers, pyramids.right);
     }
@@ -98,6 +132,8 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& pla
         images[layer].guide = pyramids.left[layer];
         images[layer].left = plan.isCensus ? pyramids.leftGrey[layer] : pyramids.left[layer];
         images[layer].right = pyramids.right[layer];
+        images[layer].masks =
+            masks.isEmpty() ? masks : PairMasks({ pyramids.leftMask[layer], pyramids.rightMask[layer] });
     }
     pyramids.left[0].release(); // may be the caller's
     pyramids.right[0].release();

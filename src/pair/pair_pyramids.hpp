@@ -4,9 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
 #define OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
 
+#include "../base/mask.hpp"
 #include "block_smoothing.hpp"
-
-#include "opencv2/core.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -23,6 +22,7 @@ struct LayerImages
 {
     Mat guide;       // gives the edge weights
     Mat left, right; // give the matching cost; a candidate counts from minDisparity
+    PairMasks masks; // of both
 };
 
 //! What there is to know of the levels of a pair
@@ -36,7 +36,7 @@ struct LevelFindings
 //! Memory of the pyramids, kept from pair to pair
 struct PairPyramids
 {
-    std::vector<Mat> left, leftGrey, right;
+    std::vector<Mat> left, leftGrey, right, leftMask, rightMask;
     Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels;
     LevelFindings levels;  // found, or given
     bool isDimmed = false; // whether levels are doubled once less than without a frame before
@@ -58,13 +58,14 @@ see countUnusedBits(): what counts in levels, as edges, noise and thresholds do,
 exposed.
 @param left CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param right Of the same size and type.
+@param masks Theirs; what has no data does not count where levels are.
 @param plan What to build.
 @param lastBrightening That of the frame before, if there was one: kept if one more is possible, so that a video seldom
 changes it.
 @param pyramids Memory to work in; receives what was found.
 @param images Receives the images of each layer.
 @param given What is known already: nothing is looked for then. */
-CV_EXPORTS void buildPairPyramids(const Mat& left, const Mat& right, const PyramidPlan& plan,
+CV_EXPORTS void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks, const PyramidPlan& plan,
                                   const int* lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images,
                                   const LevelFindings* given = nullptr);
 

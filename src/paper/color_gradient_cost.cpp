@@ -5,10 +5,13 @@
 #include "color_gradient_cost.hpp"
 #include "color_gradient_cost.simd.hpp"
 #include "paper/color_gradient_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
+
+HDP_DISPATCH(evaluateColorGradientCost)
 
 // Units of a gradient in one intensity level a pixel: the largest, borderGain * 255, still fits into 16 bit
 const int gradientScale = 32;
@@ -17,6 +20,10 @@ const int gradientScale = 32;
 // surfaces from matching the clamped column. The paper does not say what happens there. The authors' program does not
 // halve this difference, which would be 2; 4 fits its disparity maps better.
 const int borderGain = 4;
+
+// Bits of the census that the largest cost counts as, for what pixels without data may cost: with more these draw
+// surfaces
+const float bitsOfMost = 9;
 
 //! Grey levels, 0.299 R + 0.587 G + 0.114 B, in 1 / 65536. Rounded to whole levels they cost accuracy: the gradients of
 //! smooth surfaces are below one level.
@@ -55,8 +62,12 @@ void horizontalGradient(const Mat& image, Mat& gradient)
 } // namespace
 
 void ColorGradientCost::prepare(const Mat& left, const Mat& right, int numDisparities,
-                                const ColorGradientParams& params)
+                                const ColorGradientParams& params, const PairMasks& masks)
 {
+    limits_.prepare(masks, numDisparities);
+    const float most =
+        params.colorWeight * params.colorTruncation + (1 - params.colorWeight) * params.gradientTruncation;
+    bit_ = most / bitsOfMost;
     const int channels = left.channels(), blockSize = params.blockSize;
     planes_.width = left.cols;
     planes_.blockSize = blockSize;
@@ -93,7 +104,9 @@ void ColorGradientCost::prepareImage(const Mat& image, bool mirrored, int after,
 
 void ColorGradientCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
 {
-    CV_CPU_DISPATCH(evaluateColorGradientCost, (planes_, pixels, count, first, lanes, cost), CV_CPU_DISPATCH_MODES_ALL);
+    dispatched::evaluateColorGradientCost(planes_, pixels, count, first, lanes, cost);
+    if (!limits_.isEmpty())
+        limits_.apply(pixels, count, first, lanes, bit_, cost);
 }
 
 }}} // namespace cv::stereo::hdp

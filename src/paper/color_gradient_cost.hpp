@@ -46,8 +46,10 @@ public:
     @param left CV_8UC1 or CV_8UC3.
     @param right Of the same size and type.
     @param numDisparities The number of candidates a pixel may be asked for.
-    @param params What the cost depends on. */
-    void prepare(const Mat& left, const Mat& right, int numDisparities, const ColorGradientParams& params);
+    @param params What the cost depends on.
+    @param masks What pixels without data may cost is limited, see CostLimits. */
+    void prepare(const Mat& left, const Mat& right, int numDisparities, const ColorGradientParams& params,
+                 const PairMasks& masks = PairMasks());
 
     void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const CV_OVERRIDE;
 
@@ -55,6 +57,7 @@ private:
     void prepareImage(const Mat& image, bool mirrored, int after, Mat& color, Mat& gradient);
 
     ColorGradientPlanes planes_;
+    float bit_;                        // what stands for a bit of the census in CostLimits
     Mat left_, right_;                 // CV_8UC1, planes of the channels below one another
     Mat leftGradient_, rightGradient_; // CV_16SC1, fixed point
     Mat gradient_;

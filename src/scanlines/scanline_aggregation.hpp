@@ -113,7 +113,8 @@ below, which takes a second one. The cost of candidate d is
 
 C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 23) / 4) + floor(prior * |d - predicted| / 2),
 
-I being grey levels, here whole ones, and predicted the disparity that the candidate's run was predicted for.
+the first two together no more than CostLimits allows, I being grey levels, here whole ones, and predicted the disparity
+that the candidate's run was predicted for.
 
 With L(p, d) of a direction and q the pixel before p,
 L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),

@@ -56,9 +56,10 @@ class Sweep
 {
 public:
     Sweep(const ScanlineProblem& problem, bool isUpward, ScanlineScratch& scratch)
-        : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
-          planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)),
-          zero_(ByteLanes::repeat(0)), blockCosts_(aligned(scratch.costs)), fromRight_(aligned(scratch.fromRight)),
+        : p_(problem), methods_(methodsOf(*problem.cost)), width_(problem.size.width), pairs_((width_ + 1) / 2),
+          steps_(pairs_ + groups - 1), planeStride_(problem.cost->planeStride()),
+          small_(ByteLanes::repeat(problem.penalties.small)), zero_(ByteLanes::repeat(0)),
+          blockCosts_(aligned(scratch.costs)), fromRight_(aligned(scratch.fromRight)),
           fromAbove_(aligned(scratch.fromAbove) + margin * Window::candidates), tables_(problem, groups, scratch),
           windows_(0), upperRow_(-1), entersUpperRow_(false), isUpward_(isUpward)
     {
@@ -76,15 +77,7 @@ public:
     void follow(int y, uchar* followed)
     {
         enterRows(y, true);
-        switch (p_.cost->planes())
-        {
-        case 1:
-            return followBlock<1>(followed);
-        case 2:
-            return followBlock<2>(followed);
-        default:
-            return followBlock<3>(followed);
-        }
+        (this->*methods_.follow)(followed);
     }
 
     //! All directions and the winners of a block of rows, y to end - 1 at most; fromBelow: what a sweep upward has
@@ -92,17 +85,7 @@ public:
     void run(int y, int end, const uchar* fromBelow, Mat& disparity, Mat& residual)
     {
         enterRows(y, false);
-        switch (p_.cost->planes())
-        {
-        case 1:
-            fromRight<1>();
-            break;
-        case 2:
-            fromRight<2>();
-            break;
-        default:
-            fromRight<3>();
-        }
+        (this->*methods_.fromRight)();
         fromLeftAndAbove(fromBelow);
         for (int r = 0; r < groups && y + r < end; ++r)
             finishRow(r, disparity.ptr<ushort>(y + r), residual.ptr(y + r));
@@ -113,11 +96,32 @@ private:
     {
         groups = ByteLanes::groups,
         lanes = groups * Window::candidates,
-        margin = ScanlineScratch::margin
+        margin = ScanlineScratch::margin,
+        hasLimits = 4 // a layout of the costs: the number of planes, and this if they are limited
     };
     static_assert(groups <= (int)ScanlineScratch::maxBlock, "the scratch memory is for larger blocks");
 
     static uchar* aligned(std::vector<uchar>& stored) { return alignPtr(stored.data(), ScanlineScratch::alignment); }
+
+    //! Those for a layout of the costs
+    struct Methods
+    {
+        void (Sweep::*fromRight)();
+        void (Sweep::*follow)(uchar*);
+    };
+    template <int layout> static Methods methodsOf()
+    {
+        return { &Sweep::fromRight<layout>, &Sweep::followBlock<layout> };
+    }
+    static Methods methodsOf(const CensusCost& cost)
+    {
+        const int planes = cost.planes();
+        if (cost.limits().isEmpty())
+            return planes == 1 ? methodsOf<1>() : planes == 2 ? methodsOf<2>() : methodsOf<3>();
+        return planes == 1   ? methodsOf<hasLimits + 1>()
+               : planes == 2 ? methodsOf<hasLimits + 2>()
+                             : methodsOf<hasLimits + 3>();
+    }
 
     //! Prepares a block of rows, y in the first group: what follows from the windows, if they are new, from the grey
     //! levels, and the rows' pointers. isFollowed: for the vertical direction alone
@@ -138,32 +142,18 @@ private:
             const int row = std::min(y + r * forward, lastRow), next = clamped(row + forward, 0, lastRow);
             left_[r] = p_.cost->leftPixels(row);
             right_[r] = p_.cost->rightPlane(0, row) + width_ - 1;
-            weighEdges(p_.left->ptr<ushort>(row), p_.left->ptr<ushort>(next), edges_[r]);
+            if (!p_.cost->limits().isEmpty())
+            {
+                leftLimits_[r] = p_.cost->limits().left(row);
+                rightLimits_[r] = p_.cost->limits().right(row) + width_ - 1;
+            }
+            weighScanlineEdges(p_.left->ptr<ushort>(row), p_.left->ptr<ushort>(next), width_, p_.penalties, edges_[r]);
             if (isUpward_ && y - r > lastRow) // nothing comes from there
                 std::memset(edges_[r], 0, 2 * (size_t)width_);
         }
     }
 
-    //! large(p, q) between each pixel of a row and its neighbours to the right and in the next row
-    void weighEdges(const ushort* row, const ushort* next, uchar* edges) const
-    {
-        const ushort large = (ushort)p_.penalties.large, min = std::min((ushort)p_.penalties.small, large);
-        const ushort slope = (ushort)p_.penalties.edgeSlope;
-        const int last = width_ - 1;
-        const auto penalty = [&](ushort p, ushort q) {
-            const ushort fall = (ushort)((ushort)(difference(p, q) * slope) / (2 * greyScale));
-            return (uchar)std::max((ushort)(std::max(large, fall) - fall), min);
-        };
-        HDP_VECTORIZED for (int x = 0; x < last; ++x)
-        {
-            edges[2 * x] = penalty(row[x], row[x + 1]);
-            edges[2 * x + 1] = penalty(row[x], next[x]);
-        }
-        edges[2 * last] = 0; // there is no pixel
-        edges[2 * last + 1] = penalty(row[last], next[last]);
-    }
-
-    //! large(p, q) of edges of a step, see weighEdges(): number `at` from the pixel on the left of its columns on
+    //! large(p, q) of edges of a step, see weighScanlineEdges(): number `at` from the pixel on the left of its columns on
     template <int at> CV_ALWAYS_INLINE ByteLanes largePenalty(int step) const
     {
         const uchar* edges[groups];
@@ -173,8 +163,9 @@ private:
     }
 
     //! The candidates' costs C(p, d) + large at both columns of a step
-    template <int planes> CV_ALWAYS_INLINE void costs(int step, ByteLanes (&cost)[2]) const
+    template <int layout> CV_ALWAYS_INLINE void costs(int step, ByteLanes (&cost)[2]) const
     {
+        const int planes = layout & (hasLimits - 1);
         const uchar *left[groups], *low[groups];
         for (int r = 0; r < groups; ++r)
         {
@@ -186,8 +177,8 @@ private:
         if (tables_.isContiguous(step))
         {
             const auto load = [&](ptrdiff_t offset) { return ByteLanes::load(low, offset); };
-            cost[0] = prior + costs<planes, 0>(left, load);
-            cost[1] = prior + costs<planes, 1>(left, load);
+            cost[0] = costs<planes, 0>(left, load);
+            cost[1] = costs<planes, 1>(left, load);
         }
         else
         {
@@ -195,9 +186,28 @@ private:
             for (int r = 0; r < groups; ++r)
                 high[r] = right_[r] - 2 * (ptrdiff_t)(step - r) + tables_.first(1, step - r);
             const auto load = [&](ptrdiff_t offset) { return ByteLanes::loadHalves(low, high, offset); };
-            cost[0] = prior + costs<planes, 0>(left, load);
-            cost[1] = prior + costs<planes, 1>(left, load);
+            cost[0] = costs<planes, 0>(left, load);
+            cost[1] = costs<planes, 1>(left, load);
         }
+        if (layout & hasLimits)
+            limit(step, cost);
+        cost[0] = prior + cost[0];
+        cost[1] = prior + cost[1];
+    }
+
+    //! Limits the costs at both columns of a step, see CostLimits.
+    CV_ALWAYS_INLINE void limit(int step, ByteLanes (&cost)[2]) const
+    {
+        const uchar *left[groups], *low[groups], *high[groups];
+        for (int r = 0; r < groups; ++r)
+        {
+            const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
+            left[r] = leftLimits_[r] + x;
+            low[r] = rightLimits_[r] - x + tables_.first(0, step - r);
+            high[r] = rightLimits_[r] - x + tables_.first(1, step - r);
+        }
+        cost[0] = cost[0].min(ByteLanes::repeatByte<0>(left)).min(ByteLanes::loadHalves(low, high, 0));
+        cost[1] = cost[1].min(ByteLanes::repeatByte<1>(left)).min(ByteLanes::loadHalves(low, high, -1));
     }
 
     //! At one column, but for the prior; load: gives the candidates of a plane.
@@ -248,12 +258,12 @@ private:
         return h & ByteLanes::load(mask, 0);
     }
 
-    template <int planes> void fromRight()
+    template <int layout> void fromRight()
     {
         ByteLanes h = zero_, cost[2];
         for (int t = steps_ - 1; t >= 0; --t)
         {
-            costs<planes>(t, cost);
+            costs<layout>(t, cost);
             uchar* costs = blockCosts_ + (size_t)t * 2 * lanes;
             uchar* directions = fromRight_ + (size_t)t * 2 * lanes;
             h = h.permute(ByteLanes::load(tables_.intoLeft(t)));
@@ -285,12 +295,12 @@ private:
     //! Where a direction at a column of a step is stored; there is room for a step more at both ends.
     static ptrdiff_t storedAt(int step, int column) { return ((ptrdiff_t)(step + 1) * 2 + column) * lanes; }
 
-    template <int planes> void followBlock(uchar* followed)
+    template <int layout> void followBlock(uchar* followed)
     {
         ByteLanes before[2] = { zero_, zero_ }, cost[2];
         for (int t = 0; t < steps_; ++t)
         {
-            costs<planes>(t, cost);
+            costs<layout>(t, cost);
             const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
             for (int column = 0; column < 2; ++column)
             {
@@ -390,6 +400,7 @@ private:
     }
 
     const ScanlineProblem& p_;
+    const Methods methods_;
     const int width_, pairs_, steps_; // columns, pairs of them, and steps over all groups
     const size_t planeStride_;        // from a plane of the cost to the next
     const ByteLanes small_, zero_;
@@ -402,7 +413,7 @@ private:
     int upperRow_;          // that row
     bool entersUpperRow_;   // whether it is not that of the block before
     const bool isUpward_;
-    const uchar *left_[groups], *right_[groups];
+    const uchar *left_[groups], *right_[groups], *leftLimits_[groups], *rightLimits_[groups];
 };
 
 } // namespace

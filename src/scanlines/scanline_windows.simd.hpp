@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set, as the *.simd.hpp that include it: no include guard.
 #include "scanline_aggregation.hpp"
+#include "../base/grey_levels.hpp"
 #include "../base/vectorized.hpp"
 #include <cstring>
 
@@ -11,6 +12,26 @@ namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
+
+//! large(p, q) between each pixel of a row and its neighbours to the right and in the next row
+inline void weighScanlineEdges(const ushort* row, const ushort* next, int width, const ScanlinePenalties& penalties,
+                               uchar* edges)
+{
+    const ushort large = (ushort)penalties.large, min = std::min((ushort)penalties.small, large);
+    const ushort slope = (ushort)penalties.edgeSlope;
+    const int last = width - 1;
+    const auto penalty = [&](ushort p, ushort q) {
+        const ushort fall = (ushort)((ushort)(difference(p, q) * slope) / (2 * greyScale));
+        return (uchar)std::max((ushort)(std::max(large, fall) - fall), min);
+    };
+    HDP_VECTORIZED for (int x = 0; x < last; ++x)
+    {
+        edges[2 * x] = penalty(row[x], row[x + 1]);
+        edges[2 * x + 1] = penalty(row[x], next[x]);
+    }
+    edges[2 * last] = 0; // there is no pixel
+    edges[2 * last + 1] = penalty(row[last], next[last]);
+}
 
 /** What scanlines need to know of the windows of a row of the layer above, from column to column: where the candidates
 begin, their prior, and which lane of the window before has the same disparity. A step is two columns of the layer, a

@@ -8,6 +8,8 @@
 #include "../base/dispatch.hpp"
 #include "../base/tunable.hpp"
 
+#include <cstring>
+
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
@@ -28,6 +30,13 @@ bool hasTexture(const CensusCost& cost, const uchar* left)
     for (int i = 0; i <= 2 * SparseMatches::radius; ++i, left += 4)
         darker += countCensusBits((left[0] | (unsigned)left[1] << 8 | (unsigned)left[2] << 16) & mask);
     return darker * comparisonsPerDarker >= cost.comparisons() * (2 * SparseMatches::radius + 1);
+}
+
+//! Whether all of the window has
+bool hasData(const CostLimits& limits, int y, int x)
+{
+    return limits.isEmpty() ||
+           std::memchr(limits.left(y) + x - SparseMatches::radius, 0, 2 * SparseMatches::radius + 1) == nullptr;
 }
 
 HDP_DISPATCH(lowestCost)
@@ -64,7 +73,7 @@ void findSparseMatches(const CensusCost& cost, Size size, int numDisparities, Ma
                 if (count <= 0 || x + radius >= size.width)
                     continue;
                 const uchar* left = cost.leftPixels(y) + 4 * (x - radius);
-                if (!hasTexture(cost, left))
+                if (!hasTexture(cost, left) || !hasData(cost.limits(), y, x))
                     continue;
                 const uchar* right = cost.rightPlane(0, y) + size.width - 1 - (x - radius);
                 dispatched::sumWindowCosts(left, right, cost.planeStride(), cost.planes(), count, costs.data());

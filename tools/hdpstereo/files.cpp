@@ -48,7 +48,7 @@ Mat readImage(const String& path, int flags)
 Mat readPicture(const String& path)
 {
     Mat image = readImage(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
-    if (image.depth() == CV_16U)
+    if (image.depth() != CV_8U)
         cvtColor(image, image, COLOR_BGR2GRAY);
     return image;
 }

@@ -23,7 +23,7 @@ void writeWholeFile(const cv::String& path, const std::vector<uchar>& bytes);
 
 cv::Mat readImage(const cv::String& path, int flags);
 
-//! Colours in 8 bit, or grey levels in 16 bit of a picture that has them
+//! Colours in 8 bit, or grey levels in 16 bit or floats of a picture that has them
 cv::Mat readPicture(const cv::String& path);
 
 #endif

@@ -92,6 +92,10 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
         cv::stereo::PairModel::load(parser.get<String>("findings")).write(options);
         options << "}";
     }
+    if (parser.has("left-mask"))
+        options << "leftMask" << parser.get<String>("left-mask");
+    if (parser.has("right-mask"))
+        options << "rightMask" << parser.get<String>("right-mask");
     options << "matcher"
             << "{";
     matcher.write(options);

@@ -1,12 +1,15 @@
 // This file is part of OpenCV project.
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
+#include "files.hpp"
 #include "options.hpp"
 
 #include <climits>
 #include <cmath>
 #include <cstdlib>
 #include <map>
+
+#include "opencv2/imgcodecs.hpp"
 
 using namespace cv;
 using cv::stereo::HDPTreeMatcher;
@@ -49,6 +52,10 @@ Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
         HDPTreeMatcher::create(integerOf(parser, "min-disparity"), numDisparitiesOf(parser, width), preset->second);
     if (parser.has("findings"))
         matcher->setPairModel(cv::stereo::PairModel::load(parser.get<String>("findings")));
+    const auto maskOf = [&](const char* option) {
+        return parser.has(option) ? readImage(parser.get<String>(option), IMREAD_GRAYSCALE) : Mat();
+    };
+    matcher->setMasks(maskOf("left-mask"), maskOf("right-mask"));
     return matcher;
 }
 

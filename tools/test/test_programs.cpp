@@ -467,6 +467,28 @@ TEST(HDPStereo_Programs, batch_of_folders)
 #endif
 }
 
+TEST(HDPStereo_Programs, stereo_match_takes_masks)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    Mat mask(120, 160, CV_8UC1, Scalar(255));
+    mask(Rect(30, 100, 90, 20)).setTo(0);
+    folder.write("mask.png", mask);
+    const String pfm = folder.path("map.pfm"), program = "hdpstereo" + pairOf(folder) + " --output=" + pfm;
+    const Execution result =
+        run(folder, program + " --left-mask=" + folder.path("mask.png") + " --right-mask=" + folder.path("mask.png"));
+    EXPECT_EQ(0, result.status) << result.errors;
+    const Mat map = cv::imread(pfm, IMREAD_UNCHANGED);
+    EXPECT_EQ(0, cv::countNonZero((map == std::numeric_limits<float>::infinity()) != (mask == 0)));
+    folder.write("small.png", mask.colRange(1, 100));
+    for (const char* wrong : { "small.png", "none.png" })
+    {
+        const Execution bad = run(folder, program + " --right-mask=" + folder.path(wrong));
+        EXPECT_EQ(1, bad.status);
+        EXPECT_EQ(firstLine(bad.errors) + "\n", bad.errors);
+    }
+}
+
 TEST(HDPStereo_Programs, batch_of_a_list)
 {
     const DatasetFolder folder;

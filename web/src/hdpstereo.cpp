@@ -94,23 +94,30 @@ val toJavaScript(const cv::Mat& image)
 }
 
 /** What HDPTreeMatcher takes of an image of JavaScript: its data is a Uint8Array or Uint8ClampedArray, or a Uint16Array,
-of grey levels, RGB or RGBA. */
+of grey levels, RGB or RGBA, or a Float32Array of one value per pixel. */
 cv::Mat fromJavaScript(const val& image, const char* name)
 {
     const int width = image["width"].as<int>(), height = image["height"].as<int>();
     const val data = image["data"];
     const double size = data["length"].as<double>();
     const bool isDeep = data.instanceof (val::global("Uint16Array"));
+    const bool isFloat = data.instanceof (val::global("Float32Array"));
     const int channels = width > 0 && height > 0 ? cvRound(size / width / height) : 0;
     if ((channels != 1 && channels != 3 && channels != 4) || size != (double)width * height * channels)
         CV_Error(cv::Error::StsBadSize, std::string(name) + ".data must have 1, 3 or 4 values per pixel");
-    cv::Mat result(height, width, CV_MAKETYPE(isDeep ? CV_16U : CV_8U, channels));
+    cv::Mat result(height, width, CV_MAKETYPE(isFloat ? CV_32F : isDeep ? CV_16U : CV_8U, channels));
     valuesOf(result).call<void>("set", data);
-    if (channels > 1) // 16 bits are for grey levels
+    if (channels > 1 && !isFloat) // 16 bits are for grey levels
         cv::cvtColor(result, result,
                      channels == 3 ? (isDeep ? cv::COLOR_RGB2GRAY : cv::COLOR_RGB2BGR)
                                    : (isDeep ? cv::COLOR_RGBA2GRAY : cv::COLOR_RGBA2BGR));
     return result;
+}
+
+//! An image that may be left out: null
+cv::Mat toInput(const val& image, const char* name)
+{
+    return image.isNull() || image.isUndefined() ? cv::Mat() : fromJavaScript(image, name);
 }
 
 std::shared_ptr<HDPTreeMatcher> create(int minDisparity, int numDisparities, int preset)

@@ -33,14 +33,14 @@ A cv::StereoMatcher: a program that uses cv::StereoSGBM changes the line that cr
 @endcode
 
 **What goes in**: a rectified pair, both images of one size and type: CV_8UC1, CV_8UC3 (BGR), CV_8UC4 (BGR and alpha,
-which is ignored) or CV_16UC1 (a camera of 10 to 16 bits). They may have 1 x 1 to 32767 x 32767 pixels, and fewer
-columns than there are disparities.
+which is ignored), CV_16UC1 (a camera of 10 to 16 bits) or CV_32FC1 (any levels). They may have 1 x 1 to 32767 x 32767
+pixels, and fewer columns than there are disparities. What is known of them beforehand goes in, too: setMasks().
 
 **What comes out**: the disparity of every pixel of the left image. A pixel (x, y) of the left image shows the same
 point as (x - disparity, y) of the right one. The map is CV_16SC1, times 16 (StereoMatcher::DISP_SCALE), or CV_32FC1 in
-pixels, see Params::disparityDepth. A pixel that a filter rejects gets minDisparity - 1. There is no border of invalid
-pixels, as cv::StereoSGBM has it: candidates outside the right image are compared with its nearest column.
-getConfidence() tells how reliable each disparity is, getFindings() what the matcher found out about the pair.
+pixels, see Params::disparityDepth. A pixel without data, or that a filter rejects, gets minDisparity - 1. There is no
+border of invalid pixels, as cv::StereoSGBM has it: candidates outside the right image are compared with its nearest
+column. getConfidence() tells how reliable each disparity is, getFindings() what the matcher found out about the pair.
 
 **What to set.** The parameters that matter, the most important first:
 - minDisparity, numDisparities: the range of disparities in pixels, minDisparity to minDisparity + numDisparities - 1.
@@ -72,6 +72,7 @@ on several parameters or on the images is checked by compute(), before any work.
 - Params::predictionModel has too few layers;
 - the images are not those of the PairModel that is set;
 - the output array has a fixed type other than CV_16SC1 and CV_32FC1;
+- a mask has not the size of the images;
 - a TreeStrategy throws, or does not leave a permutation of the edges. Only this is found while matching; the matcher
   stays usable, and the output array is unchanged.
 
@@ -83,6 +84,9 @@ These are as few, 8 to 16, as are enough for all but one in 1024 pixels of the p
 highlights and defective pixels, is white. So images of 8 bits times 2^k give the same map as without the
 factor, unless they are dark: darker ones gain contrast. With COST_CENSUS, a dark pair of any type is brightened, by a
 factor of 2 or 4 that leaves all but one in 128 pixels below white. Findings are about the levels of the images.
+CV_32FC1 is scaled to CV_16UC1, by one scale for both images: the darkest pixel that counts is black and the brightest
+white, one in 1024 being left out at each end. Pixels that are not finite have no data, as if masked. Findings are then
+about these levels.
 
 **Files.** cv::Algorithm::save() and write() store all parameters, the prediction model, and the name of the tree
 strategy with what its write() adds. read() takes the value of PRESET_PAPER for a parameter that the file does not have.
@@ -492,6 +496,17 @@ public:
     /** @brief Returns Params::treeStrategy. */
     CV_WRAP virtual Ptr<TreeStrategy> getTreeStrategy() const = 0;
 
+    /** @brief Tells which pixels have no data: the robot's own body, what rectification leaves black, clouds.
+
+    They get minDisparity - 1, the confidence 0, and have no influence: their levels may be any, and neither the other
+    disparities nor the findings change. What only one of the images shows continues the surface beside it. The masks
+    stay until others are set. They are no parameters: files do not have them.
+    @param leftMask CV_8UC1 of the images' size, 0 where the left image has no data; copied. Empty: it has everywhere.
+    @param rightMask The same of the right image.
+    @throws cv::Exception if a mask is of another type; both are unchanged.
+     */
+    CV_WRAP virtual void setMasks(InputArray leftMask, InputArray rightMask) = 0;
+
     /** @brief Returns how reliable each disparity of the last compute() is.
 
     It is computed by this call; compute() does not take longer. It grows with the distance to the nearest step of the
@@ -499,7 +514,7 @@ public:
     changed, with the difference from the layer above, and where a pixel is not visible in the right image. It is no
     probability: it serves to sort or weight pixels, or to reject those below a threshold.
     @param confidence Receives CV_8UC1 of the left image's size: from 0 to 255, larger is more reliable; 0 where a
-    filter rejected the pixel. Empty before the first compute() and after one that threw an exception.
+    pixel has no data or a filter rejected it. Empty before the first compute() and after one that threw an exception.
      */
     CV_WRAP virtual void getConfidence(OutputArray confidence) const = 0;
 

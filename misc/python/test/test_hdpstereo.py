@@ -173,7 +173,8 @@ class hdpstereo_test(TestCase):
 
     def test_parameters(self):
         matcher = cv.stereo.HDPTreeMatcher.create(-3, 40, PRESETS['PAPER'])
-        setters = set(name[3:] for name in dir(matcher) if name.startswith('set'))
+        setters = set(name[3:] for name in dir(matcher)
+                      if name.startswith('set') and hasattr(matcher, 'get' + name[3:]))
         self.assertEqual(set(), setters - set(PARAMETERS) - set(['TreeStrategy', 'Params', 'PairModel']),
                          'one is not tested')
         fields = set(name for name in dir(matcher.getParams()) if not name.startswith('_'))
@@ -664,12 +665,20 @@ class hdpstereo_test(TestCase):
             self.assertRaises((TypeError, cv.error), change, matcher, gamma=bad)
         self.assertEqual(before, parameters(matcher))
 
+    def test_masks(self):
+        matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
+        mask = np.full(self.left.shape[:2], 255, np.uint8)
+        mask[20:40, 50:80] = 0
+        matcher.setMasks(mask, None)
+        np.testing.assert_array_equal(mask == 0, matcher.compute(self.left, self.right) < 0)
+        self.assertRaises(cv.error, lambda: matcher.setMasks(mask.astype(np.int16), None))
+
     def test_bad_images(self):
         left, right = self.left, self.right
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
         expected = matcher.compute(left, right)
         grey = left[:, :, 0].copy()
-        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1'
+        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1'
         for message, pair in (
                 ('left must not be empty', (None, right)),
                 ('left must not be empty', (left[:0], right[:0])),

@@ -1,0 +1,25 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_MASK_HPP
+#define OPENCV_HDPSTEREO_MASK_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** Which pixels of a pair have data, CV_8UC1 each: 255 where, else 0, and on the layers above means of these. Both are
+empty if all pixels have. */
+struct PairMasks
+{
+    Mat left, right;
+
+    bool isEmpty() const { return left.empty(); }
+};
+
+//! Of the pixel of a mask: whether half of the image's pixels that it stands for have data
+inline bool hasData(uchar share) { return share >= 128; }
+
+}}} // namespace cv::stereo::hdp
+
+#endif

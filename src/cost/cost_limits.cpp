@@ -1,0 +1,76 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "cost_limits.hpp"
+
+#include "../base/disparity_units.hpp"
+#include "../base/vectorized.hpp"
+#include "matching_cost.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+void CostLimits::prepare(const PairMasks& masks, int numDisparities)
+{
+    const Mat &left = masks.left, &right = masks.right;
+    left_.release();
+    right_.release();
+    if (left.empty())
+        return;
+    width_ = left.cols;
+    left_.create(left.rows, margin + width_ + margin, CV_8U);
+    right_.create(left.rows, margin + width_ + numDisparities + costPadding + margin, CV_8U);
+    copyBordered(left, 0, 0, margin, margin, false, left_);
+    copyBordered(right, 0, 0, margin, right_.cols - margin - width_, true, right_);
+    parallel_for_(Range(0, left.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            uchar *const l = left_.ptr(y), *const r = right_.ptr(y);
+            for (int x = 0; x < left_.cols; ++x)
+                l[x] = (uchar)(hasData(l[x]) ? +none : 0);
+            for (int x = 0; x < right_.cols; ++x)
+                r[x] = (uchar)(hasData(r[x]) ? +none : +ordinary);
+        }
+    });
+}
+
+void CostLimits::apply(const int* pixels, int count, int first, int lanes, float unit, float* cost) const
+{
+    for (int i = 0; i < count; ++i, cost += lanes)
+    {
+        const int y = pixels[i] / width_, x = pixels[i] - y * width_;
+        const uchar* const limit = right(y) + width_ - 1 - x + first;
+        if (left(y)[x] == 0)
+            std::fill(cost, cost + lanes, 0.f);
+        else
+            for (int k = 0; k < lanes; ++k)
+                cost[k] = limit[k] == none ? cost[k] : std::min(cost[k], limit[k] * unit);
+    }
+}
+
+void CostLimits::apply(const int* pixels, int count, int first, int lanes, uchar* cost) const
+{
+    for (int i = 0; i < count; ++i, cost += lanes)
+    {
+        const int y = pixels[i] / width_, x = pixels[i] - y * width_;
+        const uchar own = left(y)[x];
+        const uchar* const limit = right(y) + width_ - 1 - x + first;
+        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = std::min(cost[k], std::min(own, limit[k]));
+    }
+}
+
+void CostLimits::apply(int y, const ushort* disparity, uchar* cost) const
+{
+    const uchar *own = left(y), *limit = right(y) + width_ - 1;
+    for (int x = 0; x < width_; ++x)
+        cost[x] = std::min(cost[x], std::min(own[x], limit[wholeDisparity(disparity[x]) - x]));
+}
+
+void CostLimits::hideUnmatched(int y, const ushort* disparity, uchar* visible) const
+{
+    const uchar* const limit = right(y) + width_ - 1;
+    for (int x = 0; x < width_; ++x)
+        visible[x] = limit[wholeDisparity(disparity[x]) - x] == none ? visible[x] : 0;
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,57 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_COST_LIMITS_HPP
+#define OPENCV_HDPSTEREO_COST_LIMITS_HPP
+
+#include "../base/mask.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** What pixels without data may cost. One of the left image costs nothing, whatever its candidate is: it prefers none. A
+candidate in the right image that has no data costs no more than an ordinary pixel: it is neither preferred to a match
+nor avoided as a bad one would be. */
+class CV_EXPORTS CostLimits
+{
+public:
+    enum
+    {
+        none = 255,
+        ordinary = 8 // bits of the census: more drives surfaces out of what is masked, less draws them into it
+    };
+
+    /** Takes the masks of a layer.
+    @param masks Empty: there are no limits.
+    @param numDisparities The number of candidates a pixel may be asked for. */
+    void prepare(const PairMasks& masks, int numDisparities);
+
+    bool isEmpty() const { return left_.empty(); }
+
+    //! A row of the left image: 0 where a pixel has no data, else none. There are 32 more bytes to read before and
+    //! behind it.
+    const uchar* left(int y) const { return left_.ptr(y) + margin; }
+    //! A row of the right image, from right to left, as CensusCost::rightPlane(): ordinary where there is no data, else
+    //! none. Candidate d of pixel x is at [width - 1 - x + d].
+    const uchar* right(int y) const { return right_.ptr(y) + margin; }
+
+    /** Limits what MatchingCost::evaluate() has found.
+    @param unit The cost of a bit. */
+    void apply(const int* pixels, int count, int first, int lanes, float unit, float* cost) const;
+    void apply(const int* pixels, int count, int first, int lanes, uchar* cost) const;
+    //! Limits the costs of a row of disparities.
+    void apply(int y, const ushort* disparity, uchar* cost) const;
+    //! Marks the pixels of a row by 0 whose matches have no data.
+    void hideUnmatched(int y, const ushort* disparity, uchar* visible) const;
+
+private:
+    enum
+    {
+        margin = 32
+    };
+    int width_ = 0;
+    Mat left_, right_;
+};
+
+}}} // namespace cv::stereo::hdp
+
+#endif

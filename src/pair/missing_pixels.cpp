@@ -1,0 +1,154 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "missing_pixels.hpp"
+
+#include "../base/tunable.hpp"
+
+#include <cmath>
+#include <cstring>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+HDP_TUNABLE(int, pixelsPerOutlier, 1024, "pixels",
+            "of a pair of floats, of which one may be too dark and one too bright: defects and highlights are fewer");
+
+//! A mask of 0 and 255 from that of the caller, and where the image has numbers
+Mat maskOf(const Mat& image, const Mat& given)
+{
+    Mat mask;
+    if (given.empty())
+        mask = Mat(image.size(), CV_8U, Scalar(255));
+    else
+        compare(given, Scalar(0), mask, CMP_NE);
+    if (image.depth() == CV_32F)
+        for (int y = 0; y < image.rows; ++y)
+        {
+            const float* const row = image.ptr<float>(y);
+            uchar* const has = mask.ptr(y);
+            for (int x = 0; x < image.cols; ++x)
+                has[x] = (uchar)(std::isfinite(row[x]) ? has[x] : 0);
+        }
+    return mask;
+}
+
+//! Of a row that has data. pixel: bytes
+void fillRow(const uchar* image, const uchar* mask, int width, size_t pixel, uchar* filled)
+{
+    const auto repeat = [&](int from, int begin, int end) {
+        for (int x = begin; x < end; ++x)
+            std::memcpy(filled + x * pixel, image + from * pixel, pixel);
+    };
+    int last = -1; // with data
+    for (int x = 0; x <= width; ++x)
+    {
+        if (x < width && !mask[x])
+            continue;
+        const int first = last + 1, middle = last < 0 ? first : x == width ? width : (first + x + 1) / 2;
+        if (last >= 0)
+            repeat(last, first, middle);
+        if (x == width)
+            break;
+        repeat(x, middle, x + 1);
+        last = x;
+    }
+}
+
+} // namespace
+
+void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
+{
+    const int rows = image.rows;
+    filled.create(image.size(), image.type());
+    std::vector<uchar> has(rows);
+    parallel_for_(Range(0, rows), [&](const Range& range) {
+        for (int y = range.start; y < range.end; ++y)
+        {
+            has[y] = std::memchr(mask.ptr(y), 255, (size_t)mask.cols) != nullptr;
+            if (has[y])
+                fillRow(image.ptr(y), mask.ptr(y), image.cols, image.elemSize(), filled.ptr(y));
+        }
+    });
+    std::vector<int> above(rows), below(rows); // the nearest rows with data, or far away
+    for (int y = 0, last = -2 * rows; y < rows; ++y)
+        above[y] = last = has[y] ? y : last;
+    for (int y = rows - 1, last = 3 * rows; y >= 0; --y)
+        below[y] = last = has[y] ? y : last;
+    for (int y = 0; y < rows; ++y)
+    {
+        const int nearest = y - above[y] <= below[y] - y ? above[y] : below[y];
+        if (nearest < 0 || nearest >= rows)
+            filled.row(y).setTo(Scalar::all(0));
+        else if (nearest != y)
+            filled.row(nearest).copyTo(filled.row(y));
+    }
+}
+
+void wholeLevels(const Mat& left, const Mat& right, const PairMasks& masks, Mat (&levels)[2])
+{
+    std::vector<float> values;
+    values.reserve(2 * left.total());
+    const Mat images[2] = { left, right }, valid[2] = { masks.left, masks.right };
+    for (int i = 0; i < 2; ++i)
+        for (int y = 0; y < left.rows; ++y)
+            for (int x = 0; x < left.cols; ++x)
+                if (valid[i].ptr(y)[x])
+                    values.push_back(images[i].ptr<float>(y)[x]);
+    double lowest = 0, highest = 0;
+    if (!values.empty())
+    {
+        const size_t outliers = values.size() / pixelsPerOutlier;
+        const auto low = values.begin() + outliers, high = values.end() - 1 - outliers;
+        std::nth_element(values.begin(), low, values.end());
+        lowest = *low;
+        std::nth_element(low, high, values.end());
+        highest = *high;
+    }
+    const double scale = highest > lowest ? USHRT_MAX / (highest - lowest) : 0;
+    for (int i = 0; i < 2; ++i)
+    {
+        levels[i].create(left.size(), CV_16U);
+        for (int y = 0; y < left.rows; ++y)
+        {
+            const float* const row = images[i].ptr<float>(y);
+            const uchar* const has = valid[i].ptr(y);
+            ushort* const level = levels[i].ptr<ushort>(y);
+            for (int x = 0; x < left.cols; ++x)
+                level[x] = (ushort)(has[x] ? std::min(std::max((row[x] - lowest) * scale, 0.), 65535.) + 0.5 : 0);
+        }
+    }
+}
+
+void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask, CompletePair& complete)
+{
+    complete.masks = PairMasks();
+    const bool isFloat = left.depth() == CV_32F;
+    if (!isFloat && leftMask.empty() && rightMask.empty())
+    {
+        complete.left = left;
+        complete.right = right;
+        return;
+    }
+    PairMasks masks = { maskOf(left, leftMask), maskOf(right, rightMask) };
+    Mat images[2] = { left, right };
+    if (isFloat)
+        wholeLevels(left, right, masks, images);
+    const bool isComplete =
+        countNonZero(masks.left) == (int)left.total() && countNonZero(masks.right) == (int)right.total();
+    if (isComplete)
+    {
+        complete.left = images[0];
+        complete.right = images[1];
+        return;
+    }
+    fillMissing(images[0], masks.left, complete.filled[0]);
+    fillMissing(images[1], masks.right, complete.filled[1]);
+    complete.left = complete.filled[0];
+    complete.right = complete.filled[1];
+    complete.masks = masks;
+}
+
+}}} // namespace cv::stereo::hdp

@@ -1,0 +1,48 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_MISSING_PIXELS_HPP
+#define OPENCV_HDPSTEREO_MISSING_PIXELS_HPP
+
+#include "../base/mask.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! A pair of which each pixel has a level, and which of them are data
+struct CompletePair
+{
+    Mat left, right;
+    PairMasks masks;
+    Mat filled[2]; // memory, kept from pair to pair
+
+    //! Which may be the caller's
+    void forgetImages() { left = right = Mat(); }
+};
+
+/** Gives the pixels without data levels that depend on the others alone, and images of type CV_32FC1 16 bits.
+@param left As checkPair() accepts it.
+@param right Of the same size and type.
+@param leftMask CV_8UC1 of the same size, 0 where there is no data; empty: there is everywhere.
+@param rightMask The same of the right image.
+@param complete Receives the pair: the images themselves if nothing is to be done. */
+CV_EXPORTS void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
+                             CompletePair& complete);
+
+/** The levels of a pair in CV_16UC1, by one scale for both: the darkest pixel becomes 0 and the brightest 65535, but for
+one pixel in 1024 at each end, which are black or white, as defects and highlights are.
+@param left CV_32FC1.
+@param right The same.
+@param masks Which pixels count; those that are not finite must not be among them.
+@param levels Receives both images; 0 without data. */
+CV_EXPORTS void wholeLevels(const Mat& left, const Mat& right, const PairMasks& masks, Mat (&levels)[2]);
+
+/** Fills the pixels without data. A run of them in a row gets the levels at its ends, each half of it the nearer one's.
+A row without any gets what the nearest row has that has some, the upper one of two; black if there is none.
+@param image Of 8 or 16 bits, any number of channels.
+@param mask CV_8UC1, 255 where there is data, else 0.
+@param filled Receives the image. */
+CV_EXPORTS void fillMissing(const Mat& image, const Mat& mask, Mat& filled);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

@@ -1,0 +1,27 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_PAIR_INPUTS_HPP
+#define OPENCV_HDPSTEREO_PAIR_INPUTS_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! What is known of the pairs beforehand. It is no parameter: files do not have it.
+struct PairInputs
+{
+    Mat leftMask, rightMask; // CV_8UC1, 0 where there is no data; empty: there is everywhere
+
+    bool hasMasks() const { return !leftMask.empty() || !rightMask.empty(); }
+};
+
+//! The masks of a caller, copied. Throws if they are none.
+void setMasks(InputArray left, InputArray right, PairInputs& inputs);
+
+//! Throws if an input is not for images of this size.
+void checkInputs(const PairInputs& inputs, Size size);
+
+}}} // namespace cv::stereo::hdp
+
+#endif

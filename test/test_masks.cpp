@@ -1,0 +1,377 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "matching_costs.hpp"
+#include "synthetic_pair.hpp"
+#include "systems.hpp"
+#include "../src/cost/census_cost.hpp"
+#include "../src/pair/missing_pixels.hpp"
+
+namespace opencv_test { namespace {
+
+const float notANumber = std::numeric_limits<float>::quiet_NaN();
+
+//! A pair and its masks: rows and columns without data, a disc, and single pixels
+struct MaskedPair
+{
+    SyntheticPair scene;
+    Mat left, right, leftMask, rightMask;
+
+    explicit MaskedPair(int type, Size size = Size(200, 120), int numDisparities = 40)
+        : scene(makeSyntheticPair(size, numDisparities, 3)), leftMask(size, CV_8UC1, Scalar(255)),
+          rightMask(size, CV_8UC1, Scalar(7)) // any but 0
+    {
+        left = converted(scene.left, type);
+        right = converted(scene.right, type);
+        leftMask.rowRange(size.height - 20, size.height).setTo(0);
+        rightMask.rowRange(size.height - 17, size.height).setTo(0);
+        leftMask.colRange(0, 9).setTo(0);
+        rightMask.colRange(0, 14).setTo(0);
+        cv::circle(leftMask, Point(100, 60), 15, Scalar(0), -1);
+        cv::circle(rightMask, Point(60, 50), 12, Scalar(0), -1);
+        RNG rng(11);
+        for (int i = 0; i < 100; ++i)
+            for (Mat* mask : { &leftMask, &rightMask })
+            {
+                const int y = rng.uniform(0, size.height), x = rng.uniform(0, size.width);
+                mask->at<uchar>(y, x) = 0;
+            }
+    }
+
+    static Mat converted(const Mat& bgr, int type)
+    {
+        Mat grey, image;
+        cv::cvtColor(bgr, grey, COLOR_BGR2GRAY);
+        if (type == CV_8UC4)
+            cv::cvtColor(bgr, image, COLOR_BGR2BGRA);
+        else if (CV_MAT_CN(type) == 3)
+            image = bgr.clone();
+        else
+            grey.convertTo(image, type, type == CV_16UC1 ? 4 : 1);
+        return image;
+    }
+
+    //! Other levels, brighter than any of the pair's, where there is no data
+    void overwrite(RNG& rng)
+    {
+        for (int side = 0; side < 2; ++side)
+        {
+            Mat& image = side ? right : left;
+            Mat noise(image.size(), image.type());
+            rng.fill(noise, RNG::UNIFORM, 0, image.depth() == CV_8U ? 256 : 65536);
+            if (image.depth() == CV_32F)
+                noise.setTo(std::numeric_limits<float>::infinity(), noise < 3000);
+            noise.copyTo(image, (side ? rightMask : leftMask) == 0);
+        }
+    }
+
+    void set(HDPTreeMatcher& matcher) const { matcher.setMasks(leftMask, rightMask); }
+};
+
+Mat confidenceOf(const HDPTreeMatcher& matcher)
+{
+    Mat confidence;
+    matcher.getConfidence(confidence);
+    return confidence;
+}
+
+std::vector<double> findingsOf(const HDPTreeMatcher& matcher)
+{
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    std::vector<double> values = findings.rows;
+    values.insert(values.end(), findings.light.begin(), findings.light.end());
+    values.push_back(findings.noise);
+    return values;
+}
+
+const int types[] = { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_32FC1 };
+
+TEST(HDPStereo_Masks, levels_without_data_have_no_influence)
+{
+    for (const System& preset : presets)
+        for (int type : types)
+            for (int minDisparity : { 0, -13, 5 })
+            {
+                SCOPED_TRACE(testing::Message() << preset.name << ", type " << type << ", from " << minDisparity);
+                RNG rng(5);
+                MaskedPair pair(type);
+                const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45, minDisparity);
+                pair.set(*matcher);
+                pair.overwrite(rng);
+                const Mat first = match(*matcher, pair.left, pair.right).clone();
+                const Mat confidence = confidenceOf(*matcher);
+                const std::vector<double> findings = findingsOf(*matcher);
+                pair.overwrite(rng);
+                expectIdentical(first, match(*matcher, pair.left, pair.right));
+                expectIdentical(confidence, confidenceOf(*matcher));
+                EXPECT_EQ(findings, findingsOf(*matcher));
+            }
+}
+
+TEST(HDPStereo_Masks, levels_without_data_have_no_influence_on_filters_and_videos)
+{
+    for (const System& preset : presets)
+    {
+        SCOPED_TRACE(preset.name);
+        RNG rng(6);
+        const Ptr<HDPTreeMatcher> a = createSystem(preset, 45), b = createSystem(preset, 45);
+        for (const Ptr<HDPTreeMatcher>& matcher : { a, b })
+        {
+            matcher->setDisp12MaxDiff(1);
+            matcher->setSpeckleWindowSize(30);
+            matcher->setSpeckleRange(1);
+            matcher->setDisparityDepth(CV_32F);
+            matcher->setUseTemporalPrediction(preset.preset != HDPTreeMatcher::PRESET_PAPER);
+        }
+        MaskedPair pair(CV_8UC3);
+        pair.set(*a);
+        pair.set(*b);
+        for (int frame = 0; frame < 3; ++frame)
+        {
+            pair.overwrite(rng);
+            const Mat first = match(*a, pair.left, pair.right).clone(), confidence = confidenceOf(*a);
+            pair.overwrite(rng);
+            expectIdentical(first, match(*b, pair.left, pair.right));
+            expectIdentical(confidence, confidenceOf(*b));
+        }
+    }
+}
+
+TEST(HDPStereo_Masks, pixels_without_data_have_no_disparity_and_no_confidence)
+{
+    const MaskedPair pair(CV_8UC3);
+    for (const System& preset : presets)
+        for (int depth : { CV_16S, CV_32F })
+        {
+            SCOPED_TRACE(testing::Message() << preset.name << ", depth " << depth);
+            const int minDisparity = -5;
+            const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45, minDisparity);
+            matcher->setDisparityDepth(depth);
+            pair.set(*matcher);
+            Mat disparity = match(*matcher, pair.left, pair.right), none = pair.leftMask == 0;
+            expectIdentical(none, disparity == (depth == CV_16S ? (minDisparity - 1) * 16 : minDisparity - 1));
+            expectIdentical(none, disparity < minDisparity * (depth == CV_16S ? 16 : 1));
+            EXPECT_EQ(0, cv::countNonZero(confidenceOf(*matcher) & none));
+        }
+}
+
+TEST(HDPStereo_Masks, stay_until_others_are_set)
+{
+    MaskedPair pair(CV_8UC3);
+    for (const System& preset : presets)
+    {
+        SCOPED_TRACE(preset.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45);
+        const Mat without = match(*matcher, pair.left, pair.right).clone();
+        Mat own = pair.leftMask.clone();
+        matcher->setMasks(own, pair.rightMask);
+        own.setTo(0); // it was copied
+        const Mat with = match(*matcher, pair.left, pair.right).clone();
+        EXPECT_NE(0, countDifferent(without, with));
+        expectIdentical(with, match(*matcher, pair.left, pair.right));
+        matcher->setMasks(Mat(pair.left.size(), CV_8UC1, Scalar(1)), noArray()); // all have data
+        expectIdentical(without, match(*matcher, pair.left, pair.right));
+        pair.set(*matcher);
+        matcher->setMasks(noArray(), noArray());
+        expectIdentical(without, match(*matcher, pair.left, pair.right));
+        for (const Mat& all : { pair.leftMask, pair.rightMask }) // alone
+        {
+            matcher->setMasks(&all == &pair.leftMask ? all : Mat(), &all == &pair.leftMask ? Mat() : all);
+            EXPECT_NO_THROW(match(*matcher, pair.left, pair.right));
+        }
+    }
+}
+
+TEST(HDPStereo_Masks, nothing_has_data)
+{
+    const MaskedPair pair(CV_16UC1);
+    const Mat none(pair.left.size(), CV_8UC1, Scalar(0));
+    for (const System& preset : presets)
+    {
+        const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45);
+        matcher->setMasks(none, none);
+        EXPECT_EQ(0, cv::countNonZero(match(*matcher, pair.left, pair.right) != -16)) << preset.name;
+        matcher->setMasks(noArray(), none);
+        EXPECT_EQ(0, cv::countNonZero(match(*matcher, pair.left, pair.right) < 0)) << preset.name;
+        const Mat nan(pair.left.size(), CV_32FC1, Scalar(notANumber));
+        matcher->setMasks(noArray(), noArray());
+        EXPECT_EQ(0, cv::countNonZero(match(*matcher, nan, nan) != -16)) << preset.name;
+    }
+}
+
+//! Beside masks the map is nearly as good as without them, where both images have data.
+TEST(HDPStereo_Masks, surfaces_go_on_beside_masks)
+{
+    for (const System& preset : presets)
+    {
+        const SyntheticPair pair = makeSlantedPlane(Size(240, 160), 40, 8);
+        Mat left = pair.left.clone(), right = pair.right.clone();
+        Mat leftMask(left.size(), CV_8UC1, Scalar(255)), rightMask = leftMask.clone();
+        for (Mat* mask : { &leftMask, &rightMask })
+        {
+            cv::circle(*mask, Point(140, 60), 25, Scalar(0), -1); // the same place in both, as what the cameras carry
+            mask->rowRange(130, 160).setTo(0);
+        }
+        RNG rng(3);
+        randomImage(rng, left.size(), left.type()).copyTo(left, leftMask == 0);
+        randomImage(rng, left.size(), left.type()).copyTo(right, rightMask == 0);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 40);
+        const Mat counts = leftMask & pair.visible;
+        const double whole = badPixels(match(*matcher, pair.left, pair.right), pair.truth, counts, 1);
+        const double without = badPixels(match(*matcher, left, right), pair.truth, counts, 1);
+        matcher->setMasks(leftMask, rightMask);
+        const double masked = badPixels(match(*matcher, left, right), pair.truth, counts, 1);
+        EXPECT_LE(masked, whole + 0.5 * std::max(without - whole, 0.)) << preset.name << ", whole " << whole << " %";
+    }
+}
+
+TEST(HDPStereo_Masks, bad_masks_change_nothing)
+{
+    const MaskedPair pair(CV_8UC3);
+    const Mat good = pair.leftMask;
+    for (const System& preset : presets)
+    {
+        const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45);
+        pair.set(*matcher);
+        const Mat expected = match(*matcher, pair.left, pair.right).clone();
+        for (int type : { CV_8UC3, CV_8SC1, CV_16UC1, CV_32FC1 })
+        {
+            const Mat bad(pair.left.size(), type, Scalar::all(1));
+            expectRejected([&] { matcher->setMasks(bad, good); }, "leftMask must be CV_8UC1");
+            expectRejected([&] { matcher->setMasks(noArray(), bad); }, "rightMask must be CV_8UC1");
+        }
+        expectIdentical(expected, match(*matcher, pair.left, pair.right));
+
+        Mat disparity;
+        matcher->setMasks(good.colRange(1, good.cols), noArray());
+        expectRejected([&] { matcher->compute(pair.left, pair.right, disparity); }, "leftMask must have the size");
+        matcher->setMasks(noArray(), good.rowRange(1, good.rows));
+        expectRejected([&] { matcher->compute(pair.left, pair.right, disparity); }, "rightMask must have the size");
+        EXPECT_TRUE(disparity.empty());
+        pair.set(*matcher);
+        expectIdentical(expected, match(*matcher, pair.left, pair.right));
+    }
+}
+
+TEST(HDPStereo_Masks, floats_are_levels_of_16_bits)
+{
+    const MaskedPair pair(CV_16UC1);
+    Mat floats[2], whole[2];
+    const Mat images[2] = { pair.left, pair.right };
+    for (int i = 0; i < 2; ++i)
+        images[i].convertTo(floats[i], CV_32F, 1. / 256, -7);
+    const hdp::PairMasks all = { Mat(pair.left.size(), CV_8U, Scalar(255)), Mat(pair.left.size(), CV_8U, Scalar(255)) };
+    hdp::wholeLevels(floats[0], floats[1], all, whole);
+    for (const System& preset : presets)
+    {
+        const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45);
+        const Mat expected = match(*matcher, whole[0], whole[1]).clone();
+        expectIdentical(expected, match(*matcher, floats[0], floats[1]));
+        floats[0].copyTo(whole[0]); // to be masked by numbers
+        floats[1].copyTo(whole[1]);
+        whole[0].setTo(notANumber, pair.leftMask == 0);
+        whole[1].setTo(-std::numeric_limits<float>::infinity(), pair.rightMask == 0);
+        const Mat masked = match(*matcher, whole[0], whole[1]).clone();
+        pair.set(*matcher);
+        expectIdentical(masked, match(*matcher, floats[0], floats[1]));
+        hdp::wholeLevels(floats[0], floats[1], all, whole);
+    }
+}
+
+TEST(HDPStereo_Masks, scale_of_floats)
+{
+    RNG rng(9);
+    for (int round = 0; round < 20; ++round)
+    {
+        const Size size(rng.uniform(1, 90), rng.uniform(1, 90));
+        Mat images[2], levels[2];
+        std::vector<float> values;
+        hdp::PairMasks masks = { randomImage(rng, size, CV_8UC1, 2) * 255, randomImage(rng, size, CV_8UC1, 2) * 255 };
+        for (int i = 0; i < 2; ++i)
+        {
+            images[i].create(size, CV_32F);
+            rng.fill(images[i], RNG::NORMAL, round, 1 + round * round);
+            for (int k = 0; k < size.area(); ++k)
+                if ((i ? masks.right : masks.left).ptr(k / size.width)[k % size.width])
+                    values.push_back(images[i].ptr<float>(k / size.width)[k % size.width]);
+        }
+        hdp::wholeLevels(images[0], images[1], masks, levels);
+        std::sort(values.begin(), values.end());
+        const size_t outliers = values.size() / 1024;
+        for (int i = 0; i < 2 && !values.empty(); ++i)
+            for (int k = 0; k < size.area(); ++k)
+            {
+                const double low = values[outliers], high = values[values.size() - 1 - outliers];
+                const double share = (images[i].ptr<float>(k / size.width)[k % size.width] - low) / (high - low);
+                const bool counts = (i ? masks.right : masks.left).ptr(k / size.width)[k % size.width] && high > low;
+                ASSERT_NEAR(counts ? 65535 * std::min(std::max(share, 0.), 1.) : 0,
+                            levels[i].ptr<ushort>(k / size.width)[k % size.width], 0.501);
+            }
+    }
+}
+
+//! The documentation of fillMissing(), pixel by pixel
+TEST(HDPStereo_Masks, missing_pixels_get_the_nearest_ones_of_their_row)
+{
+    RNG rng(10);
+    for (int round = 0; round < 60; ++round)
+    {
+        const Size size(rng.uniform(1, 30), rng.uniform(1, 12));
+        const Mat image = randomImage(rng, size, round % 3 == 0 ? CV_8UC3 : round % 3 == 1 ? CV_16UC1 : CV_8UC1);
+        Mat mask = (randomImage(rng, size, CV_8UC1, 9) < rng.uniform(0, 9)), filled;
+        for (int y = 0; y < size.height; ++y)
+            if (rng.uniform(0, 3) == 0)
+                mask.row(y).setTo(0);
+        hdp::fillMissing(image, mask, filled);
+        const auto rowHas = [&](int y) { return y >= 0 && y < size.height && cv::countNonZero(mask.row(y)) > 0; };
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+            {
+                int row = -1, column = -1;
+                for (int d = 0; d < size.height && row < 0; ++d)
+                    row = rowHas(y - d) ? y - d : rowHas(y + d) ? y + d : -1;
+                for (int d = 0; row >= 0 && column < 0; ++d)
+                    for (int side : { x - d, x + d })
+                        if (column < 0 && side >= 0 && side < size.width && mask.at<uchar>(row, side))
+                            column = side;
+                const Mat expected = row < 0 ? Mat::zeros(1, 1, image.type()) : image(Rect(column, row, 1, 1)).clone();
+                expectIdentical(expected, filled(Rect(x, y, 1, 1)).clone());
+            }
+    }
+}
+
+TEST(HDPStereo_Masks, costs_of_pixels_without_data)
+{
+    RNG rng(12);
+    const Size size(50, 20);
+    const int numDisparities = 30;
+    const Mat left = randomImage(rng, size, CV_16UC1, 1021), right = randomImage(rng, size, CV_16UC1, 1021);
+    const hdp::PairMasks masks = { randomImage(rng, size, CV_8UC1), randomImage(rng, size, CV_8UC1) };
+    hdp::CensusCost plain, limited;
+    plain.prepare(left, right, numDisparities, 7, 2);
+    limited.prepare(left, right, numDisparities, 7, 2, masks);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+            for (int lanes : { 4, 8, 16, 32 })
+            {
+                const int pixel = y * size.width + x, first = rng.uniform(0, numDisparities);
+                std::vector<float> expected(lanes), costs(lanes);
+                std::vector<uchar> bytes(lanes);
+                plain.evaluate(&pixel, 1, first, lanes, expected.data());
+                limited.evaluate(&pixel, 1, first, lanes, costs.data());
+                limited.evaluate(&pixel, 1, first, lanes, bytes.data());
+                for (int k = 0; k < lanes && first + k < numDisparities; ++k)
+                {
+                    const int matched = std::max(x - first - k, 0);
+                    const float cost = masks.left.at<uchar>(y, x) < 128          ? 0
+                                       : masks.right.at<uchar>(y, matched) < 128 ? std::min(expected[k], 8.f)
+                                                                                 : expected[k];
+                    ASSERT_EQ(cost, costs[k]);
+                    ASSERT_EQ(cost, bytes[k]);
+                }
+            }
+}
+
+}} // namespace opencv_test
