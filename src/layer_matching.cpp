@@ -39,7 +39,6 @@ public:
     Verdict run()
     {
         result_.prior.clear();
-        clock_.run("matching cost", [&] { prepareCost(); });
         if (plan_.method == COST_SCANLINES)
             matchCosts();
         else if (plan_.method == WINDOW_SCANLINES)
@@ -59,18 +58,6 @@ public:
     }
 
 private:
-    void prepareCost()
-    {
-        const CostPlan& cost = plan_.cost;
-        const Mat &left = in_.images.left, &right = in_.images.right;
-        if (cost.isCensus)
-            return own_.census.prepare(left, right, plan_.numDisparities, cost.windowSide, cost.tolerance,
-                                       in_.images.masks);
-        const ColorGradientParams params = { cost.colorTruncation, cost.gradientTruncation, cost.colorWeight,
-                                             cost.windowSide };
-        own_.colorGradient.prepare(left, right, plan_.numDisparities, params, in_.images.masks);
-    }
-
     //! Sections 3.1 to 3.3: over the candidates of disparity trees
     void matchTrees()
     {
@@ -149,12 +136,20 @@ private:
     {
         const DisparityForest& forest = shared_.forest;
         CostVolume& volume = shared_.volume;
-        aggregateMeans(forest, own_.census, plan_.trees.gamma, shared_.aggregation, volume);
+        prepareVolumeCost();
+        aggregateMeans(forest, shared_.volumeCost, plan_.trees.gamma, shared_.aggregation, volume);
         if (plan_.prefersLastFrame)
             preferLastFrame(true);
         aggregateVolume(volume, forest.weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
         if (plan_.trees.prefersPlanes && preferTreePlanes(forest, result_.winners, volume) > 0)
             aggregateVolume(volume, forest.weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
+    }
+
+    //! What the costs of a volume are
+    void prepareVolumeCost()
+    {
+        const CensusCost* below = plan_.seesBelow ? in_.below : nullptr;
+        shared_.volumeCost.prepare(own_.census, below, plan_.numDisparities);
     }
 
     void preferLastFrame(bool areMeans)
@@ -170,7 +165,8 @@ private:
         result_.searchRatio = 1;
         clock_.run("disparity prediction", [&] {
             const DisparityInterval all = { 0, (ushort)(plan_.numDisparities - 1) };
-            shared_.volume.fill(own_.census, in_.images.guide.size(), all);
+            prepareVolumeCost();
+            shared_.volume.fill(shared_.volumeCost, in_.images.guide.size(), all);
             if (plan_.prefersLastFrame)
                 preferLastFrame(false);
         });
@@ -237,7 +233,8 @@ private:
             const WindowPrediction prediction = { isFirst ? in_.upper->disparity : own_.halved,
                                                   isFirst ? in_.upper->winners : own_.halvedWinners,
                                                   own_.sparseMatches };
-            predictWindows(prediction, plan_.numDisparities, own_.windowBuffers, own_.windows);
+            findOtherSurfaces(prediction, own_.census, plan_.numDisparities, own_.surfaceBuffers, own_.others);
+            predictWindows(prediction.upper, own_.others, plan_.numDisparities, own_.windows);
         });
     }
 
@@ -274,6 +271,17 @@ private:
 };
 
 } // namespace
+
+void prepareCost(const LayerPlan& plan, const LayerImages& images, LayerScratch& own)
+{
+    const CostPlan& cost = plan.cost;
+    if (cost.isCensus)
+        return own.census.prepare(images.left, images.right, plan.numDisparities, cost.windowSide, cost.tolerance,
+                                  images.masks);
+    const ColorGradientParams params = { cost.colorTruncation, cost.gradientTruncation, cost.colorWeight,
+                                         cost.windowSide };
+    own.colorGradient.prepare(images.left, images.right, plan.numDisparities, params, images.masks);
+}
 
 Verdict matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
                    LayerResult& result)

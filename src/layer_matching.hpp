@@ -9,6 +9,7 @@
 #include "paper/support_points.hpp"
 #include "plan/pair_plan.hpp"
 #include "scanlines/candidate_windows.hpp"
+#include "scanlines/other_surfaces.hpp"
 #include "video/temporal_join.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -29,6 +30,7 @@ struct LayerInput
     const LayerPlan& plan;
     const LayerImages& images;
     const LayerResult* upper;          // the layer above; none at the top layer
+    const CensusCost* below;           // that of the layer below; none at the finest layer
     const FrameMemory& lastFrame;      // of a video
     const FramePrediction& prediction; // of this frame, if it is one of a video
 };
@@ -40,8 +42,8 @@ struct LayerScratch
     ColorGradientCost colorGradient;
     Mat guide, edgeWeights;              // what edges are weighed on; their weights, if there is no forest
     Mat pixelIntv;                       // PixelIntv, section 3.1
-    WindowBuffers windowBuffers;         // memory of predictWindows()
-    Mat sparseMatches, windows;          // what the windows of scanlines are predicted from; the windows
+    SurfaceBuffers surfaceBuffers;       // memory of findOtherSurfaces()
+    Mat sparseMatches, others, windows;  // what the windows of scanlines are predicted from; the windows
     Mat filtered, halved, halvedWinners; // what a pass of scanlines leaves to the next one
     Mat residual;                        // costs of the winners
     Mat stable, refined;                 // pixels that pass the left-right check, and their refined disparities
@@ -69,11 +71,15 @@ struct SharedScratch
     ForestBuffers forestBuffers;
     AggregationBuffers aggregation;
     ScanlineBuffers scanlines;
+    TwoLayerCost volumeCost;
     CostVolume volume;
     VolumeScanlineBuffers volumeScanlines;
     VideoScratch video;
     FrameMemory frame; // what the finest layer leaves to the next frame of a video
 };
+
+//! The matching cost of a layer, which matchLayer() needs of it and of the layer below
+void prepareCost(const LayerPlan& plan, const LayerImages& images, LayerScratch& own);
 
 //! Section 3: from the disparities of the layer above to those of this layer. Returns what the frame is to the last one
 //! of a video, as joinLastFrame() does; FIRST on the layers above.

@@ -48,14 +48,15 @@ void CostLimits::apply(const int* pixels, int count, int first, int lanes, float
     }
 }
 
-void CostLimits::apply(const int* pixels, int count, int first, int lanes, uchar* cost) const
+void CostLimits::apply(const int* pixels, int count, int first, int lanes, uchar unit, uchar* cost) const
 {
     for (int i = 0; i < count; ++i, cost += lanes)
     {
         const int y = pixels[i] / width_, x = pixels[i] - y * width_;
         const uchar own = left(y)[x];
         const uchar* const limit = right(y) + width_ - 1 - x + first;
-        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] = std::min(cost[k], std::min(own, limit[k]));
+        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] =
+            (uchar)std::min((int)cost[k], unit * std::min(own, limit[k]));
     }
 }
 
