@@ -29,6 +29,9 @@ static const char* const keys =
     "{num-disparities |      | number of disparities; by default width / 5, rounded up to a multiple of 16 }"
     "{findings        |      | matches as --save-findings of another pair of the rig says; nothing is estimated }"
     "{save-findings   |      | what was found in the pair, rows, light, noise and levels: FILE.yml, .xml or .json }"
+    "{tiles           |      | matches by tiles that know their place, for images of any size: of TIFF, windows are "
+    "read; OUT may be FILE.tif (float, nan = none), which is written by tiles. --memory says how large they are }"
+    "{memory          | 1024 | MiB that --tiles may take }"
     "{output          |      | disparities: FILE.png (16 bit, times 256, 0 = none) or FILE.pfm (float, inf = none) }"
     "{picture         |      | disparities in colors: far is blue, near is orange, none is black }"
     "{truth           |      | true disparities: PNG, 8 bit or 16 bit (times 256), 0 = unknown }"
@@ -57,6 +60,8 @@ int main(int argc, char** argv)
         }
         else if (parser.has("version"))
             std::cout << "hdpstereo " << HDPSTEREO_VERSION << " (OpenCV " << CV_VERSION << ")" << std::endl;
+        else if (parser.has("tiles"))
+            matchTiles(parser);
         else if (parser.has("batch"))
             status = matchPairs(parser) == 0 ? 0 : 2;
         else
