@@ -98,6 +98,15 @@ ValueError. 384 is one for up to 6 layers.
 tileWidth, tileHeight: of the tile, > 0.
 
 Raises ValueError if the model is empty, or the tile not inside of the images.)doc");
+    type.def("enlarged", &PairModel::enlarged, py::arg("times"), py::arg("width"), py::arg("height"), R"doc(
+Returns the model for images that this one's are a reduction of, by means of squares of pixels.
+
+For images that are too large to be matched at once: rows and light are found in the reduced pair.
+
+times: how often the images were halved, 0 to 15; minDisparity and numDisparities, too.
+width, height: of the larger images: this model's times 2^times, or up to 2^times - 1 more.
+
+Raises ValueError if the model is empty or of a tile, or sizes do not fit.)doc");
     defFields(type);
     type.def("__repr__", [](const PairModel& m) {
         return m.empty() ? std::string("PairModel()")

@@ -234,6 +234,30 @@ TEST(HDPStereo_PairModel, another_range)
     expectIdentical(unmoved.colRange(0, size.width), align(-20, 32, shifted).colRange(12, size.width + 12));
 }
 
+TEST(HDPStereo_PairModel, enlarged)
+{
+    RNG rng(74);
+    PairModel model;
+    model.width = model.tileWidth = 100;
+    model.height = model.tileHeight = 60;
+    model.numDisparities = 16;
+    for (double& coefficient : model.rows)
+        coefficient = rng.uniform(-1., 1.);
+    const PairModel large = model.enlarged(2, 403, 240);
+    EXPECT_EQ(Size(403, 240), Size(large.tileWidth, large.tileHeight));
+    hdp::RowModel small, enlarged;
+    std::copy(model.rows.begin(), model.rows.end(), small.coefficients.val);
+    std::copy(large.rows.begin(), large.rows.end(), enlarged.coefficients.val);
+    for (int round = 0; round < 20; ++round)
+    {
+        const Point2d place(rng.uniform(-50., 50.), rng.uniform(-30., 30.));
+        EXPECT_NEAR(4 * small.at(place), enlarged.at(4 * place), 1e-9);
+    }
+    expectRejected([&] { model.enlarged(2, 404, 240); }, "width");
+    expectRejected([&] { model.enlarged(16, 100 << 16, 60 << 16); }, "times");
+    expectRejected([&] { model.tile(0, 0, 50, 50).enlarged(1, 200, 120); }, "whole images");
+}
+
 //! Share of the pixels that tiles with a margin have otherwise than the whole, by more than a limit in pixels
 double differentShare(const SyntheticPair& pair, int preset, int numDisparities, int margin, double limit)
 {

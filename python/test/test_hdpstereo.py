@@ -196,7 +196,7 @@ class Interface(Test):
             self.assertTrue(callable(getattr(DisparityPredictionModel, name, None)), name)
         for name in self.declared('pair_model.hpp', method):
             self.assertTrue(callable(getattr(hdpstereo.PairModel, name, None)), name)
-        methods = {'empty', 'tile', 'save', 'load'}
+        methods = {'empty', 'tile', 'enlarged', 'save', 'load'}
         self.assertEqual(self.declared('pair_model.hpp', r'CV_PROP_RW [^;]* (\w+);'),
                          set(name for name in dir(hdpstereo.PairModel) if not name.startswith('_')) - methods)
         for name in self.declared('tree_strategy.hpp', r'CV_EXPORTS_W \S+ (\w+)\('):

@@ -132,6 +132,31 @@ PairModel PairModel::tile(int firstColumn, int firstRow, int columns, int rowCou
     return model;
 }
 
+PairModel PairModel::enlarged(int times, int largeWidth, int largeHeight) const
+{
+    if (empty() || tileWidth != width || tileHeight != height)
+        CV_Error(Error::StsBadArg, "PairModel: only a model of whole images can be enlarged");
+    if (times < 0 || times > 15)
+        CV_Error(Error::StsOutOfRange, format("times must be 0..15, not %d", times));
+    if (largeWidth >> times != width || largeHeight >> times != height)
+        CV_Error(Error::StsUnmatchedSizes, format("width and height must be %d x %d times %d, not %d x %d", width,
+                                                  height, 1 << times, largeWidth, largeHeight));
+    const double scale = 1 << times;
+    PairModel model = *this;
+    model.width = model.tileWidth = largeWidth;
+    model.height = model.tileHeight = largeHeight;
+    model.minDisparity *= 1 << times;
+    model.numDisparities *= 1 << times;
+    model.addedColumns <<= times;
+    model.rows[0] *= scale;
+    model.rows[3] /= scale;
+    model.rows[4] /= scale;
+    model.noiseLayer = std::min(noiseLayer + times, 15);
+    model.leftBlockStep = model.rightBlockStep = 0; // blocks of the larger images are not seen in these
+    checkPairModel(model);
+    return model;
+}
+
 void PairModel::write(FileStorage& fs) const
 {
     visitFields(*this, Writer{ fs });

@@ -32,6 +32,9 @@ static const char* const keys =
     "{left-mask       |      | picture of the left image's size, black where that has no data; of all pairs of --batch "
     "}"
     "{right-mask      |      | the same of the right image }"
+    "{tiles           |      | matches by tiles that know their place, for images of any size: of TIFF, windows are "
+    "read; OUT may be FILE.tif (float, nan = none), which is written by tiles. --memory says how large they are }"
+    "{memory          | 1024 | MiB that --tiles may take }"
     "{output          |      | disparities: FILE.png (16 bit, times 256, 0 = none) or FILE.pfm (float, inf = none) }"
     "{picture         |      | disparities in colors: far is blue, near is orange, none is black }"
     "{truth           |      | true disparities: PNG, 8 bit or 16 bit (times 256), 0 = unknown }"
@@ -60,6 +63,8 @@ int main(int argc, char** argv)
         }
         else if (parser.has("version"))
             std::cout << "hdpstereo " << HDPSTEREO_VERSION << " (OpenCV " << CV_VERSION << ")" << std::endl;
+        else if (parser.has("tiles"))
+            matchTiles(parser);
         else if (parser.has("batch"))
             status = matchPairs(parser) == 0 ? 0 : 2;
         else

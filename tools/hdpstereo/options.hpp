@@ -21,6 +21,9 @@ cv::Ptr<cv::stereo::HDPTreeMatcher> createMatcher(const cv::CommandLineParser& p
 
 void matchPair(const cv::CommandLineParser& parser);
 
+//! --tiles
+void matchTiles(const cv::CommandLineParser& parser);
+
 //! --batch. Returns how many pairs are bad.
 size_t matchPairs(const cv::CommandLineParser& parser);
 

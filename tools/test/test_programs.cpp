@@ -365,6 +365,38 @@ TEST(HDPStereo_Programs, findings_of_another_pair)
     EXPECT_EQ(1, run(folder, "hdpstereo --batch a b c --save-findings=" + model).status);
 }
 
+//! Tiles that know their place have no seams, whatever the file is read by.
+TEST(HDPStereo_Programs, tiles)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSlantedPlane(Size(1000, 600), 32, 9);
+    const String whole = folder.path("whole.pfm"), tiled = folder.path("tiled.tif"), model = folder.path("rig.yml");
+    for (const char* const extension : { "png", "tif" })
+    {
+        SCOPED_TRACE(extension);
+        const String left = String("left.") + extension, right = String("right.") + extension;
+        folder.write(left, pair.left);
+        folder.write(right, pair.right);
+        const String images = " " + folder.path(left) + " " + folder.path(right) + " --num-disparities=32 ";
+        EXPECT_EQ(0, run(folder, "hdpstereo" + images + whole + " --save-findings=" + model).status);
+        const Mat expected = cv::imread(whole, IMREAD_UNCHANGED);
+        for (const bool isGiven : { false, true }) // what is found in reduced images is a bit different
+        {
+            const Execution result = run(folder, "hdpstereo --tiles --memory=88" + images + tiled +
+                                                     (isGiven ? " --findings=" + model : String()));
+            EXPECT_EQ(0, result.status) << result.errors;
+            EXPECT_EQ(String::npos, result.output.find("tiles      1 of")) << result.output;
+            const Mat map = cv::imread(tiled, IMREAD_UNCHANGED);
+            ASSERT_EQ(expected.size(), map.size());
+            EXPECT_LE(cv::countNonZero(cv::abs(expected - map) > (isGiven ? 0 : 1)), isGiven ? 6000 : 1500);
+        }
+    }
+    const String images = " " + folder.path("left.png") + " " + folder.path("right.png") + " ";
+    for (const String& wrong : { "--memory=1 out.tif" + String(), "--picture=a.png out.tif" + String(), String(),
+                                 "--memory=x out.tif" + String(), "/no/such/folder/out.tif" + String() })
+        EXPECT_EQ(1, run(folder, "hdpstereo --tiles" + images + wrong).status) << wrong;
+}
+
 //! The most that a program takes, in KiB
 long peakMemory(const DatasetFolder& folder, const String& command)
 {

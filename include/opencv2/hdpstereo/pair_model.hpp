@@ -51,6 +51,16 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     //! The same of a rectangle
     PairModel tile(const Rect& rect) const { return tile(rect.x, rect.y, rect.width, rect.height); }
 
+    /** @brief Returns the model for images that this one's are a reduction of, by means of squares of pixels.
+
+    For images that are too large to be matched at once: rows and light are found in the reduced pair.
+    @param times How often the images were halved, 0..15; minDisparity and numDisparities, too.
+    @param width Of the larger images: this model's times 2^times, or up to 2^times - 1 more.
+    @param height Of the larger images, likewise.
+    @throws cv::Exception if the model is empty or of a tile, or sizes do not fit.
+     */
+    CV_WRAP PairModel enlarged(int times, int width, int height) const;
+
     CV_PROP_RW int width;          //!< of the images, in pixels, > 0; 0: the model is empty. Up to 2^24
     CV_PROP_RW int height;         //!< of the images, in pixels, likewise
     CV_PROP_RW int depth;          //!< of the images: CV_8U or CV_16U

@@ -1,0 +1,204 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "files.hpp"
+#include "options.hpp"
+#include "windows.hpp"
+
+#include <cmath>
+#include <iostream>
+
+#include "opencv2/imgproc.hpp"
+
+using namespace cv;
+using cv::stereo::HDPTreeMatcher;
+using cv::stereo::PairModel;
+
+namespace {
+
+// Pixels of the reduced pair that tells the rows and the light: alignment looks at 600000
+const double overviewPixels = 3e6;
+
+const int margin = 128; // pixels that scanlines come from, beside what disparities need
+
+struct WindowedPair
+{
+    Ptr<ImageWindows> left, right;
+
+    Size size() const { return left->size(); }
+    bool fits() const { return left->bytesInMemory() == 0; }
+};
+
+WindowedPair openPair(const CommandLineParser& parser)
+{
+    const WindowedPair pair = { openImage(parser.get<String>("@left")), openImage(parser.get<String>("@right")) };
+    if (pair.left->size() != pair.right->size() || pair.left->type() != pair.right->type())
+        CV_Error(Error::StsUnmatchedSizes, "RIGHT must have the size and the type of LEFT");
+    return pair;
+}
+
+//! What an image becomes if it is halved some times, read by rows
+Mat reduced(ImageWindows& image, int times)
+{
+    const Size size(image.size().width >> times, image.size().height >> times);
+    Mat small(size, image.type());
+    const int rows = std::max(256 >> times, 1);
+    for (int y = 0; y < size.height; y += rows)
+    {
+        const int count = std::min(rows, size.height - y);
+        const Mat band = image.read(Rect(0, y << times, size.width << times, count << times));
+        resize(band, small.rowRange(y, y + count), Size(size.width, count), 0, 0, INTER_AREA);
+    }
+    return small;
+}
+
+//! Memory that a matcher takes, in bytes per pixel, at most; see BENCHMARK.md
+double bytesPerPixel(const String& preset)
+{
+    return preset == "ultrafast" ? 40 : preset == "fast" ? 60 : preset == "quality" ? 100 : 200;
+}
+
+//! How a pair is cut
+class Tiling
+{
+public:
+    Tiling(Size size, const HDPTreeMatcher& matcher, int layers, double pixels) : size_(size)
+    {
+        const int step = 48 << std::max(layers - 3, 0); // of all grids; TIFF needs a multiple of 16
+        const auto toGrid = [=](int count) { return (count + step - 1) / step * step; };
+        const int min = matcher.getMinDisparity(), largest = min + matcher.getNumDisparities() - 1;
+        before_ = Size(toGrid(std::max(largest, 0) + margin), toGrid(margin));
+        after_ = Size(std::max(-min, 0) + margin, margin);
+        const Size beside = before_ + after_;
+        const int most = std::min(SHRT_MAX - std::max(beside.width, beside.height), std::max(size.width, size.height));
+        side_ = toGrid(most) > SHRT_MAX - beside.width ? most / step * step : toGrid(most);
+        while (side_ > step && (double)(side_ + beside.width) * (side_ + beside.height) > pixels)
+            side_ -= step;
+        if ((double)(side_ + beside.width) * (side_ + beside.height) > pixels)
+            CV_Error(Error::StsOutOfRange,
+                     format("--memory is too little for a tile of %d x %d pixels, of which %d x %d are margins",
+                            side_ + beside.width, side_ + beside.height, beside.width, beside.height));
+    }
+
+    int side() const { return side_; }
+    int count() const { return columns() * ((size_.height + side_ - 1) / side_); }
+    //! What a tile is for
+    Rect inside(int i) const
+    {
+        return Rect(i % columns() * side_, i / columns() * side_, side_, side_) & Rect(Point(), size_);
+    }
+    //! With its margins
+    Rect whole(int i) const
+    {
+        const Rect part = inside(i);
+        return Rect(part.tl() - Point(before_), part.size() + before_ + after_) & Rect(Point(), size_);
+    }
+
+private:
+    int columns() const { return (size_.width + side_ - 1) / side_; }
+
+    Size size_, before_, after_;
+    int side_;
+};
+
+//! Pixels of a tile that fit into --memory, which are some at least
+double affordedPixels(const CommandLineParser& parser, double otherBytes)
+{
+    const double memory = numberOf(parser, "memory") * (1 << 20), fixed = 64 << 20; // of the program itself
+    const double perPixel = bytesPerPixel(parser.get<String>("preset")) + 16;       // and images, and map
+    const double pixels = (memory - fixed - otherBytes) / perPixel;
+    if (!(pixels > 256 * 256))
+        CV_Error(Error::StsOutOfRange, format("--memory must be more than %.0f",
+                                              std::ceil((fixed + otherBytes + 256 * 256 * perPixel) / (1 << 20))));
+    return pixels;
+}
+
+//! What all tiles are matched with. Rows and light are those of the reduced pair, the rest that of a part in the middle.
+//! layers: receives the number of layers.
+PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, HDPTreeMatcher& matcher, double pixels,
+                    int& layers)
+{
+    const Size size = pair.size();
+    int times = 0;
+    while ((double)(size.width >> times) * (size.height >> times) > std::min(overviewPixels, pixels))
+        ++times;
+    const Mat left = reduced(*pair.left, times), right = reduced(*pair.right, times);
+    const int min = matcher.getMinDisparity(), count = matcher.getNumDisparities();
+    const Ptr<HDPTreeMatcher> small = createMatcher(parser, size.width);
+    small->setPairModel(PairModel());
+    small->setMinDisparity(min >> times);
+    small->setNumDisparities((count >> times) + 1);
+    if (times == 0)
+        small->setNumDisparities(count);
+    computeDisparity(*small, left, right);
+    layers = (int)small->getFindings().searchRatios.size();
+    PairModel model = small->getPairModel();
+    if (times == 0)
+        return parser.has("findings") ? PairModel::load(parser.get<String>("findings")) : model;
+
+    const int side = (int)std::sqrt(std::min(overviewPixels, pixels));
+    const Rect middle = (Rect((size.width - side) / 2, (size.height - side) / 2, side, side)) & Rect(Point(), size);
+    const Ptr<HDPTreeMatcher> part = createMatcher(parser, size.width);
+    part->setPairModel(PairModel());
+    computeDisparity(*part, pair.left->read(middle), pair.right->read(middle));
+    layers = (int)part->getFindings().searchRatios.size();
+    if (parser.has("findings"))
+        return PairModel::load(parser.get<String>("findings"));
+    const PairModel ofPart = part->getPairModel();
+    model = model.enlarged(times, size.width, size.height);
+    if (ofPart.noise > 0)
+    {
+        model.noise = ofPart.noise;
+        model.noiseLayer = ofPart.noiseLayer;
+    }
+    model.leftBlockStart = (ofPart.leftBlockStart + middle.x) % 8;
+    model.leftBlockStep = ofPart.leftBlockStep;
+    model.rightBlockStart = (ofPart.rightBlockStart + middle.x) % 8;
+    model.rightBlockStep = ofPart.rightBlockStep;
+    return model;
+}
+
+void checkTileOptions(const CommandLineParser& parser)
+{
+    for (const char* option : { "picture", "truth", "point-cloud", "compare", "batch" })
+        if (parser.has(option))
+            CV_Error(Error::StsBadArg, format("--%s does not go with --tiles", option));
+    if (!parser.has("@left") || !parser.has("@right") || parser.has("@out") == parser.has("output"))
+        CV_Error(Error::StsBadArg, "--tiles needs LEFT RIGHT OUT");
+    if (!(numberOf(parser, "memory") > 0))
+        CV_Error(Error::StsBadArg, "--memory must be above 0");
+}
+
+} // namespace
+
+void matchTiles(const CommandLineParser& parser)
+{
+    checkTileOptions(parser);
+    const WindowedPair pair = openPair(parser);
+    const Size size = pair.size();
+    const String output = parser.get<String>(parser.has("output") ? "output" : "@out");
+    if (!pair.fits())
+        std::cout << "read whole " << parser.get<String>("@left") << ", " << parser.get<String>("@right") << std::endl;
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, size.width);
+    const bool writesTiles = isWrittenByTiles(output);
+    const double area = (double)size.width * size.height;
+    const double pixels = affordedPixels(parser, area * (2. * pair.left->bytesInMemory() + (writesTiles ? 0 : 4)));
+    int layers = 0;
+    const PairModel model = findModel(parser, pair, *matcher, pixels, layers);
+    if (parser.has("save-findings"))
+        model.save(parser.get<String>("save-findings"));
+    const Tiling tiling(size, *matcher, layers, pixels);
+    const Ptr<MapTiles> map = createMap(output, size, tiling.side());
+    for (int i = 0; i < tiling.count(); ++i)
+    {
+        const Rect whole = tiling.whole(i), inside = tiling.inside(i);
+        matcher->setPairModel(model.tile(whole));
+        const Mat disparity = computeDisparity(*matcher, pair.left->read(whole), pair.right->read(whole));
+        map->write(disparity(inside - whole.tl()), inside);
+    }
+    map->finish();
+    const Rect first = tiling.whole(tiling.count() / 2);
+    std::cout << format("tiles      %d of %d x %d pixels, about %d x %d with margins\n", tiling.count(), tiling.side(),
+                        tiling.side(), first.width, first.height)
+              << "written    " << output << std::endl;
+}

@@ -1,0 +1,229 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "windows.hpp"
+
+#include "files.hpp"
+
+#include "opencv2/imgproc.hpp"
+
+#ifdef HDPSTEREO_TIFF
+#include <memory>
+#include <tiffio.h>
+#endif
+
+using namespace cv;
+
+namespace {
+
+class WholeImage : public ImageWindows
+{
+public:
+    explicit WholeImage(const String& path) : image_(readPicture(path)) {}
+    Size size() const CV_OVERRIDE { return image_.size(); }
+    int type() const CV_OVERRIDE { return image_.type(); }
+    int bytesInMemory() const CV_OVERRIDE { return (int)image_.elemSize(); }
+    Mat read(const Rect& part) CV_OVERRIDE { return image_(part); }
+
+private:
+    Mat image_;
+};
+
+class WholeMap : public MapTiles
+{
+public:
+    WholeMap(const String& path, Size size) : path_(path), map_(size, CV_32F) {}
+    void write(const Mat& disparity, const Rect& part) CV_OVERRIDE { disparity.copyTo(map_(part)); }
+    void finish() CV_OVERRIDE { writeFile(path_, encodeDisparity(extensionOf(path_), map_)); }
+
+private:
+    String path_;
+    Mat map_;
+};
+
+#ifdef HDPSTEREO_TIFF
+
+bool isTiff(const String& path)
+{
+    const String extension = extensionOf(path);
+    return extension == ".tif" || extension == ".tiff";
+}
+
+struct TiffCloser
+{
+    void operator()(TIFF* file) const { TIFFClose(file); }
+};
+
+typedef std::unique_ptr<TIFF, TiffCloser> Tiff;
+
+template <typename T> T fieldOf(TIFF* file, uint32_t tag)
+{
+    T value = T();
+    TIFFGetFieldDefaulted(file, tag, &value);
+    return value;
+}
+
+//! A TIFF of strips or tiles, of one to four interleaved samples of 8 or 16 bit
+class TiffWindows : public ImageWindows
+{
+public:
+    //! file: closed by this
+    TiffWindows(const String& path, TIFF* file) : path_(path), file_(file)
+    {
+        TIFF* const f = file_.get();
+        size_ = Size((int)fieldOf<uint32_t>(f, TIFFTAG_IMAGEWIDTH), (int)fieldOf<uint32_t>(f, TIFFTAG_IMAGELENGTH));
+        bits_ = fieldOf<uint16_t>(f, TIFFTAG_BITSPERSAMPLE);
+        samples_ = fieldOf<uint16_t>(f, TIFFTAG_SAMPLESPERPIXEL);
+        isTiled_ = TIFFIsTiled(f) != 0;
+        block_ = isTiled_
+                     ? Size((int)fieldOf<uint32_t>(f, TIFFTAG_TILEWIDTH), (int)fieldOf<uint32_t>(f, TIFFTAG_TILELENGTH))
+                     : Size(size_.width, (int)std::min<uint32_t>(fieldOf<uint32_t>(f, TIFFTAG_ROWSPERSTRIP),
+                                                                 (uint32_t)size_.height));
+    }
+
+    //! Whether parts are less work than the whole, and mean what they mean to imread()
+    bool isReadable() const
+    {
+        TIFF* const f = file_.get();
+        const int photometric = fieldOf<uint16_t>(f, TIFFTAG_PHOTOMETRIC),
+                  format = fieldOf<uint16_t>(f, TIFFTAG_SAMPLEFORMAT);
+        const bool isGrey = samples_ == 1 && photometric == PHOTOMETRIC_MINISBLACK;
+        const bool isColored = (samples_ == 3 || samples_ == 4) && photometric == PHOTOMETRIC_RGB;
+        return (bits_ == 8 || bits_ == 16) && format == SAMPLEFORMAT_UINT && (isGrey || isColored) &&
+               fieldOf<uint16_t>(f, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_CONTIG && size_.area() > 0 &&
+               block_.area() > 0 && (isTiled_ || block_.height < size_.height);
+    }
+
+    Size size() const CV_OVERRIDE { return size_; }
+    int type() const CV_OVERRIDE { return bits_ == 16 ? CV_16UC1 : samples_ == 1 ? CV_8UC1 : CV_8UC3; }
+    int bytesInMemory() const CV_OVERRIDE { return 0; }
+
+    Mat read(const Rect& part) CV_OVERRIDE
+    {
+        const int stored = CV_MAKETYPE(bits_ == 16 ? CV_16U : CV_8U, samples_);
+        Mat pixels(part.size(), stored), block(block_, stored);
+        for (int y = part.y / block_.height * block_.height; y < part.br().y; y += block_.height)
+            for (int x = part.x / block_.width * block_.width; x < part.br().x; x += block_.width)
+            {
+                readBlock(x, y, block);
+                const Rect inside = Rect(Point(x, y), block_) & part;
+                block(inside - Point(x, y)).copyTo(pixels(inside - part.tl()));
+            }
+        Mat image;
+        if (samples_ == 1)
+            return pixels;
+        const bool hasAlpha = samples_ == 4;
+        if (bits_ == 16)
+            cvtColor(pixels, image, hasAlpha ? COLOR_RGBA2GRAY : COLOR_RGB2GRAY);
+        else
+            cvtColor(pixels, image, hasAlpha ? COLOR_RGBA2BGR : COLOR_RGB2BGR);
+        return image;
+    }
+
+private:
+    void readBlock(int x, int y, Mat& block)
+    {
+        TIFF* const f = file_.get();
+        const tmsize_t bytes = (tmsize_t)(block.total() * block.elemSize());
+        const tmsize_t done =
+            isTiled_ ? TIFFReadEncodedTile(f, TIFFComputeTile(f, (uint32_t)x, (uint32_t)y, 0, 0), block.data, bytes)
+                     : TIFFReadEncodedStrip(f, TIFFComputeStrip(f, (uint32_t)y, 0), block.data, bytes);
+        if (done < 0)
+            CV_Error(Error::StsError, "cannot read the image '" + path_ + "'");
+    }
+
+    String path_;
+    Tiff file_;
+    Size size_, block_;
+    int bits_, samples_;
+    bool isTiled_;
+};
+
+class TiffMap : public MapTiles
+{
+public:
+    TiffMap(const String& path, Size size, int side) : path_(path), side_(side)
+    {
+        const bool isBig = (double)size.width * size.height * 4 > 4e9;
+        file_.reset(TIFFOpen(path.c_str(), isBig ? "w8" : "w"));
+        if (!file_)
+            fail();
+        TIFF* const f = file_.get();
+        TIFFSetField(f, TIFFTAG_IMAGEWIDTH, (uint32_t)size.width);
+        TIFFSetField(f, TIFFTAG_IMAGELENGTH, (uint32_t)size.height);
+        TIFFSetField(f, TIFFTAG_TILEWIDTH, (uint32_t)side);
+        TIFFSetField(f, TIFFTAG_TILELENGTH, (uint32_t)side);
+        TIFFSetField(f, TIFFTAG_BITSPERSAMPLE, 32);
+        TIFFSetField(f, TIFFTAG_SAMPLESPERPIXEL, 1);
+        TIFFSetField(f, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+        TIFFSetField(f, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        TIFFSetField(f, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+        TIFFSetField(f, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
+    }
+    void write(const Mat& disparity, const Rect& part) CV_OVERRIDE
+    {
+        TIFF* const f = file_.get();
+        Mat tile(side_, side_, CV_32F, Scalar(std::numeric_limits<float>::quiet_NaN()));
+        disparity.copyTo(tile(Rect(Point(), part.size())), disparity < std::numeric_limits<float>::infinity());
+        const uint32_t number = TIFFComputeTile(f, (uint32_t)part.x, (uint32_t)part.y, 0, 0);
+        if (TIFFWriteEncodedTile(f, number, tile.data, (tmsize_t)(tile.total() * tile.elemSize())) < 0)
+            fail();
+    }
+
+    void finish() CV_OVERRIDE
+    {
+        if (!TIFFFlush(file_.get()))
+            fail();
+        file_.reset();
+    }
+
+private:
+    void fail() const { CV_Error(Error::StsError, "cannot write '" + path_ + "'"); }
+
+    String path_;
+    int side_;
+    Tiff file_;
+};
+
+#endif
+
+} // namespace
+
+Ptr<ImageWindows> openImage(const String& path)
+{
+#ifdef HDPSTEREO_TIFF
+    if (isTiff(path))
+    {
+        TIFFSetErrorHandler(nullptr); // errors are exceptions
+        TIFFSetWarningHandler(nullptr);
+        TIFF* const file = TIFFOpen(path.c_str(), "r");
+        if (!file)
+            CV_Error(Error::StsError, "cannot read the image '" + path + "'");
+        const Ptr<TiffWindows> windows = makePtr<TiffWindows>(path, file);
+        if (windows->isReadable())
+            return windows;
+    }
+#endif
+    return makePtr<WholeImage>(path);
+}
+
+bool isWrittenByTiles(const String& path)
+{
+#ifdef HDPSTEREO_TIFF
+    return isTiff(path);
+#else
+    (void)path;
+    return false;
+#endif
+}
+
+Ptr<MapTiles> createMap(const String& path, Size size, int side)
+{
+#ifdef HDPSTEREO_TIFF
+    if (isTiff(path))
+        return makePtr<TiffMap>(path, size, side);
+#else
+    (void)side;
+#endif
+    return makePtr<WholeMap>(path, size);
+}
