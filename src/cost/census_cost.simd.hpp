@@ -46,7 +46,7 @@ namespace {
 //! Returns the number of planes.
 int censusRow(const CensusWindow& window, const short* grey, bool mirrored, int cols, uchar* census, size_t planeSize)
 {
-    const int radius = window.radius;
+    const int radius = window.radius, block = 256;
     const short tolerance = (short)window.tolerance;
     // Bits of the last plane that compare nothing stand for the centre, which is not darker than itself.
     ptrdiff_t offsets[24] = { 0 };
@@ -55,26 +55,31 @@ int censusRow(const CensusWindow& window, const short* grey, bool mirrored, int 
         for (int dx = -radius; dx <= radius; ++dx)
             if ((dx + dy) % 2 != 0)
                 offsets[bits++] = dy * window.step + (mirrored ? -dx : dx);
+    short words[block]; // of a byte: without this memory the compiler narrows each comparison
     for (int bit = 0; bit < bits; bit += 8, census += planeSize)
-    {
-        const ptrdiff_t* offset = offsets + bit;
-        const short *p0 = grey + offset[0], *p1 = grey + offset[1], *p2 = grey + offset[2], *p3 = grey + offset[3],
-                    *p4 = grey + offset[4], *p5 = grey + offset[5], *p6 = grey + offset[6], *p7 = grey + offset[7];
-        HDP_VECTORIZED for (int x = 0; x < cols; ++x)
+        for (int begin = 0; begin < cols; begin += block)
         {
-            // Word by word, so that they are narrowed once
-            const short centre = (short)(grey[x] - tolerance);
-            short byte = (short)(p0[x] < centre ? 1 : 0);
-            byte = (short)(byte | (short)(p1[x] < centre ? 2 : 0));
-            byte = (short)(byte | (short)(p2[x] < centre ? 4 : 0));
-            byte = (short)(byte | (short)(p3[x] < centre ? 8 : 0));
-            byte = (short)(byte | (short)(p4[x] < centre ? 16 : 0));
-            byte = (short)(byte | (short)(p5[x] < centre ? 32 : 0));
-            byte = (short)(byte | (short)(p6[x] < centre ? 64 : 0));
-            byte = (short)(byte | (short)(p7[x] < centre ? 128 : 0));
-            census[x] = (uchar)byte;
+            const int count = std::min(block, cols - begin);
+            const ptrdiff_t* const offset = offsets + bit;
+            const short* const own = grey + begin;
+            const short *p0 = own + offset[0], *p1 = own + offset[1], *p2 = own + offset[2], *p3 = own + offset[3],
+                        *p4 = own + offset[4], *p5 = own + offset[5], *p6 = own + offset[6], *p7 = own + offset[7];
+            HDP_VECTORIZED for (int x = 0; x < count; ++x)
+            {
+                const short centre = (short)(own[x] - tolerance);
+                short word = (short)(p0[x] < centre ? 1 : 0);
+                word = (short)(word | (short)(p1[x] < centre ? 2 : 0));
+                word = (short)(word | (short)(p2[x] < centre ? 4 : 0));
+                word = (short)(word | (short)(p3[x] < centre ? 8 : 0));
+                word = (short)(word | (short)(p4[x] < centre ? 16 : 0));
+                word = (short)(word | (short)(p5[x] < centre ? 32 : 0));
+                word = (short)(word | (short)(p6[x] < centre ? 64 : 0));
+                word = (short)(word | (short)(p7[x] < centre ? 128 : 0));
+                words[x] = word;
+            }
+            uchar* const to = census + begin;
+            HDP_VECTORIZED for (int x = 0; x < count; ++x) to[x] = (uchar)words[x];
         }
-    }
     return (bits + 7) / 8;
 }
 

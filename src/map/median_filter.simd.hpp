@@ -21,11 +21,15 @@ namespace {
 
 // Pixels are less 32768 here: the minimum of two signed words is one instruction of SSE2, of unsigned ones two.
 
+// By value: of references GCC often makes a comparison and two selections instead of one instruction for each.
+inline short smaller(short a, short b) { return a < b ? a : b; }
+inline short larger(short a, short b) { return a > b ? a : b; }
+
 inline void sortPair(short& a, short& b)
 {
-    const short smaller = std::min(a, b);
-    b = std::max(a, b);
-    a = smaller;
+    const short first = smaller(a, b);
+    b = larger(a, b);
+    a = first;
 }
 
 inline void sortThree(short& a, short& b, short& c)
@@ -70,7 +74,7 @@ inline void sort(short (&v)[7])
     sortPair(v[5], v[6]);
 }
 
-inline short medianOfThree(short a, short b, short c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
+inline short medianOfThree(short a, short b, short c) { return larger(smaller(a, b), smaller(larger(a, b), c)); }
 
 //! The median of kept[0 .. count - 1] and rest[0 .. count - 4]. Kept are more than half of them, so neither the minimum
 //! nor the maximum of kept can be the median: both are forgotten, and one of the rest takes their place.
@@ -101,13 +105,13 @@ inline short medianOfSorted(const short (&d)[3][3]) { return medianOfThree(d[0][
 
 inline short medianOfSorted(const short (&d)[5][5])
 {
-    const short low = std::max(d[1][2], d[2][1]), high = std::min(d[2][3], d[3][2]);
+    const short low = larger(d[1][2], d[2][1]), high = smaller(d[2][3], d[3][2]);
     // The median of nine: low <= d[2][2] <= high and two groups of three
-    short a = std::max(d[0][3], d[3][0]), b = d[0][4], c = d[4][0];
-    short e = std::min(d[1][4], d[4][1]), f = d[1][3], g = d[3][1];
+    short a = larger(d[0][3], d[3][0]), b = d[0][4], c = d[4][0];
+    short e = smaller(d[1][4], d[4][1]), f = d[1][3], g = d[3][1];
     sortThree(a, b, c);
     sortThree(e, f, g);
-    return medianOfThree(std::max(std::max(a, e), low), medianOfThree(b, f, d[2][2]), std::min(std::min(c, g), high));
+    return medianOfThree(larger(larger(a, e), low), medianOfThree(b, f, d[2][2]), smaller(smaller(c, g), high));
 }
 
 //    . . . . a c x      . drops out
@@ -119,10 +123,10 @@ inline short medianOfSorted(const short (&d)[5][5])
 //    x G E . . . .
 inline short medianOfSorted(const short (&w)[7][7])
 {
-    const short a = std::max(w[0][4], w[4][0]), b = std::max(w[1][3], w[3][1]);
-    const short c = std::max(w[0][5], w[4][1]), d = std::max(w[1][4], w[5][0]);
-    const short e = std::min(w[2][6], w[6][2]), f = std::min(w[3][5], w[5][3]);
-    const short g = std::min(w[2][5], w[6][1]), h = std::min(w[1][6], w[5][2]);
+    const short a = larger(w[0][4], w[4][0]), b = larger(w[1][3], w[3][1]);
+    const short c = larger(w[0][5], w[4][1]), d = larger(w[1][4], w[5][0]);
+    const short e = smaller(w[2][6], w[6][2]), f = smaller(w[3][5], w[5][3]);
+    const short g = smaller(w[2][5], w[6][1]), h = smaller(w[1][6], w[5][2]);
     short kept[12] = { a, b, w[2][2], c, d, w[2][3], e, f, w[4][4], g, h, w[4][3] };
     const short rest[9] = { w[3][2], w[3][4], w[0][6], w[6][0], w[1][5], w[5][1], w[2][4], w[4][2], w[3][3] };
     return Forgetful<12>::median(kept, rest);

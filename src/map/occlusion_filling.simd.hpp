@@ -70,8 +70,7 @@ inline void markBestMatches(const ushort* disparity, int width, OcclusionScratch
     const int* columns = scratch.columns.data();
     uchar* isBest = scratch.isBest.data();
     std::fill(best, best + width + 1, UINT_MAX);
-    for (int x = 0; x < width; ++x)
-        best[columns[x]] = std::min(best[columns[x]], keys[x]);
+    HDP_UNROLLED for (int x = 0; x < width; ++x) best[columns[x]] = std::min(best[columns[x]], keys[x]);
     HDP_VECTORIZED for (int x = 0; x < width; ++x) keys[x] = best[columns[x]];
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
