@@ -111,7 +111,7 @@ size: width and height of the rectified images; by default those of the raw ones
         py::arg("left"), py::arg("right"), R"doc(
 Returns the rectified left and right image. What no raw pixel reaches is 0.
 
-left, right: raw images of the calibration's size: uint8 or uint16, 1, 3 or 4 channels.)doc");
+left, right: raw images of the calibration's size: uint8, uint16 or float32, 1, 3 or 4 channels.)doc");
     rig.def(
         "getMasks",
         [](const StereoRig& self) {

@@ -327,6 +327,15 @@ public:
         resize(right, right, Size(), scale_, scale_, INTER_AREA);
     }
 
+    //! What no raw pixel reaches has no disparity.
+    void setMasks(HDPTreeMatcher& matcher) const
+    {
+        Mat masks[2];
+        if (rig_)
+            rig_->getMasks(masks[0], masks[1]);
+        matcher.setMasks(masks[0], masks[1]);
+    }
+
     //! --watch: takes a frame into account.
     void watch(const HDPTreeMatcher& matcher, int frame)
     {
@@ -414,7 +423,10 @@ static void run(const CommandLineParser& parser)
             cameras = makePtr<Cameras>(parser, left.size());
         cameras->rectify(left, right);
         if (!matcher)
+        {
             matcher = createMatcher(parser, left.cols);
+            cameras->setMasks(*matcher);
+        }
         matcher->setUseTemporalPrediction(isTemporal);
         statistics[isTemporal].match(*matcher, left, right, disparity);
         cameras->watch(*matcher, frames + 1);

@@ -160,7 +160,7 @@ TEST(HDPStereo_StereoRig, rectifiesAllTypesOfImages)
     Mat smoothed = randomImage(rng, c.imageSize, CV_8UC1), grey, ignored;
     cv::GaussianBlur(smoothed, smoothed, Size(), 3);
     rig->rectify(smoothed, smoothed, grey, ignored);
-    for (const int type : { CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3 })
+    for (const int type : { CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3, CV_32FC1 })
     {
         Mat image, result;
         cv::merge(std::vector<Mat>(CV_MAT_CN(type), smoothed), image);
@@ -222,7 +222,7 @@ TEST(HDPStereo_StereoRig, refusesWhatIsImpossible)
     expectRejected([&] { StereoRig::create(good, 0, Size(0, 5)); }, "size");
 
     const Ptr<StereoRig> rig = StereoRig::create(good);
-    const Mat image(good.imageSize, CV_8U, Scalar(1)), other(10, 10, CV_8U), deep(good.imageSize, CV_32F);
+    const Mat image(good.imageSize, CV_8U, Scalar(1)), other(10, 10, CV_8U), deep(good.imageSize, CV_64F);
     Mat a, b;
     expectRejected([&] { rig->rectify(Mat(), image, a, b); }, "left");
     expectRejected([&] { rig->rectify(image, other, a, b); }, "right");
@@ -230,7 +230,7 @@ TEST(HDPStereo_StereoRig, refusesWhatIsImpossible)
     expectRejected([&] { rig->rectify(image, Mat(good.imageSize, CV_8UC3), a, b); }, "one type");
     EXPECT_TRUE(a.empty() && b.empty());
     expectRejected([&] { rig->computeDepth(image, a); }, "disparity");
-    expectRejected([&] { rig->computeDepth(deep, a, CV_8U); }, "depthType");
+    expectRejected([&] { rig->computeDepth(Mat(5, 5, CV_32F), a, CV_8U); }, "depthType");
     expectRejected([&] { rig->computeDepth(Mat(), a); }, "disparity");
 }
 

@@ -117,9 +117,10 @@ private:
             CV_Error(Error::StsUnmatchedSizes,
                      format("%s must be an image of %d x %d pixels, as the calibration is for, not %d x %d", name,
                             size.width, size.height, image.cols, image.rows));
-        if ((image.depth() != CV_8U && image.depth() != CV_16U) || image.channels() > 4 || image.channels() == 2)
+        const int depth = image.depth(), channels = image.channels();
+        if ((depth != CV_8U && depth != CV_16U && depth != CV_32F) || channels > 4 || channels == 2)
             CV_Error(Error::StsUnsupportedFormat,
-                     String(name) + " must be an image of 8 or 16 bits and 1, 3 or 4 channels");
+                     String(name) + " must be an image of CV_8U, CV_16U or CV_32F and 1, 3 or 4 channels");
     }
 
     const StereoCalibration calibration_;

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "files.hpp"
-#include "options.hpp"
+#include "rectifier.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -12,6 +12,7 @@
 
 using namespace cv;
 using cv::stereo::HDPTreeMatcher;
+using cv::stereo::StereoRig;
 
 static void writeAndTell(const String& path, const std::vector<uchar>& bytes)
 {
@@ -152,8 +153,14 @@ static std::vector<uchar> pointCloud(const Mat& disparity, const Mat& known, con
 }
 
 //! From disparities to points
-static Matx44d readQ(const CommandLineParser& parser, Size size)
+static Matx44d readQ(const CommandLineParser& parser, const Ptr<StereoRig>& rig, Size size)
 {
+    if (rig)
+    {
+        Mat R1, R2, P1, P2, Q;
+        rig->getRectification(R1, R2, P1, P2, Q);
+        return Q;
+    }
     if (!parser.has("reprojection"))
     {
         const double f = numberOf(parser, "focal"), B = numberOf(parser, "baseline");
@@ -173,8 +180,11 @@ static void checkOptions(const CommandLineParser& parser)
         CV_Error(Error::StsBadArg, "two images are needed, LEFT and RIGHT; --help says more");
     if (parser.has("output") && parser.has("@out"))
         CV_Error(Error::StsBadArg, "disparities go to one file: OUT or --output, not both");
-    if (parser.has("point-cloud") && !parser.has("reprojection") && !(parser.has("focal") && parser.has("baseline")))
-        CV_Error(Error::StsBadArg, "--point-cloud needs --reprojection, or --focal and --baseline");
+    if (parser.has("point-cloud") && !parser.has("calibration") && !parser.has("reprojection") &&
+        !(parser.has("focal") && parser.has("baseline")))
+        CV_Error(Error::StsBadArg, "--point-cloud needs --calibration, --reprojection, or --focal and --baseline");
+    if (parser.has("depth") && !parser.has("calibration"))
+        CV_Error(Error::StsBadArg, "--depth needs --calibration");
     for (const char* option : { "min-disparity", "num-disparities" })
         if (parser.has(option))
             integerOf(parser, option);
@@ -197,6 +207,13 @@ static void writePicture(const String& path, const Mat& left, const Mat& sgbm, c
     writeAndTell(path, encode(extensionOf(path), picture));
 }
 
+static void writeDepth(const String& path, const StereoRig& rig, const Mat& disparity, int minDisparity)
+{
+    Mat depth;
+    rig.computeDepth(disparity, depth, extensionOf(path) == ".png" ? CV_16U : CV_32F, minDisparity);
+    writeAndTell(path, encode(extensionOf(path), depth));
+}
+
 //! --compare: the second run of either has its memory.
 static Mat compareWithSGBM(HDPTreeMatcher& matcher, const Mat& left, const Mat& right)
 {
@@ -215,9 +232,11 @@ static Mat compareWithSGBM(HDPTreeMatcher& matcher, const Mat& left, const Mat& 
 void matchPair(const CommandLineParser& parser)
 {
     checkOptions(parser);
-    const Mat left = readPicture(parser.get<String>("@left")), right = readPicture(parser.get<String>("@right"));
+    Rectifier rectifier(parser);
+    Mat left = readPicture(parser.get<String>("@left")), right = readPicture(parser.get<String>("@right"));
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.cols);
-    const Matx44d Q = parser.has("point-cloud") ? readQ(parser, left.size()) : Matx44d();
+    rectifier.apply(left, right, *matcher);
+    const Matx44d Q = parser.has("point-cloud") ? readQ(parser, rectifier.rig(), left.size()) : Matx44d();
     const Mat truth = parser.has("truth") ? readTruth(parser.get<String>("truth"), left.size()) : Mat();
     const Mat disparity = computeDisparity(*matcher, left, right);
 
@@ -239,6 +258,8 @@ void matchPair(const CommandLineParser& parser)
     }
     if (parser.has("picture"))
         writePicture(parser.get<String>("picture"), left, sgbm, disparity);
+    if (parser.has("depth"))
+        writeDepth(parser.get<String>("depth"), *rectifier.rig(), disparity, matcher->getMinDisparity());
     if (parser.has("point-cloud"))
         writeAndTell(parser.get<String>("point-cloud"),
                      pointCloud(disparity, disparity < std::numeric_limits<float>::infinity(), colorsOf(left), Q));

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "files.hpp"
-#include "options.hpp"
+#include "rectifier.hpp"
 
 #include <fstream>
 #include <iostream>
@@ -79,7 +79,8 @@ static void printProgress(size_t done, size_t total, const String& name)
 }
 
 //! What the maps in a folder were made with, so that those of other options are not taken for these
-static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& matcher, const String& out)
+static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& matcher, const Rectifier& rectifier,
+                        const String& out)
 {
     FileStorage options(".yml", FileStorage::WRITE | FileStorage::MEMORY);
     options << "version" << HDPSTEREO_VERSION;
@@ -96,6 +97,7 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
         options << "leftMask" << parser.get<String>("left-mask");
     if (parser.has("right-mask"))
         options << "rightMask" << parser.get<String>("right-mask");
+    rectifier.write(options);
     options << "matcher"
             << "{";
     matcher.write(options);
@@ -114,7 +116,7 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
 
 size_t matchPairs(const CommandLineParser& parser)
 {
-    for (const char* option : { "output", "picture", "truth", "point-cloud", "compare", "save-findings" })
+    for (const char* option : { "output", "picture", "truth", "point-cloud", "depth", "compare", "save-findings" })
         if (parser.has(option))
             CV_Error(Error::StsBadArg, format("--%s is for one pair, and not for --batch", option));
     const String format = parser.get<String>("format"), lefts = parser.get<String>("@left");
@@ -135,7 +137,8 @@ size_t matchPairs(const CommandLineParser& parser)
 
     // One for all pairs: it keeps its memory.
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, 0);
-    keepOptions(parser, *matcher, out);
+    Rectifier rectifier(parser);
+    keepOptions(parser, *matcher, rectifier, out);
     size_t done = 0, old = 0, bad = 0;
     for (const NamedPair& pair : pairs)
     {
@@ -149,7 +152,8 @@ size_t matchPairs(const CommandLineParser& parser)
         std::vector<uchar> bytes;
         try
         {
-            const Mat left = readPicture(pair.left), right = readPicture(pair.right);
+            Mat left = readPicture(pair.left), right = readPicture(pair.right);
+            rectifier.apply(left, right, *matcher);
             matcher->setNumDisparities(numDisparitiesOf(parser, left.cols));
             bytes = encodeDisparity("." + format, computeDisparity(*matcher, left, right));
         }

@@ -415,6 +415,42 @@ long peakMemory(const DatasetFolder& folder, const String& command)
     return usage.ru_maxrss;
 }
 
+TEST(HDPStereo_Programs, rectifies_raw_pairs)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 22);
+    folder.write("lefts/a.png", pair.left);
+    folder.write("rights/a.png", pair.right);
+    const String chain = folder.path("camchain.yaml");
+    std::ofstream file(chain.c_str());
+    for (int camera = 0; camera < 2; ++camera)
+        file << "cam" << camera << ":\n  camera_model: pinhole\n  distortion_model: none\n  resolution: [160, 120]\n"
+             << "  intrinsics: [200, 200, 79.5, 59.5]\n";
+    file << "  T_cn_cnm1: [1, 0, 0, -0.2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
+    file.close();
+    const String left = folder.path("lefts/a.png"), right = folder.path("rights/a.png"), map = folder.path("map.pfm");
+    const String program = "hdpstereo " + left + " " + right + " --num-disparities=32 ";
+    const String calibrated = program + map + " --calibration=" + chain;
+    const Execution done = run(folder, calibrated + " --depth=" + folder.path("depth.png") +
+                                           " --point-cloud=" + folder.path("points.ply"));
+    EXPECT_EQ(0, done.status) << done.errors;
+    const Mat depth = cv::imread(folder.path("depth.png"), IMREAD_ANYDEPTH), disparity = cv::imread(map, IMREAD_ANYDEPTH);
+    ASSERT_EQ(CV_16UC1, depth.type());
+    EXPECT_NEAR(1000 * 200 * 0.2 / disparity.at<float>(60, 100), depth.at<ushort>(60, 100), 1);
+    EXPECT_EQ(0, run(folder, calibrated + " --depth=" + folder.path("depth.pfm")).status);
+    EXPECT_NEAR(depth.at<ushort>(60, 100) / 1000.,
+                cv::imread(folder.path("depth.pfm"), IMREAD_ANYDEPTH).at<float>(60, 100), 0.001);
+    EXPECT_EQ("error: --depth needs --calibration\n", run(folder, program + " --depth=x.png").errors);
+    EXPECT_EQ("error: --calibration2 needs --calibration\n", run(folder, program + " --calibration2=" + chain).errors);
+
+    // A folder remembers it.
+    const String batch = "hdpstereo --batch " + folder.path("lefts") + " " + folder.path("rights") + " " +
+                         folder.path("maps") + " --num-disparities=32 --format=pfm";
+    EXPECT_EQ(0, run(folder, batch + " --calibration=" + chain).status);
+    EXPECT_EQ(0, cvtest::norm(disparity, cv::imread(folder.path("maps/a.pfm"), IMREAD_ANYDEPTH), NORM_INF));
+    EXPECT_EQ(1, run(folder, batch).status);
+}
+
 TEST(HDPStereo_Programs, warns_of_a_swapped_pair)
 {
     const DatasetFolder folder;

@@ -85,7 +85,7 @@ function drawThumbnail(side) {
 async function setImages(chosen, numDisparities) {
     const { left, right } = chosen;
     if (left && right) checkPair(chosen);
-    closeVideo();
+    const before = closeVideo();
     const isOtherSize = images.left?.image.width !== left?.image.width;
     images = chosen;
     drawThumbnail('left');
@@ -97,6 +97,7 @@ async function setImages(chosen, numDisparities) {
     if (isOtherSize || numDisparities)
         // as samples/hdp_stereo_match does
         controls.suggestRange(numDisparities ?? Math.max(Math.ceil(left.image.width / 5 / 16) * 16, 16));
+    else if (before) controls.suggestRange(...before);
     view.showLeft(left.image);
     await client.setPair(left.image, right.image);
     await match();
@@ -124,6 +125,8 @@ async function openBuiltIn() {
 }
 
 // Video
+
+let stillRange = null; // numDisparities and minDisparity of the pair before the video
 
 const video = new Video({
     async match(frame, isWanted) {
@@ -155,6 +158,7 @@ async function openVideo(open) {
     get('video-bar').hidden = false;
     get('pause').textContent = 'Pause';
     document.body.classList.add('is-video');
+    stillRange ??= [controls.settings.numDisparities, controls.settings.minDisparity];
     controls.suggestRange(Math.max(Math.ceil(width / 2 / 5 / 16) * 16, 16));
     clearError();
     await restartVideo();
@@ -176,12 +180,16 @@ async function restartVideo() {
     }
 }
 
+// Returns the range before it was opened, if it was.
 function closeVideo() {
-    if (!video.isOpen) return;
+    const before = stillRange;
+    stillRange = null;
+    if (!video.isOpen) return before;
     video.close();
     client.setVideo(null);
     get('video-bar').hidden = true;
     document.body.classList.remove('is-video');
+    return before;
 }
 
 // Downloads
@@ -221,10 +229,7 @@ function listen() {
         await video.togglePause();
         get('pause').textContent = video.isPaused ? 'Continue' : 'Pause';
     });
-    get('stop-video').onclick = attempt(async () => {
-        closeVideo();
-        await (images.left && images.right ? setImages(images) : openBuiltIn());
-    });
+    get('stop-video').onclick = attempt(() => (images.left && images.right ? setImages(images) : openBuiltIn()));
     get('cancel').onclick = () => {
         runs++;
         client.cancel();

@@ -454,6 +454,7 @@ test('a video of frames side by side runs live, with and without temporal predic
     assert.equal(await frames(), paused);
     await page.click('#pause');
     await more(2);
+    await setNumber('numDisparities', 32); // those of the pair come back
     await page.click('#stop-video');
     await matched();
     assert.equal(await page.isVisible('#video-bar'), false);

@@ -25,9 +25,10 @@ const types = {
 // headers: more of them, for each answer. Returns the address and close().
 export async function serve(folder, { port = 0, headers = {} } = {}) {
     const server = createServer(async (request, response) => {
-        const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
-        const file = join(folder, path.endsWith('/') ? `${path}index.html` : path);
+        let file;
         try {
+            const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
+            file = join(folder, path.endsWith('/') ? `${path}index.html` : path);
             if (!(await stat(file)).isFile()) throw new Error('not a file');
         } catch {
             response.writeHead(404).end();
@@ -41,6 +42,8 @@ export async function serve(folder, { port = 0, headers = {} } = {}) {
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
-    const { address } = await serve(process.argv[2], { port: Number(process.argv[3] ?? 0) });
+    // Without these, browsers allow no threads that share memory.
+    const headers = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
+    const { address } = await serve(process.argv[2], { port: Number(process.argv[3] ?? 0), headers });
     console.log(address);
 }

@@ -71,6 +71,8 @@ CV_EXPORTS_W StereoCalibration readStereoCalibration(const String& first, const 
     rig->computeDepth(disparity, depth); // metres
 @endcode
 
+With a field of view, getMasks() is for HDPTreeMatcher::setMasks().
+
 Rectification is by OpenCV's own functions; its maps are computed once. An object is constant: threads may share it.
  */
 class CV_EXPORTS_W StereoRig
@@ -79,7 +81,7 @@ public:
     virtual ~StereoRig() {}
 
     /** @brief Rectifies a pair.
-    @param left Raw image of the calibration's size: 8 or 16 bits, 1, 3 or 4 channels.
+    @param left Raw image of the calibration's size: CV_8U, CV_16U or CV_32F, 1, 3 or 4 channels.
     @param right Raw image of the same size and type.
     @param rectifiedLeft Receives the rectified image, see getSize(). What no raw pixel reaches is 0.
     @param rectifiedRight Receives the other one.
@@ -149,6 +151,8 @@ frames of different scenes this becomes angles, and a calibration that fits agai
     drift->add(matcher->getFindings().rows);                 // after each compute()
     rig = StereoRig::create(drift->correct(rig->getCalibration(), R2));
 @endcode
+
+After a turn of more than a quarter of a degree do that twice: the matcher expects small ones.
 
 Pitch (up, down) and roll (about the view) move rows by much, and are found to a hundredth of a degree. Yaw (to the
 side) moves rows at the corners only, as another focal length does at the upper and lower border: how little is known of
