@@ -16,17 +16,23 @@
 #include "evaluation/progress.hpp"
 #include "evaluation/scores.hpp"
 #include "evaluation/tables.hpp"
+#include "evaluation/tunables.hpp"
+#include "evaluation/video_variants.hpp"
 
 using namespace cv;
 using namespace hdp_tools;
 
-static const char* const KEYS =
+static const String KEYS =
     "{help h ?        |     | print this and exit }"
     "{@root           |     | folder of a video: left, right and, if the truth is known, disp_lidar; or of such "
     "folders }"
     "{methods         | fast,quality | names as of hdp_evaluate }"
     "{noise           | 0,5 | standard deviations of Gaussian noise in both images, in grey levels }"
     "{still           |     | in place of each video, its first frame so many times, with noise of its own each time }"
+    "{variants        |     | in place of that, variants of each video that may mislead; all, or a list of recorded, "
+    "every2, every3, every4, reversed, random, three-times, exposure.7, exposure.5, fade, noise15, foreign, shake6, "
+    "rows3 }"
+    "{colors          |     | match colour images as they are, not in grey levels }"
     "{num-disparities |     | number of disparities; by default that of the dataset }"
     "{runs            | 1   | how often a video is matched; the shortest time of each frame counts }"
     "{threads         |     | number of threads; all processors if not given }";
@@ -50,23 +56,24 @@ static std::vector<double> readDeviations(const CommandLineParser& parser)
 struct Frame
 {
     Pair pair;   // the images in grey levels
-    Mat isStill; // pixels of the left image, smoothed, that changed by less than 3 levels of 255 since the frame before
+    Mat isStill; // pixels of the left image, smoothed, that changed by less than 3 levels of 255 since the frame
+                 // before; empty if that has another size or type
 };
 
 class Video
 {
 public:
-    //! stillFrames: how often to show the first frame; 0: the video as it is
-    Video(const std::vector<Scene>& scenes, int stillFrames, int numDisparities)
-        : scenes_(scenes), stillFrames_(stillFrames), numDisparities_(numDisparities)
+    //! frames: which of the scenes to show, and what is done with them
+    Video(const std::vector<Scene>& scenes, const std::vector<VariantFrame>& frames, bool isGrey, int numDisparities)
+        : scenes_(scenes), frames_(frames), isGrey_(isGrey), numDisparities_(numDisparities), rng_(1)
     {
     }
 
-    int size() const { return stillFrames_ > 0 ? stillFrames_ : (int)scenes_.size(); }
+    int size() const { return (int)frames_.size(); }
 
     Frame read(int index)
     {
-        Scene scene = scenes_[stillFrames_ > 0 ? 0 : index];
+        Scene scene = scenes_[frames_[index].index];
         if (!scene.truth.empty() && !utils::fs::exists(scene.truth))
             scene.truth.clear();
         Frame frame;
@@ -75,14 +82,15 @@ public:
         if (numDisparities_ > 0)
             pair.disparities = Range(0, numDisparities_);
         for (Mat* image : { &pair.left, &pair.right })
-            if (image->channels() == 3)
+            if (isGrey_ && image->channels() == 3)
                 cvtColor(*image, *image, COLOR_BGR2GRAY);
+        changeFrame(frames_[index], rng_, pair);
         Mat smoothed, change;
-        GaussianBlur(pair.left, smoothed, Size(), 2);
-        if (index > 0)
+        if (pair.left.channels() == 3)
+            cvtColor(pair.left, smoothed, COLOR_BGR2GRAY);
+        GaussianBlur(smoothed.empty() ? pair.left : smoothed, smoothed, Size(), 2);
+        if (index > 0 && smoothed.size() == smoothed_.size() && smoothed.type() == smoothed_.type())
         {
-            if (smoothed.size() != smoothed_.size() || smoothed.type() != smoothed_.type())
-                fail("'" + scene.left + "' has another size or type than the frame before");
             absdiff(smoothed, smoothed_, change);
             frame.isStill = change < (smoothed.depth() == CV_16U ? 3 * 257 : 3);
         }
@@ -92,19 +100,12 @@ public:
 
 private:
     const std::vector<Scene>& scenes_;
-    const int stillFrames_, numDisparities_;
+    const std::vector<VariantFrame> frames_;
+    const bool isGrey_;
+    const int numDisparities_;
+    RNG rng_;      // of the variant
     Mat smoothed_; // of the frame before
 };
-
-static Mat addNoise(const Mat& image, double deviation, RNG& rng)
-{
-    if (deviation == 0)
-        return image;
-    Mat noise(image.size(), CV_32F), noisy;
-    rng.fill(noise, RNG::NORMAL, 0, deviation);
-    add(image, noise, noisy, noArray(), image.depth());
-    return noisy;
-}
 
 //! A method on the frames of a video
 class Stream
@@ -129,7 +130,7 @@ public:
         double seconds;
         std::array<Mat, 2> images = { { left, right } };
         for (Mat& image : images)
-            if (!method_.isHdp && image.depth() == CV_8U)
+            if (!method_.isHdp && image.type() == CV_8UC1)
                 cvtColor(image, image, COLOR_GRAY2BGR);
         const Mat disparity = matchDensely(method_, *matcher_, images[0], images[1], &seconds);
         if ((int)seconds_.size() <= index)
@@ -143,6 +144,15 @@ public:
     }
 
     double d1() const { return meanOf(d1_); }
+    //! The worst of the frames beside another stream's, in points of D1
+    double mostAbove(const Stream& other) const
+    {
+        double most = NO_SCORE;
+        for (size_t i = 0; i < d1_.size() && i < other.d1_.size(); ++i)
+            if (!(d1_[i] - other.d1_[i] <= most))
+                most = d1_[i] - other.d1_[i];
+        return most;
+    }
     double flicker() const { return pixels_ > 0 ? change_ / pixels_ : NO_SCORE; }
     double changed() const { return pixels_ > 0 ? 100. * changed_ / pixels_ : NO_SCORE; }
     double milliseconds() const
@@ -155,7 +165,7 @@ private:
     {
         if (frame.pair.protocol != Pair::NO_TRUTH)
             d1_.push_back(scoreMap(disparity, frame.pair).d1);
-        if (disparity_.empty())
+        if (disparity_.empty() || frame.isStill.empty())
             return;
         const Mat isKnown = frame.isStill & knownPixels(disparity) & knownPixels(disparity_);
         Mat change;
@@ -203,12 +213,37 @@ static Table toTable(const String& title, const std::vector<double>& noise, cons
     return table;
 }
 
-//! Matches a video, all streams in turns.
-static void matchVideo(Video& video, int runs, const std::vector<double>& noise, std::vector<Streams>& streams,
-                       Progress& progress)
+static Table toTable(const String& title, const std::vector<VideoVariant>& variants, const std::vector<Method>& methods,
+                     const std::vector<Streams>& streams)
+{
+    Table table;
+    table.title = title;
+    table.header = { "variant",    "method",   "D1",    "temporal", "ratio",   "worst frame",
+                     "flicker px", "temporal", "ratio", "ms",       "temporal" };
+    for (size_t i = 0; i < streams.size(); ++i)
+    {
+        const Stream &single = streams[i][0], &temporal = streams[i][1];
+        table.addRow(variants[i / methods.size()].name);
+        table.addText(methods[i % methods.size()].name);
+        table.addNumber(single.d1());
+        table.addNumber(temporal.d1());
+        table.addNumber(temporal.d1() / single.d1(), "%.3f");
+        table.addNumber(temporal.mostAbove(single), "%+.2f");
+        table.addNumber(single.flicker());
+        table.addNumber(temporal.flicker());
+        table.addNumber(temporal.flicker() / single.flicker(), "%.3f");
+        table.addNumber(single.milliseconds(), "%.1f");
+        table.addNumber(temporal.milliseconds(), "%.1f");
+    }
+    return table;
+}
+
+//! Matches a video, all streams in turns: those of each noise, and of it those of each method. Frames from firstCounted
+//! on count.
+static void matchVideo(Video video, int runs, const std::vector<double>& noise, int firstCounted, Streams* streams,
+                       size_t methods, Progress& progress)
 {
     const int frames = video.size();
-    const size_t methods = streams.size() / noise.size();
     for (int run = 0; run < runs; ++run)
     {
         RNG rng(1);
@@ -221,23 +256,81 @@ static void matchVideo(Video& video, int runs, const std::vector<double>& noise,
                           right = addNoise(frame.pair.right, noise[k], rng);
                 for (size_t m = 0; m < methods; ++m)
                     for (int turn = 0; turn < 2; ++turn)
-                        streams[k * methods + m][(i + turn) % 2].match(left, right, frame, i, i >= frames / 2);
+                        streams[k * methods + m][(i + turn) % 2].match(left, right, frame, i, i >= firstCounted);
             }
             progress.step(format("frame %d", i));
         }
     }
 }
 
+//! What to do with each video
+struct Task
+{
+    std::vector<Method> methods;
+    std::vector<double> noise;
+    int numDisparities, stillFrames, runs;
+    bool hasVariants, isGrey;
+    String variants;
+};
+
+//! The table of a video
+static Table evaluate(const Task& task, const std::vector<Scene>& scenes)
+{
+    const int recorded = (int)scenes.size();
+    const String& name = scenes[0].set;
+    const size_t methods = task.methods.size();
+    std::vector<VideoVariant> variants = selectVariants(task.hasVariants ? task.variants : "recorded", recorded);
+    if (task.stillFrames > 0)
+        variants[0].frames.assign(task.stillFrames, VariantFrame());
+    if (variants[0].frames.size() < 2)
+        fail("one frame is no video");
+    size_t steps = 0;
+    std::vector<Streams> streams;
+    for (const VideoVariant& variant : variants)
+    {
+        steps += variant.frames.size() * task.runs;
+        for (size_t k = 0; k < task.noise.size(); ++k)
+            for (const Method& method : task.methods)
+                streams.push_back(Streams{ { Stream(method, false), Stream(method, true) } });
+    }
+    Progress progress(steps);
+    const int frames = (int)variants[0].frames.size(), firstCounted = task.hasVariants ? 0 : frames / 2;
+    for (size_t v = 0; v < variants.size(); ++v)
+        matchVideo(Video(scenes, variants[v].frames, task.isGrey, task.numDisparities), task.runs, task.noise,
+                   firstCounted, &streams[v * task.noise.size() * methods], methods, progress);
+    progress.finish();
+    if (task.hasVariants)
+        return toTable(format("%s: variants of %d frames", name.c_str(), recorded), variants, task.methods, streams);
+    return toTable(format("%s: the last %d of %d frames", name.c_str(), frames - firstCounted, frames), task.noise,
+                   task.methods, streams);
+}
+
+static Task readTask(const CommandLineParser& parser)
+{
+    Task task;
+    task.methods = selectMethods("methods", parser.get<String>("methods"));
+    task.hasVariants = parser.has("variants");
+    const String variants = task.hasVariants ? parser.get<String>("variants") : String();
+    task.variants = variants == "true" ? String() : variants; // without a value
+    if (task.hasVariants && parser.has("still"))
+        fail("--still and --variants do not go together");
+    selectVariants(task.variants, 1);
+    task.noise = task.hasVariants ? std::vector<double>(1, 0.) : readDeviations(parser);
+    task.numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, 2048) : 0;
+    task.stillFrames = parser.has("still") ? getInteger(parser, "still", 2, 10000) : 0;
+    task.runs = getInteger(parser, "runs", 1, 1000);
+    task.isGrey = !parser.has("colors");
+    return task;
+}
+
 static int run(const CommandLineParser& parser)
 {
+    if (useTunables(parser))
+        return 0;
     if (!parser.has("@root"))
         fail("a folder is needed, see --help");
     setThreads(parser);
-    const std::vector<Method> methods = selectMethods("methods", parser.get<String>("methods"));
-    const std::vector<double> noise = readDeviations(parser);
-    const int numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, 2048) : 0;
-    const int stillFrames = parser.has("still") ? getInteger(parser, "still", 2, 10000) : 0;
-    const int runs = getInteger(parser, "runs", 1, 1000);
+    const Task task = readTask(parser);
     std::vector<std::vector<Scene>> videos;
     for (const Scene& scene : findScenes(parser.get<String>("@root")))
     {
@@ -248,43 +341,30 @@ static int run(const CommandLineParser& parser)
     catchInterrupts();
     int skipped = 0;
     for (const std::vector<Scene>& scenes : videos)
-    {
-        const String& name = scenes[0].set;
-        Video video(scenes, stillFrames, numDisparities);
-        const int frames = video.size();
-        Progress progress(frames * runs);
-        std::vector<Streams> streams;
-        for (size_t k = 0; k < noise.size(); ++k)
-            for (const Method& method : methods)
-                streams.push_back(Streams{ { Stream(method, false), Stream(method, true) } });
         try
         {
-            if (frames < 2)
-                fail("one frame is no video");
-            matchVideo(video, runs, noise, streams, progress);
+            const Table table = evaluate(task, scenes);
+            if (isInterrupted())
+                return 130;
+            std::cout << toMarkdown(table) << std::endl;
         }
         catch (const std::exception& error)
         {
-            progress.message("skipped " + name + ": " + error.what());
+            std::cerr << "skipped " << scenes[0].set << ": " << error.what() << std::endl;
             ++skipped;
-            continue;
         }
-        progress.finish();
-        if (isInterrupted())
-            return 130;
-        const String title = format("%s: the last %d of %d frames", name.c_str(), frames - frames / 2, frames);
-        std::cout << toMarkdown(toTable(title, noise, methods, streams)) << std::endl;
-    }
     return skipped > 0 ? 2 : 0;
 }
 
 int main(int argc, char** argv)
 {
     return runProgram(
-        argc, argv, KEYS,
+        argc, argv, KEYS + TUNABLE_KEYS,
         "What temporal prediction is worth on videos of rectified stereo pairs: errors (D1), flicker and time.\n"
         "Flicker is the mean change of the disparity from frame to frame where the left image, smoothed, changes by\n"
-        "less than 3 levels of 255. The last half of the frames counts.\n"
+        "less than 3 levels of 255. The last half of the frames counts. Of variants, all frames do; the worst frame is "
+        "the\n"
+        "one with the largest difference of D1, in points.\n"
         "Exit status: 0 if all is well, 2 if a video was skipped, 130 if interrupted, 1 on other errors.\n",
-        {}, 1, run);
+        { "variants=", "colors" }, 1, run);
 }

@@ -198,7 +198,19 @@ TEST(HDPStereo_Programs, video)
     EXPECT_LE(d1[1], d1[0]);
     EXPECT_LT(flicker[1], 0.5 * flicker[0]);
 
-    for (const char* bad : { "--noise=x", "--noise=-1", "--still=1" })
+    const Execution some =
+        run(folder, "hdp_video " + folder.path("videos/known") +
+                        " --num-disparities=32 --methods=fast,bm --colors --variants=every2,foreign");
+    EXPECT_EQ(0, some.status) << some.errors;
+    for (const char* row : { "### known: variants of 4 frames", "\n| every2 | fast | ", "\n| foreign | bm | " })
+        EXPECT_NE(String::npos, some.output.find(row)) << row << some.output;
+    const Execution variants =
+        run(folder, "hdp_video " + folder.path("videos/unknown") + " --num-disparities=32 --methods=fast --variants");
+    EXPECT_EQ(0, variants.status) << variants.errors;
+    for (const char* name : { "recorded", "random", "three-times", "exposure.7", "fade", "noise15", "rows3" })
+        EXPECT_NE(String::npos, variants.output.find(format("\n| %s | fast | - | - | ", name))) << variants.output;
+
+    for (const char* bad : { "--noise=x", "--noise=-1", "--still=1", "--variants=rain", "--variants --still=9" })
         EXPECT_EQ(1, run(folder, "hdp_video " + folder.path("videos") + " " + bad).status) << bad;
     folder.write("videos/unknown/left/002.png", Mat(10, 10, CV_8U, Scalar(0)));
     const Execution skipped = run(folder, common);

@@ -12,7 +12,8 @@
 namespace opencv_test {
 namespace {
 
-const char* const programs[] = { "hdp_evaluate", "hdp_parameters", "hdp_robustness", "hdp_stability" };
+const char* const programs[] = { "hdp_evaluate", "hdp_parameters", "hdp_robustness", "hdp_stability",
+                                 "hdp_video" };
 
 #ifdef HDPSTEREO_TUNABLE
 
