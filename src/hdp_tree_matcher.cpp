@@ -225,7 +225,7 @@ private:
         if (pairPlan.alignment.looksForAnything())
             clock_.run("alignment",
                        [&] { alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings); });
-        VideoFindings video = { FIRST, true, false };
+        VideoFindings video = { FIRST, false };
         if (pairPlan.followsVideo)
             clock_.run("temporal prediction", [&] { video = predict(images[finest].left, finest); });
         if (video.verdict == FIRST && pyramids_.isDimmed)
@@ -240,6 +240,8 @@ private:
         {
             const LayerInput input = { adapted, layer, images[layer.layer], upper, lastFrame_, prediction_ };
             verdict = matchLayer(input, scratch_[layer.layer], shared_, clock_, layers_[layer.layer]);
+            if (verdict == CONTRADICTED)
+                return CONTRADICTED;
             upper = &layers_[layer.layer];
         }
         if (pairPlan.followsVideo)
@@ -257,7 +259,7 @@ private:
         const FrameKey key = { scale, p_.minDisparity / (double)scale, largestDisparity(p_.numDisparities, finestLayer),
                                pyramids_.brightening };
         predictFrame(left, key, lastFrame_, shared_.video, prediction_);
-        return { prediction_.verdict, prediction_.motion.isStill, hasPrior(lastFrame_, prediction_) };
+        return { prediction_.verdict, hasPrior(lastFrame_, prediction_) };
     }
 
     //! Without the columns that are added to the images
