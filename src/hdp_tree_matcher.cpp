@@ -255,7 +255,7 @@ private:
                 alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings,
                           given.isGiven ? &given.alignment : nullptr);
             });
-        VideoFindings video = { FIRST, true, false };
+        VideoFindings video = { FIRST, false };
         if (pairPlan.followsVideo)
             clock_.run("temporal prediction", [&] { video = predict(images[finest].left, finest); });
         if (video.verdict == FIRST && pyramids_.isDimmed)
@@ -275,6 +275,8 @@ private:
             const CensusCost* below = layer.isFinest ? nullptr : &scratch_[layer.layer - 1].census;
             const LayerInput input = { adapted, layer, images[layer.layer], upper, below, lastFrame_, prediction_ };
             verdict = matchLayer(input, scratch_[layer.layer], shared_, clock_, layers_[layer.layer]);
+            if (verdict == CONTRADICTED)
+                return CONTRADICTED;
             upper = &layers_[layer.layer];
         }
         if (pairPlan.followsVideo)
@@ -292,7 +294,7 @@ private:
         const FrameKey key = { scale, p_.minDisparity / (double)scale, largestDisparity(p_.numDisparities, finestLayer),
                                pyramids_.levels.brightening };
         predictFrame(left, key, lastFrame_, shared_.video, prediction_);
-        return { prediction_.verdict, prediction_.motion.isStill, hasPrior(lastFrame_, prediction_) };
+        return { prediction_.verdict, hasPrior(lastFrame_, prediction_) };
     }
 
     //! Without the columns that are added to the images

@@ -43,8 +43,8 @@ public:
             matchCosts();
         else if (plan_.method == WINDOW_SCANLINES)
             matchWindows();
-        else
-            matchTrees();
+        else if (!matchTrees())
+            return CONTRADICTED;
         if (plan_.trees.refinementGamma > 0)
             clock_.run("non-local refinement", [&] { refine(); });
         Verdict verdict = FIRST;
@@ -58,20 +58,25 @@ public:
     }
 
 private:
-    //! Sections 3.1 to 3.3: over the candidates of disparity trees
-    void matchTrees()
+    //! Sections 3.1 to 3.3: over the candidates of disparity trees. Returns whether they do not contradict the last
+    //! frame.
+    bool matchTrees()
     {
         estimatePrior();
         clock_.run("disparity prediction", [&] { predictCandidates(); });
         clock_.run("disparity forest", [&] { growForest(); });
         result_.searchRatio = searchRatio(shared_.forest, plan_.numDisparities);
+        bool isRefused = false;
         clock_.run("cost aggregation", [&] {
             if (plan_.method == TREE_SCANLINES)
-                return aggregateTreeMeans();
-            aggregateForest(shared_.forest, own_.cost(plan_.cost), plan_.trees.gamma, plan_.hasFractions,
-                            shared_.aggregation, result_.winners);
+                isRefused = !aggregateTreeMeans();
+            else
+                aggregateForest(shared_.forest, own_.cost(plan_.cost), plan_.trees.gamma, plan_.hasFractions,
+                                shared_.aggregation, result_.winners);
         });
-        finishWinners();
+        if (!isRefused)
+            finishWinners();
+        return !isRefused;
     }
 
     //! P(D_l) of section 3.1
@@ -131,18 +136,21 @@ private:
                     shared_.forestBuffers, shared_.forest);
     }
 
-    //! Scanlines over the means of the costs in the layer's trees
-    void aggregateTreeMeans()
+    //! Scanlines over the means of the costs in the layer's trees; none if these contradict the last frame.
+    bool aggregateTreeMeans()
     {
         const DisparityForest& forest = shared_.forest;
         CostVolume& volume = shared_.volume;
         prepareVolumeCost();
         aggregateMeans(forest, shared_.volumeCost, plan_.trees.gamma, shared_.aggregation, volume);
+        if (plan_.checksLastFrame && contradictsLastFrame(in_.lastFrame, in_.prediction, lastFrameSide(), volume))
+            return false;
         if (plan_.prefersLastFrame)
-            preferLastFrame(true);
+            preferLastFrame(in_.lastFrame, in_.prediction, lastFrameSide(), true, volume);
         aggregateVolume(volume, forest.weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
         if (plan_.trees.prefersPlanes && preferTreePlanes(forest, result_.winners, volume) > 0)
             aggregateVolume(volume, forest.weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
+        return true;
     }
 
     //! What the costs of a volume are
@@ -152,11 +160,8 @@ private:
         shared_.volumeCost.prepare(own_.census, below, plan_.numDisparities);
     }
 
-    void preferLastFrame(bool areMeans)
-    {
-        const int side = 1 << (plan_.layer - in_.pair.finest().layer);
-        hdp::preferLastFrame(in_.lastFrame, in_.prediction, side, areMeans, shared_.volume);
-    }
+    //! Side of this layer's pixels, in pixels of the layer that the last frame is of
+    int lastFrameSide() const { return 1 << (plan_.layer - in_.pair.finest().layer); }
 
     //! Scanlines over the costs as they are, and what the last frame predicts
     void matchCosts()
@@ -168,7 +173,7 @@ private:
             prepareVolumeCost();
             shared_.volume.fill(shared_.volumeCost, in_.images.guide.size(), all);
             if (plan_.prefersLastFrame)
-                preferLastFrame(false);
+                preferLastFrame(in_.lastFrame, in_.prediction, lastFrameSide(), false, shared_.volume);
         });
         clock_.run("cost aggregation", [&] {
             weighEdges(guide(), own_.edgeWeights);

@@ -82,7 +82,8 @@ struct SharedScratch
 void prepareCost(const LayerPlan& plan, const LayerImages& images, LayerScratch& own);
 
 //! Section 3: from the disparities of the layer above to those of this layer. Returns what the frame is to the last one
-//! of a video, as joinLastFrame() does; FIRST on the layers above.
+//! of a video: CONTRADICTED if the top layer's costs or the finest layer's disparities say so, and there is no result
+//! then; else as joinLastFrame() does, FIRST on the layers above.
 Verdict matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
                    LayerResult& result);
 

@@ -107,6 +107,28 @@ TEST(HDPStereo_TemporalPrior, contradiction)
     }
 }
 
+//! The costs of more than a tenth of the predicted pixels refuse the last frame; what is not predicted has no say.
+TEST(HDPStereo_TemporalPrior, contradicted_frame)
+{
+    MovedVideo video(10 * side * subpixelScale);
+    video.next.sources.rowRange(0, 12).setTo(MOVED_PLACE); // 96 pixels of the volume
+    const auto contradicts = [&](int refused, int rise, bool areBeside) {
+        CostVolume volume = flatVolume(layerSize / side);
+        for (int i = 0; i < refused; ++i)
+            volume.costs[volume.candidates[i + (areBeside ? 96 : 0)].start() + 3] = (uchar)(flatCost - rise);
+        return contradictsLastFrame(video.last, video.next, side, volume);
+    };
+    const int rise = CostPreference::contradiction + 1;
+    EXPECT_FALSE(contradicts(0, rise, false));
+    EXPECT_FALSE(contradicts(9, rise, false));
+    EXPECT_TRUE(contradicts(10, rise, false));
+    EXPECT_FALSE(contradicts(96, rise - 1, false)) << "by less";
+    EXPECT_FALSE(contradicts(96, rise, true)) << "of pixels that are not predicted";
+    video.next.motion.isStill = true;
+    video.next.sources.rowRange(0, 12).setTo(SAME_PLACE);
+    EXPECT_TRUE(contradicts(10, rise, false)) << "a camera at rest";
+}
+
 //! None before a second pair has agreed, and none if nothing moves.
 TEST(HDPStereo_TemporalPrior, hasPrior)
 {

@@ -10,8 +10,7 @@
 #include "oracles.hpp"
 #include "../src/video/temporal_join.hpp"
 
-namespace opencv_test {
-namespace oracle {
+namespace opencv_test { namespace oracle {
 
 //! What a disparity of the last frame, in pixels, is now at this pixel
 inline float changed(const hdp::DisparityChange& change, float before, int x, int y)
@@ -242,16 +241,29 @@ private:
 
     //! One of the last frame may cost more than the measured one by a share of its costs, in percent; one at the same
     //! place that much more than the best one if the camera moved.
-    int choiceOf(Point cell, int share) const
+    int choiceOf(Point cell, int unmovedShare, int movedShare) const
     {
         const Evidence e = around(cell);
         const int sources = sources_.at<uchar>(cell);
         const bool hasMoved = !isStill_ && (sources & hdp::MOVED_PLACE);
         const int best = hasMoved ? std::min(e.moved, 0) : 0;
         const int scale = isStill_ ? e.scaleUnmoved : std::max(e.scaleUnmoved, e.scaleMoved);
-        if ((sources & hdp::SAME_PLACE) && 100 * (e.unmoved - best) <= (isStill_ ? 26 : share) * scale)
-            return hdp::UNMOVED;
-        return hasMoved && 100 * e.moved <= share * e.scaleMoved ? hdp::MOVED : hdp::MEASURED;
+        // In a share, 128 says that what disagrees is taken, too.
+        const int kept = hdp::KEPT;
+        if ((sources & hdp::SAME_PLACE) && 100 * (e.unmoved - best) <= unmovedShare % 128 * scale)
+            return hdp::UNMOVED + (unmovedShare >= 128 ? kept : 0);
+        if (hasMoved && 100 * e.moved <= movedShare % 128 * e.scaleMoved)
+            return hdp::MOVED + (movedShare >= 128 ? kept : 0);
+        return hdp::MEASURED;
+    }
+
+    //! What a disparity of the last frame may cost more: if the camera stands still, if the disparity is within two
+    //! pixels of the image from the measured one, and if not
+    int shareOf(Point cell, int taken) const
+    {
+        const int distance = std::abs(taken - measured_.at<ushort>(2 * cell));
+        const bool isNear = distance <= std::max(32 / prediction_->key.scale, 1);
+        return isStill_ ? 128 + 26 : !isNear ? 128 + 10 : last_->frames == 1 ? 33 : 60;
     }
 
     //! Returns whether more than 30 percent of the cells that have a source contradict it.
@@ -264,8 +276,11 @@ private:
             {
                 const bool hasSource = sources_.at<uchar>(y, x) != 0;
                 all += hasSource;
-                contradicting += hasSource && choiceOf(Point(x, y), 33) == hdp::MEASURED;
-                choices_.at<uchar>(y, x) = (uchar)choiceOf(Point(x, y), last_->frames == 1 ? 33 : 60);
+                contradicting += hasSource && choiceOf(Point(x, y), isStill_ ? 26 : 33, 33) == hdp::MEASURED;
+                const Point cell(x, y);
+                const int unmoved = last_->disparity.at<ushort>(2 * cell);
+                const int moved = isStill_ ? 0 : movedToCell(change_, cell) >> 4;
+                choices_.at<uchar>(y, x) = (uchar)choiceOf(cell, shareOf(cell, unmoved), shareOf(cell, moved));
             }
         return 100 * contradicting > 30 * all;
     }
@@ -289,11 +304,11 @@ private:
         finer = changedBy(change_, finer, x, y);
     }
 
-    int tolerance() const { return 256 * std::max(4 / prediction_->key.scale, 1); }
+    int tolerance() const { return 256 * std::max(2 / prediction_->key.scale, 1); }
 
     bool agreesMoved(int x, int y) const
     {
-        if (x < 0 || x >= measured_.cols || choiceAt(x, y) != hdp::MOVED)
+        if (x < 0 || x >= measured_.cols || choiceAt(x, y) % 4 != hdp::MOVED)
             return false;
         int finer, count;
         takeMoved(x, y, finer, count);
@@ -302,7 +317,7 @@ private:
 
     void join(int x, int y)
     {
-        int choice = choiceAt(x, y);
+        int choice = choiceAt(x, y) % 4;
         if (choice == hdp::MOVED && !agreesMoved(x, y))
             for (int u = x - 2; u <= x + 2; ++u) // the fringe of a surface
                 choice = agreesMoved(u, y) ? hdp::MEASURED : choice;
@@ -315,7 +330,7 @@ private:
         if (count == 0)
             return set(x, y, here, 1);
         if (std::abs(here - there) > tolerance())
-            return set(x, y, there, count - 1);
+            return choiceAt(x, y) >= hdp::KEPT ? set(x, y, there, count - 1) : set(x, y, here, 1);
         const int weight = std::min(count, choice == hdp::MOVED ? 1 : isStill_ ? 4 : 2);
         const double step = std::max(std::min(here - there, 256), -256) / (weight + 1.);
         set(x, y, there + (int)std::floor(step + 0.5), std::min(count + 1, 4));
@@ -335,7 +350,6 @@ private:
     bool isStill_;
 };
 
-} // namespace oracle
-} // namespace opencv_test
+}} // namespace opencv_test::oracle
 
 #endif

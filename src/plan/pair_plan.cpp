@@ -41,8 +41,6 @@ HDP_TUNABLE(double, refinementGamma, 0.25, "gamma of the trees' sums",
             "of the non-local refinement: with the same one it blurs slanted surfaces");
 
 // Scanlines over windows
-HDP_TUNABLE(int, repairingLayers, 2, "layers",
-            "below a top layer without trees, to repair what these would have carried to bare surfaces: one cannot");
 HDP_TUNABLE(int, finestSlope, 5, "halves of a bit per grey level",
             "by which the large penalty falls on the finest layer, where edges are those of surfaces");
 HDP_TUNABLE(int, usualSlope, 3, "halves of a bit per grey level",
@@ -223,24 +221,14 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     return plan;
 }
 
-//! What differs by less is as often noise as texture. Where several frames of a moving camera are joined, their noise
-//! averages out, and faint texture is worth more; where nothing moves, disparities of the last frame are kept anyway.
-int censusTolerance(int layer, const LayerNoise& noise, const VideoFindings& video)
+//! What differs by less is as often noise as texture. Where several frames have agreed, their noise averages out, and
+//! faint texture is worth more.
+int censusTolerance(int layer, const LayerNoise& noise, bool hasPrior)
 {
-    if (video.verdict == CONTINUED && !video.isStill && layer < coarseLayer)
+    if (hasPrior && layer < coarseLayer)
         return 0;
     const int tolerance = cvRound(toleratedNoise * greyScale * noise.ofLayer(layer));
     return std::min(std::max(tolerance, (int)(layer >= coarseLayer)), +CensusCost::mostTolerance);
-}
-
-//! Surfaces that the last frame predicts need no trees, where scanlines below repair the rest.
-void predictTop(const LayerPlan& finest, LayerPlan& top)
-{
-    top.prefersLastFrame = top.method == TREE_SCANLINES || top.method == COST_SCANLINES;
-    if (top.method != TREE_SCANLINES || finest.method != WINDOW_SCANLINES || top.layer - finest.layer < repairingLayers)
-        return;
-    top.method = COST_SCANLINES;
-    top.trees = TreePlan();
 }
 
 } // namespace
@@ -297,15 +285,16 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
     for (LayerPlan& layer : adapted.layers)
     {
         if (layer.cost.isCensus)
-            layer.cost.tolerance = censusTolerance(layer.layer, findings.noise, video);
+            layer.cost.tolerance = censusTolerance(layer.layer, findings.noise, video.hasPrior);
         if (!plan.alignment.isNoisy(findings.noise))
             continue;
         layer.smoothsGuide |= layer.method != WINDOW_SCANLINES;
         for (ScanlinePass& pass : layer.passes)
             pass.penalties.edgeSlope = usualSlope;
     }
-    if (video.hasPrior)
-        predictTop(plan.finest(), adapted.layers.front());
+    LayerPlan& top = adapted.layers.front();
+    top.checksLastFrame = video.verdict == CONTINUED && top.method == TREE_SCANLINES;
+    top.prefersLastFrame = video.hasPrior && (top.method == TREE_SCANLINES || top.method == COST_SCANLINES);
     return adapted;
 }
 

@@ -84,6 +84,7 @@ struct LayerPlan
     TreePlan trees;
     VolumePenalties volumePenalties = { 0, 0, 0 };
     std::vector<ScanlinePass> passes;
+    bool checksLastFrame = false;  // whether the pair's own costs may refuse the last frame
     bool prefersLastFrame = false; // whether what the last frame predicts has lower costs
     bool fillsOcclusions = false;
     bool joinsLastFrame = false;

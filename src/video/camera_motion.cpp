@@ -8,6 +8,7 @@
 #include "../base/tunable.hpp"
 
 #include <cmath>
+#include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -18,6 +19,12 @@ HDP_TUNABLE(double, inertia, 1e-5, "points' weight",
             "that the camera is at rest: decides what the points leave open, more pulls motions to 0");
 HDP_TUNABLE(double, disparityUnits, 6, "per half width of the image",
             "units of disparity: usual ones are as large, and so are all numbers in the equations");
+
+// A first guess
+HDP_TUNABLE(int, guesses, 60, "samples of points", "of which the best is taken: more cost time, fewer are all wrong");
+HDP_TUNABLE(int, guessPoints, 7, "points", "of a sample: fewer leave terms open, more are less often all right");
+HDP_TUNABLE(double, guessInertia, 1e-4, "points' weight", "that the camera is at rest, in a sample");
+HDP_TUNABLE(double, goodGuess, 0.7, "share of the points", "that agree with a guess which is good enough");
 
 // Reweighted least squares
 HDP_TUNABLE(double, minTolerance, 0.25, "pixels", "of the last rounds: tracked points are as exact");
@@ -76,6 +83,48 @@ double squaredError(const Matx44d& forward, const TrackedPoint& point)
     return dx * dx + dy * dy;
 }
 
+//! The motion that fits best to these points, each of its weight, and to a camera at rest
+Terms solve(const std::vector<TrackedPoint>& points, const std::vector<double>& weights, double rest)
+{
+    NormalMatrix a = rest * NormalMatrix::eye();
+    Terms b = Terms::zeros();
+    b(0) = b(5) = rest;
+    for (size_t i = 0; i < points.size(); ++i)
+        addEquations(points[i], weights[i], a, b);
+    return a.solve(b, DECOMP_CHOLESKY);
+}
+
+//! What each point weighs if this is the motion; half of it at a distance of scale
+void weigh(const Matx44d& forward, const std::vector<TrackedPoint>& points, double scale, std::vector<double>& weights)
+{
+    weights.resize(points.size());
+    for (size_t i = 0; i < points.size(); ++i)
+        weights[i] = 1 / (1 + squaredError(forward, points[i]) / (scale * scale));
+}
+
+//! The motion that most points agree with, of those that a few of them have: outliers have no say. Returns the points'
+//! weights.
+std::vector<double> guessMotion(const std::vector<TrackedPoint>& points, double scale)
+{
+    RNG rng(points.size());
+    std::vector<double> best, weights;
+    const std::vector<double> equal(guessPoints, 1.);
+    std::vector<TrackedPoint> sample(guessPoints);
+    double highest = -1;
+    for (int i = 0; i < guesses && highest < goodGuess * points.size(); ++i)
+    {
+        for (TrackedPoint& point : sample)
+            point = points[rng.uniform(0, (int)points.size())];
+        weigh(i == 0 ? Matx44d::eye() : matrixOf(solve(sample, equal, guessInertia)), points, scale, weights);
+        const double sum = std::accumulate(weights.begin(), weights.end(), 0.);
+        if (!(sum > highest))
+            continue;
+        highest = sum;
+        swap(best, weights);
+    }
+    return best;
+}
+
 double medianSquaredError(const Matx44d& forward, const std::vector<TrackedPoint>& points)
 {
     std::vector<double> errors;
@@ -112,21 +161,12 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, doubl
         point.disparity /= disparityUnit;
     }
 
-    Terms none = Terms::zeros();
-    none(0) = none(5) = 1;
-    const double rest = inertia * points.size();
-    std::vector<double> weights(points.size(), 1.);
+    std::vector<double> weights = guessMotion(normed, tolerance / unit);
     Matx44d forward = Matx44d::eye();
     for (int rounds = finalRounds; rounds > 0; rounds -= tolerance == minTolerance)
     {
-        NormalMatrix a = rest * NormalMatrix::eye();
-        Terms b = rest * none;
-        for (size_t i = 0; i < normed.size(); ++i)
-            addEquations(normed[i], weights[i], a, b);
-        forward = matrixOf(a.solve(b, DECOMP_CHOLESKY));
-        const double scale = tolerance / unit;
-        for (size_t i = 0; i < normed.size(); ++i)
-            weights[i] = 1 / (1 + squaredError(forward, normed[i]) / (scale * scale));
+        forward = matrixOf(solve(normed, weights, inertia * points.size()));
+        weigh(forward, normed, tolerance / unit, weights);
         tolerance = std::max<double>(tolerance * toleranceFall, minTolerance);
     }
 

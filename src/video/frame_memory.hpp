@@ -55,9 +55,9 @@ struct FrameMemory
 struct VideoScratch
 {
     std::vector<TrackedPoint> points;
-    Mat halved;                     // of predictFrame(): the left image
-    Mat warped, change, contrast;   // of findSources(), per cell
-    Mat sources, evidence, choices; // of joinLastFrame(), per cell
+    Mat halved;                             // of predictFrame(): the left image
+    Mat warped, change, contrast;           // of findSources(), per cell
+    Mat sources, shares, evidence, choices; // of joinLastFrame(), per cell
 };
 
 }}} // namespace cv::stereo::hdp

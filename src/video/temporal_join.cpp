@@ -23,15 +23,19 @@ HDP_TUNABLE(int, costOffset, 6, "bits of 24",
             "that a measured disparity's cost gets before shares of it are taken: without it, noise decides low ones");
 HDP_TUNABLE(int, stillShare, 26, "percent of that sum",
             "that a disparity may cost more if the camera stands still: more keeps errors, less flickers");
-HDP_TUNABLE(int, movedShare, 60, "percent of that sum",
+HDP_TUNABLE(int, nearShare, 60, "percent of that sum",
             "the same if the camera moved: the costs of warped disparities are higher, however right they are");
+HDP_TUNABLE(int, nearDistance, 2, "pixels of the image",
+            "from the measured disparity, up to which it is so: what is farther away is right or wrong");
+HDP_TUNABLE(int, apartShare, 10, "percent of that sum",
+            "of one that is farther away: more keeps what has gone or is covered, less keeps less of what was right");
 HDP_TUNABLE(int, wrongShare, 33, "percent of that sum", "beyond it, a cell contradicts the last frame: less is noise");
 HDP_TUNABLE(int, contradictedShare, 30, "percent of the cells with a source",
             "that may contradict: if more do, one of the pairs was a wrong one, if fewer, something moved");
 HDP_TUNABLE(int, driftStep, 12, "cells", "between those that correct the predicted disparities: nearer ones cost time");
 
 // How it is joined with the measured one
-HDP_TUNABLE(int, tolerance, 4, "pixels of the image", "between disparities that agree: more joins two surfaces");
+HDP_TUNABLE(int, tolerance, 2, "pixels of the image", "between disparities that agree: more joins two surfaces");
 HDP_TUNABLE(int, maxStep, 1, "pixels", "towards the measured one, before its share is taken: it may be an outlier");
 HDP_TUNABLE(int, maxCount, 4, "frames", "that a disparity may stand for: more flickers less and follows changes later");
 HDP_TUNABLE(int, maxUnmovedWeight, 2, "frames",
@@ -45,6 +49,7 @@ const int cell = FrameMemory::cell;
 HDP_DISPATCH(unpackRow)
 HDP_DISPATCH(changeDisparities)
 HDP_DISPATCH(compareDisparities)
+HDP_DISPATCH(shareCells)
 HDP_DISPATCH(compareCells)
 HDP_DISPATCH(chooseCells)
 HDP_DISPATCH(addEvidence)
@@ -93,6 +98,16 @@ DisparityChange measuredChange(const LastFrame& frame, const Mat& measured)
     return correctedChange(frame.change, predicted, now);
 }
 
+ChoiceShares choiceShares(const LastFrame& frame)
+{
+    const int distance = std::max(nearDistance * subpixelScale / frame.prediction.key.scale, 1);
+    if (frame.isStill())
+        return { stillShare | ChoiceShares::KEEPS, stillShare | ChoiceShares::KEEPS, distance };
+    // No pair has agreed with a first frame yet: from there, nothing that contradicts is taken.
+    return { frame.memory.frames == 1 ? std::min(+nearShare, +wrongShare) : +nearShare,
+             apartShare | ChoiceShares::KEEPS, distance };
+}
+
 //! Compares costs in each cell whose first pixel has another disparity in the last frame.
 void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& frame, VideoScratch& scratch)
 {
@@ -100,7 +115,9 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
     const int offset = costOffset * cost.comparisons() / 24;
     const int same = sameDistance * subpixelScale;
     const int maxDistance = TemporalSources::maxDistance * subpixelScale / frame.prediction.key.scale;
+    const ChoiceShares shares = choiceShares(frame);
     scratch.sources.create(cells, CV_8U);
+    scratch.shares.create(cells, CV_8UC2);
     scratch.evidence.create(cells, CV_16SC(EVIDENCE_CHANNELS));
     parallel_for_(Range(0, cells.height), [&](const Range& rows) {
         std::vector<int> moved(cells.width), compared(cells.width);
@@ -113,6 +130,8 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
             dispatched::compareDisparities(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y), moved.data(),
                                            cells.width, same, maxDistance, frame.prediction.sources.ptr(i),
                                            scratch.sources.ptr(i), different.data());
+            dispatched::shareCells(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y), moved.data(),
+                                   cells.width, shares, scratch.shares.ptr(i));
             int count = 0;
             for (int j = 0; j < cells.width; ++j)
             {
@@ -144,8 +163,7 @@ bool choose(const LastFrame& frame, VideoScratch& scratch)
 {
     const Size cells = frame.cells();
     const int radius = T::window / 2, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
-    // No pair has agreed with a first frame yet: from there, nothing that contradicts is taken.
-    const ChoiceShares shares = { stillShare, frame.memory.frames == 1 ? wrongShare : movedShare, wrongShare };
+    const int wrong = frame.isStill() ? +stillShare : +wrongShare;
     std::vector<int> sourceCounts(cells.height), contradicted(cells.height);
     scratch.choices.create(cells, CV_8U);
     parallel_for_(Range(0, stripes), [&](const Range& range) {
@@ -165,8 +183,8 @@ bool choose(const LastFrame& frame, VideoScratch& scratch)
             dispatched::sumWindow(columns.data(), length, sums.data());
             const uchar* sources = scratch.sources.ptr(y);
             sourceCounts[y] = (int)(cells.width - std::count(sources, sources + cells.width, 0));
-            contradicted[y] = dispatched::chooseCells(sums.data(), sources, cells.width, frame.isStill(), shares,
-                                                      scratch.choices.ptr(y));
+            contradicted[y] = dispatched::chooseCells(sums.data(), sources, scratch.shares.ptr(y), cells.width,
+                                                      frame.isStill(), wrong, scratch.choices.ptr(y));
             add(y - radius, -1);
         }
     });

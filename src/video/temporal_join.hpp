@@ -37,7 +37,9 @@ enum TemporalChoice
 {
     MEASURED,
     UNMOVED,
-    MOVED
+    MOVED,
+    PLACES = 3, // mask of these
+    KEPT = 4    // beside one of the last frame: its pixels that disagree with the measured ones take it, too
 };
 
 //! What costs of a row's pixels are compared of
@@ -61,9 +63,13 @@ struct TemporalRow
 //! Percent of the measured disparity's scale that another one may cost more, see TemporalEvidence
 struct ChoiceShares
 {
-    int still; // at the same place if the camera stands still
-    int moved; // if the camera moved
-    int wrong; // beyond it, a cell contradicts the last frame
+    enum
+    {
+        KEEPS = 128, // in a share: what is taken is KEPT
+        PERCENT = 127
+    };
+    int near, apart; // if the two disparities are near each other, and if not
+    int distance;    // up to which they are near, in units of a map
 };
 
 //! How disparities are joined, in FrameMemory's units
@@ -75,8 +81,9 @@ struct JoinRule
 /** Joins the disparities of a pair, before the median, with those of the frame before. Each pixel has up to three: the
 measured one, that of the last frame at the same place, if the image stands still there, and that which the motion of
 the camera takes there, if the image looks the same where it comes from. One of the last frame is kept unless the
-measured one has clearly lower costs in the window around. It moves towards the measured one if both agree, by less the
-more frames it stands for; if not, it stands for fewer frames, in the end for none, and the measured one is taken. If
+measured one has lower costs in the window around, clearly lower ones if the two are near each other. It moves towards
+the measured one if both agree, by less the more frames it stands for; if not, it stands for fewer frames, in the end
+for none, and the measured one is taken. If
 that is so for many of the pixels, the pair contradicts the last frame.
 @param cost The layer's census cost.
 @param last The last frame.

@@ -49,6 +49,16 @@ are far apart.
 void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int same,
                         int maxDistance, const uchar* sources, uchar* used, uchar* different);
 
+/** Finds how much more the disparities of the frame before may cost than the measured ones.
+@param measured As of compareDisparities().
+@param unmoved As well.
+@param moved As well.
+@param count Number of cells.
+@param rule What they may.
+@param shares Receives two numbers per cell: percent of the unmoved one, and of the moved one. */
+void shareCells(const ushort* measured, const ushort* unmoved, const int* moved, int count, const ChoiceShares& rule,
+                uchar* shares);
+
 /** Adds up what the pixels on the diagonals of cells tell, see TemporalEvidence.
 @param rows The rows of the cells.
 @param moved As of compareDisparities().
@@ -64,11 +74,12 @@ void compareCells(const ComparedRow* rows, const int* moved, const uchar* differ
 @param sums Sums of the evidence over the window of each.
 @param sources What each may take.
 @param count Number of cells.
+@param shares What its disparities may cost more, of shareCells().
 @param isStill Whether the camera is at rest.
-@param shares What a disparity may cost more.
+@param wrongShare What a disparity costs more that contradicts the frame before, in percent.
 @param choices Receives a TemporalChoice of each.
-@return How many that have a source contradict it: with shares.wrong in place of the others, they would be measured. */
-int chooseCells(const short* sums, const uchar* sources, int count, bool isStill, const ChoiceShares& shares,
+@return How many that have a source contradict it: with wrongShare in place of the others, they would be measured. */
+int chooseCells(const short* sums, const uchar* sources, const uchar* shares, int count, bool isStill, int wrongShare,
                 uchar* choices);
 
 /** Joins a row of measured disparities with those of the frame before.
@@ -107,17 +118,19 @@ template <int planes> inline int costOf(const ComparedRow& row, int x, int dispa
 }
 
 //! What a cell takes, of its sums over the window. isStill: 0 or 1
-inline int choiceOf(const short* sums, int sources, int isStill, int stillShare, int movedShare)
+inline int choiceOf(const short* sums, int sources, int isStill, int shareOfUnmoved, int shareOfMoved)
 {
+    const int unmovedShare = shareOfUnmoved & ChoiceShares::PERCENT, movedShare = shareOfMoved & ChoiceShares::PERCENT;
+    const int unmovedKept = shareOfUnmoved & ChoiceShares::KEEPS, movedKept = shareOfMoved & ChoiceShares::KEEPS;
     const int unmoved = sums[COST_UNMOVED], moved = sums[COST_MOVED];
     const int scaleUnmoved = sums[SCALE_UNMOVED], scaleMoved = sums[SCALE_MOVED];
     const int hasUnmoved = sources & 1, hasMoved = (sources >> 1) & (isStill ^ 1);
     const int best = std::min(moved, 0) & -hasMoved;
     const int scale = select(isStill, scaleUnmoved, std::max(scaleUnmoved, scaleMoved));
-    const int share = select(isStill, stillShare, movedShare);
-    const int takesUnmoved = hasUnmoved & (100 * (unmoved - best) <= share * scale);
+    const int takesUnmoved = hasUnmoved & (100 * (unmoved - best) <= unmovedShare * scale);
     const int takesMoved = hasMoved & (100 * moved <= movedShare * scaleMoved);
-    return select(takesUnmoved, UNMOVED, takesMoved * MOVED);
+    static_assert(ChoiceShares::KEEPS == KEPT << 5, "One bit becomes the other.");
+    return select(takesUnmoved, UNMOVED | unmovedKept >> 5, takesMoved * (MOVED | movedKept >> 5));
 }
 
 template <int planes>
@@ -203,17 +216,30 @@ void compareCells(const ComparedRow* rows, const int* moved, const uchar* differ
     compare(rows, moved, different, cells, count, offset, evidence);
 }
 
-int chooseCells(const short* sums, const uchar* sources, int count, bool isStill, const ChoiceShares& shares,
+void shareCells(const ushort* measured, const ushort* unmoved, const int* moved, int count, const ChoiceShares& rule,
+                uchar* shares)
+{
+    const int near = rule.near, apart = rule.apart, maxDistance = rule.distance;
+    HDP_VECTORIZED for (int j = 0; j < count; ++j)
+    {
+        const int here = measured[j * FrameMemory::cell], there = unmoved[j * FrameMemory::cell];
+        const int where = moved[j] >> FrameMemory::detailBits;
+        shares[2 * j] = (uchar)select(std::abs(there - here) <= maxDistance, near, apart);
+        shares[2 * j + 1] = (uchar)select(std::abs(where - here) <= maxDistance, near, apart);
+    }
+}
+
+int chooseCells(const short* sums, const uchar* sources, const uchar* shares, int count, bool isStill, int wrongShare,
                 uchar* choices)
 {
-    const int still = isStill, stillShare = shares.still, movedShare = shares.moved, wrongShare = shares.wrong;
+    const int still = isStill;
     int contradicting = 0;
     static_assert(MEASURED == 0 && SAME_PLACE == 1 && MOVED_PLACE == 2, "choiceOf() relies on it.");
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
         const short* const ofCell = sums + j * EVIDENCE_CHANNELS;
-        contradicting += (sources[j] != 0) & (choiceOf(ofCell, sources[j], still, stillShare, wrongShare) == MEASURED);
-        choices[j] = (uchar)choiceOf(ofCell, sources[j], still, stillShare, movedShare);
+        contradicting += (sources[j] != 0) & (choiceOf(ofCell, sources[j], still, wrongShare, wrongShare) == MEASURED);
+        choices[j] = (uchar)choiceOf(ofCell, sources[j], still, shares[2 * j], shares[2 * j + 1]);
     }
     return contradicting;
 }
@@ -232,13 +258,13 @@ void joinRow(const ushort* measured, const TemporalRow& row, int width, const Jo
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const int distance = std::abs((measured[x] << FrameMemory::detailBits) - moved[x]);
-        agreesMoved[x] = (uchar)((choices[x] == MOVED) & (distance <= tolerance));
+        agreesMoved[x] = (uchar)(((choices[x] & PLACES) == MOVED) & (distance <= tolerance));
     }
     HDP_VECTORIZED for (int x = 0; x < width; ++x) // without branches, so that it can be
     {
         const int isBeside = agreesMoved[x - 2] | agreesMoved[x - 1] | agreesMoved[x + 1] | agreesMoved[x + 2];
-        const int isFringe = (choices[x] == MOVED) & isBeside & (agreesMoved[x] ^ 1);
-        const int here = measured[x] << FrameMemory::detailBits, choice = select(isFringe, MEASURED, choices[x]),
+        const int place = choices[x] & PLACES, isFringe = (place == MOVED) & isBeside & (agreesMoved[x] ^ 1);
+        const int here = measured[x] << FrameMemory::detailBits, choice = select(isFringe, MEASURED, place),
                   isMoved = choice == MOVED;
         const int there = select(isMoved, moved[x], unmoved[x]), difference = here - there;
         const int count = select(isMoved, movedCounts[x], unmovedCounts[x]) & -(choice != MEASURED);
@@ -247,7 +273,8 @@ void joinRow(const ushort* measured, const TemporalRow& row, int width, const Jo
         // 2^16 / (weight + 1)
         const int share = select(weight > 2, select(weight > 3, 13107, 16384), select(weight > 1, 21845, 32768));
         const int approached = there + ((limited * share + 32768) >> 16);
-        const int agrees = std::abs(difference) <= tolerance, isNew = count == 0;
+        const int agrees = std::abs(difference) <= tolerance;
+        const int isNew = (count == 0) | ((agrees ^ 1) & ((choices[x] & KEPT) == 0));
         const int joined = select(isNew, here, select(agrees, approached, there));
         const int joinedCount = select(isNew, 1, select(agrees, std::min(count + 1, maxCount), count - 1));
         const int rounded = joined + half;

@@ -15,8 +15,11 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(double, maxError, 4.5, "cells", "of the points of a first guess: more follows what moves by itself");
+HDP_TUNABLE(double, maxError, 2, "cells", "of the points of a first guess: more follows what moves by itself");
 HDP_TUNABLE(double, smallError, 1, "cells", "of a guess that is good, and of points that are near the motion");
+HDP_TUNABLE(
+    double, noMotion, 1.25, "cells",
+    "median distance of the points from a motion that is none: more warps by wrong ones, less loses fast cameras");
 
 // What is no cut, on the coarsest level
 HDP_TUNABLE(int, cutShare, 60, "percent of the contrast",
@@ -194,6 +197,11 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
     p.motion = findMotion(last, p.grey, scratch.points);
+    if (p.motion.error > noMotion * cell)
+    {
+        p.motion = CameraMotion();
+        return;
+    }
     p.backward = BackwardMotion(p.motion, key.minDisparity, (double)key.maxDisparity / subpixelScale);
     if (!p.motion.isStill)
         findWarp(p.backward, last.disparity, p.warp);

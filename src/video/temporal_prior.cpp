@@ -6,10 +6,14 @@
 
 #include "../base/tunable.hpp"
 
+#include <numeric>
+
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
+HDP_TUNABLE(int, maxRefused, 10, "percent of the predicted pixels",
+            "whose costs may contradict: more believes wrong motions, less begins anew where much moves by itself");
 HDP_TUNABLE(int, maxPenalty, 6, "bits",
             "of disparities other than the predicted one: more keeps errors, less adds noise");
 HDP_TUNABLE(int, maxPenaltyOfMeans, 3, "bits", "the same over means, which vary less and contradict more clearly");
@@ -29,6 +33,20 @@ bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, fl
     return !(sources & SAME_PLACE) || p.key.scale * std::abs(disparity - unmoved) <= TemporalSources::maxDistance;
 }
 
+//! Calls take(pixel, disparity) for the pixels of a row of the volume that the last frame predicts a disparity for.
+template <typename Take>
+void forEachPredicted(const FrameMemory& last, const FramePrediction& prediction, int side, const Size& size, int y,
+                      const Take& take)
+{
+    const int centreY = std::min(y * side + side / 2, last.disparity.rows - 1);
+    for (int x = 0; x < size.width; ++x)
+    {
+        float disparity;
+        if (predict(last, prediction, std::min(x * side + side / 2, last.disparity.cols - 1), centreY, disparity))
+            take(y * size.width + x, disparity / side);
+    }
+}
+
 } // namespace
 
 bool hasPrior(const FrameMemory& last, const FramePrediction& prediction)
@@ -36,23 +54,31 @@ bool hasPrior(const FrameMemory& last, const FramePrediction& prediction)
     return prediction.isMoving() && last.frames > 1;
 }
 
+bool contradictsLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side,
+                          const CostVolume& volume)
+{
+    std::vector<int> predicted(volume.size.height), refused(volume.size.height);
+    parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            forEachPredicted(last, prediction, side, volume.size, y, [&](int own, float disparity) {
+                ++predicted[y];
+                refused[y] += CostPreference::isContradicted(own, disparity, volume);
+            });
+    });
+    const int64 all = std::accumulate(predicted.begin(), predicted.end(), (int64)0);
+    return 100 * std::accumulate(refused.begin(), refused.end(), (int64)0) > maxRefused * all;
+}
+
 void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side, bool areMeans,
                      CostVolume& volume)
 {
-    const Size size = last.disparity.size();
     const CostPreference preference(CostVolume::scale * (areMeans ? maxPenaltyOfMeans : maxPenalty));
     parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
-            for (int x = 0; x < volume.size.width; ++x)
-            {
-                const int own = y * volume.size.width + x;
-                const int centreX = std::min(x * side + side / 2, size.width - 1);
-                const int centreY = std::min(y * side + side / 2, size.height - 1);
-                float disparity;
-                if (predict(last, prediction, centreX, centreY, disparity) &&
-                    !(areMeans && CostPreference::isContradicted(own, disparity / side, volume)))
-                    preference.apply(own, disparity / side, volume);
-            }
+            forEachPredicted(last, prediction, side, volume.size, y, [&](int own, float disparity) {
+                if (!(areMeans && CostPreference::isContradicted(own, disparity, volume)))
+                    preference.apply(own, disparity, volume);
+            });
     });
 }
 

@@ -13,6 +13,15 @@ namespace cv { namespace stereo { namespace hdp {
 //! moves, as joinLastFrame() keeps disparities then.
 CV_EXPORTS bool hasPrior(const FrameMemory& last, const FramePrediction& prediction);
 
+/** Whether this frame's own costs refuse the last frame: at many of the pixels that it predicts a disparity for, another
+one is much better.
+@param last The last frame.
+@param prediction What predictFrame() found; the frame continues.
+@param side That of the volume's pixels, in pixels of the layer that the prediction is of.
+@param volume Means of costs over trees, as a single frame has them. */
+CV_EXPORTS bool contradictsLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side,
+                                     const CostVolume& volume);
+
 /** P(D_t | D_(t-1)): raises the costs of disparities other than the one that the last frame predicts, see
 CostPreference. Where the image stands still and looks moved as well, with different disparities, it predicts
 none.

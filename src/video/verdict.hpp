@@ -18,7 +18,6 @@ enum Verdict
 struct VideoFindings
 {
     Verdict verdict;
-    bool isStill;  // the camera stands still
     bool hasPrior; // the last frame predicts disparities, see hasPrior()
 };
 
