@@ -842,7 +842,9 @@ TEST(HDPStereo_MatcherContract, number_of_layers)
             ASSERT_EQ(std::min(expected, 4), hdp::chooseLayers(numDisparities, numLayers, limit, 4));
             for (int usual : { 64, 96, 128, 192, 256, 384, 512, 1024 }) // one more is matched alike
                 if (numDisparities == usual && limit > 0)
+                {
                     EXPECT_EQ(expected, hdp::chooseLayers(usual + 1, numLayers, limit, 16)) << preset.name << usual;
+                }
         }
     for (int numLayers : { 1, 2, 16 })
         EXPECT_EQ(numLayers, hdp::chooseLayers(1024, numLayers, 0, 16)) << "no limit";
