@@ -250,11 +250,16 @@ private:
         PairPlan adapted = adapt(pairPlan, result_.findings, video);
         layers_.resize(pairPlan.top().layer + 1);
         scratch_.resize(layers_.size());
+        clock_.run("matching cost", [&] {
+            for (const LayerPlan& layer : adapted.layers)
+                prepareCost(layer, images[layer.layer], scratch_[layer.layer]);
+        });
         const LayerResult* upper = nullptr;
         Verdict verdict = FIRST;
         for (const LayerPlan& layer : adapted.layers)
         {
-            const LayerInput input = { adapted, layer, images[layer.layer], upper, lastFrame_, prediction_ };
+            const CensusCost* below = layer.isFinest ? nullptr : &scratch_[layer.layer - 1].census;
+            const LayerInput input = { adapted, layer, images[layer.layer], upper, below, lastFrame_, prediction_ };
             verdict = matchLayer(input, scratch_[layer.layer], shared_, clock_, layers_[layer.layer]);
             upper = &layers_[layer.layer];
         }

@@ -39,7 +39,6 @@ public:
     Verdict run()
     {
         result_.prior.clear();
-        clock_.run("matching cost", [&] { prepareCost(); });
         if (plan_.method == COST_SCANLINES)
             matchCosts();
         else if (plan_.method == WINDOW_SCANLINES)
@@ -59,17 +58,6 @@ public:
     }
 
 private:
-    void prepareCost()
-    {
-        const CostPlan& cost = plan_.cost;
-        const Mat &left = in_.images.left, &right = in_.images.right;
-        if (cost.isCensus)
-            return own_.census.prepare(left, right, plan_.numDisparities, cost.windowSide, cost.tolerance);
-        const ColorGradientParams params = { cost.colorTruncation, cost.gradientTruncation, cost.colorWeight,
-                                             cost.windowSide };
-        own_.colorGradient.prepare(left, right, plan_.numDisparities, params);
-    }
-
     //! Sections 3.1 to 3.3: over the candidates of disparity trees
     void matchTrees()
     {
@@ -148,12 +136,20 @@ private:
     {
         const DisparityForest& forest = shared_.forest;
         CostVolume& volume = shared_.volume;
-        aggregateMeans(forest, own_.census, plan_.trees.gamma, shared_.aggregation, volume);
+        prepareVolumeCost();
+        aggregateMeans(forest, shared_.volumeCost, plan_.trees.gamma, shared_.aggregation, volume);
         if (plan_.prefersLastFrame)
             preferLastFrame(true);
         aggregateVolume(volume, forest.weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
         if (plan_.trees.prefersPlanes && preferTreePlanes(forest, result_.winners, volume) > 0)
             aggregateVolume(volume, forest.weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
+    }
+
+    //! What the costs of a volume are
+    void prepareVolumeCost()
+    {
+        const CensusCost* below = plan_.seesBelow ? in_.below : nullptr;
+        shared_.volumeCost.prepare(own_.census, below, plan_.numDisparities);
     }
 
     void preferLastFrame(bool areMeans)
@@ -169,7 +165,8 @@ private:
         result_.searchRatio = 1;
         clock_.run("disparity prediction", [&] {
             const DisparityInterval all = { 0, (ushort)(plan_.numDisparities - 1) };
-            shared_.volume.fill(own_.census, in_.images.guide.size(), all);
+            prepareVolumeCost();
+            shared_.volume.fill(shared_.volumeCost, in_.images.guide.size(), all);
             if (plan_.prefersLastFrame)
                 preferLastFrame(false);
         });
@@ -264,6 +261,16 @@ private:
 };
 
 } // namespace
+
+void prepareCost(const LayerPlan& plan, const LayerImages& images, LayerScratch& own)
+{
+    const CostPlan& cost = plan.cost;
+    if (cost.isCensus)
+        return own.census.prepare(images.left, images.right, plan.numDisparities, cost.windowSide, cost.tolerance);
+    const ColorGradientParams params = { cost.colorTruncation, cost.gradientTruncation, cost.colorWeight,
+                                         cost.windowSide };
+    own.colorGradient.prepare(images.left, images.right, plan.numDisparities, params);
+}
 
 Verdict matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
                    LayerResult& result)

@@ -29,6 +29,7 @@ struct LayerInput
     const LayerPlan& plan;
     const LayerImages& images;
     const LayerResult* upper;          // the layer above; none at the top layer
+    const CensusCost* below;           // that of the layer below; none at the finest layer
     const FrameMemory& lastFrame;      // of a video
     const FramePrediction& prediction; // of this frame, if it is one of a video
 };
@@ -69,11 +70,15 @@ struct SharedScratch
     ForestBuffers forestBuffers;
     AggregationBuffers aggregation;
     ScanlineBuffers scanlines;
+    TwoLayerCost volumeCost;
     CostVolume volume;
     VolumeScanlineBuffers volumeScanlines;
     VideoScratch video;
     FrameMemory frame; // what the finest layer leaves to the next frame of a video
 };
+
+//! The matching cost of a layer, which matchLayer() needs of it and of the layer below
+void prepareCost(const LayerPlan& plan, const LayerImages& images, LayerScratch& own);
 
 //! Section 3: from the disparities of the layer above to those of this layer. Returns what the frame is to the last one
 //! of a video, as joinLastFrame() does; FIRST on the layers above.

@@ -18,7 +18,7 @@ inline std::string textOf(const hdp::LayerPlan& p)
          << " max " << p.maxDisparity << " fractions " << p.hasFractions << " method " << (int)p.method << "\n  cost "
          << p.cost.isCensus << " " << p.cost.windowSide << " tolerance " << p.cost.tolerance << " truncation "
          << p.cost.colorTruncation << " " << p.cost.gradientTruncation << " weight " << p.cost.colorWeight
-         << " smooths guide " << p.smoothsGuide << "\n  trees: prior " << (int)p.trees.prior << " upper "
+         << " sees below " << p.seesBelow << " smooths guide " << p.smoothsGuide << "\n  trees: prior " << (int)p.trees.prior << " upper "
          << p.trees.upperDisparities << " delta " << p.trees.delta << " margin " << p.trees.margin << " beta "
          << p.trees.beta << " links " << p.trees.linksTrees << " gamma " << p.trees.gamma << " planes "
          << p.trees.prefersPlanes << " refinement " << p.trees.refinementGamma << "\n  volume "

@@ -180,7 +180,9 @@ struct CensusLayer : Layer
 void expectMeans(const CensusLayer& layer, double gamma, hdp::AggregationBuffers& buffers, int step = 1)
 {
     hdp::CostVolume volume;
-    hdp::aggregateMeans(layer.forest, layer.census, gamma, buffers, volume);
+    hdp::TwoLayerCost cost;
+    cost.prepare(layer.census, nullptr, numDisparities);
+    hdp::aggregateMeans(layer.forest, cost, gamma, buffers, volume);
     ASSERT_EQ(layer.left.size(), volume.size);
     std::vector<char> isTaken(volume.rows);
     hdp::TreeWalk walk;

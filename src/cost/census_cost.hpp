@@ -66,6 +66,10 @@ public:
     //! The cost of one candidate of each pixel, CV_8UC1. disparity: CV_16UC1, a disparity map.
     void ofDisparities(const Mat& disparity, Mat& costs) const;
 
+    //! The size of the images
+    Size size() const { return Size(planes_.width, left_.rows); }
+    //! All of it
+    const CensusPlanes& data() const { return planes_; }
     //! The number of planes of 8 bits that hold the census of a pixel
     int planes() const { return planes_.count; }
     //! The number of comparisons in the census of a pixel

@@ -46,7 +46,7 @@ void CostVolume::create(const DisparityForest& forest)
     provideCosts();
 }
 
-void CostVolume::fill(const CensusCost& cost, const Size& layerSize, const DisparityInterval& interval)
+void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const DisparityInterval& interval)
 {
     size = layerSize;
     numDisparities = interval.last + 1;
@@ -67,7 +67,7 @@ void CostVolume::fill(const CensusCost& cost, const Size& layerSize, const Dispa
                 cost.evaluate(pixels.data(), size.width, interval.first + r * row, row, run.data());
                 uchar* to = &costs[of(first).start() + r * row];
                 for (int x = 0; x < size.width; ++x, to += usualRows_ * row)
-                    HDP_VECTORIZED for (int k = 0; k < row; ++k) to[k] = (uchar)(scale * run[x * row + k]);
+                    HDP_VECTORIZED for (int k = 0; k < row; ++k) to[k] = run[x * row + k];
             }
         }
     });

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_COST_VOLUME_HPP
 #define OPENCV_HDPSTEREO_COST_VOLUME_HPP
 
-#include "../cost/census_cost.hpp"
+#include "../cost/two_layer_cost.hpp"
 #include "disparity_forest.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -14,8 +14,8 @@ struct CV_EXPORTS CostVolume
 {
     enum
     {
-        scale = 8, // of the costs, for their fractions
-        row = 16   // costs that are stored together
+        scale = TwoLayerCost::scale, // of the costs, for their fractions
+        row = 16                     // costs that are stored together
     };
     struct Candidates // of a pixel
     {
@@ -49,7 +49,7 @@ struct CV_EXPORTS CostVolume
     //! Provides the memory for the trees of a forest.
     void create(const DisparityForest& forest);
     //! Takes the costs as they are, of the same candidates for all pixels.
-    void fill(const CensusCost& cost, const Size& size, const DisparityInterval& interval);
+    void fill(const TwoLayerCost& cost, const Size& size, const DisparityInterval& interval);
     //! Pixels y * width + x of tree number t, as place() got them, if all have the same candidates
     const int* pixelsOf(size_t t) const { return &pixels_[firsts_[t]]; }
     //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.

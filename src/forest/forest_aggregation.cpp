@@ -238,7 +238,7 @@ void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, con
 struct MeanAggregation
 {
     const DisparityForest& forest;
-    const CensusCost& cost;
+    const TwoLayerCost& cost;
     const EdgeSimilarity similarity;
     CostVolume& volume;
 
@@ -278,11 +278,11 @@ struct MeanAggregation
         const size_t count = (size_t)size * lanes;
         if (buffers.means.size() < count) // the last to grow, as in walkTree()
         {
-            buffers.bits.resize(count);
+            buffers.costs.resize(count);
             buffers.means.resize(count);
         }
-        cost.evaluate(walk.pixels.data(), size, run.start, lanes, buffers.bits.data());
-        dispatched::averageRun(walk, nodes, size, run, lanes, buffers.bits.data(), buffers.means.data(), volume);
+        cost.evaluate(walk.pixels.data(), size, run.start, lanes, buffers.costs.data());
+        dispatched::averageRun(walk, nodes, size, run, lanes, buffers.costs.data(), buffers.means.data(), volume);
     }
 
     void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
@@ -355,7 +355,7 @@ void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, do
     takeWinners(forest, Matching(cost, subpixel), gamma, buffers, disparity);
 }
 
-void aggregateMeans(const DisparityForest& forest, const CensusCost& cost, double gamma, AggregationBuffers& buffers,
+void aggregateMeans(const DisparityForest& forest, const TwoLayerCost& cost, double gamma, AggregationBuffers& buffers,
                     CostVolume& volume)
 {
     volume.create(forest);

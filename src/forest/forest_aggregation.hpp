@@ -57,7 +57,7 @@ struct MeanBuffers
 {
     std::vector<float> sums; // of similarities
     std::vector<MeanNode> nodes;
-    std::vector<uchar> bits; // the costs of some candidates of each pixel
+    std::vector<uchar> costs; // of some candidates of each pixel, in units of the volume
     std::vector<short> means;
 };
 
@@ -126,7 +126,7 @@ Halves are rounded up. So means of equal costs are these costs, and all means ar
 @param gamma Of the similarity.
 @param buffers Memory to work in.
 @param volume Receives V times CostVolume::scale, rounded. */
-CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const CensusCost& cost, double gamma,
+CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const TwoLayerCost& cost, double gamma,
                                AggregationBuffers& buffers, CostVolume& volume);
 
 }}} // namespace cv::stereo::hdp

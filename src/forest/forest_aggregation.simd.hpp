@@ -28,10 +28,10 @@ void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const
 @param size As in aggregateRun().
 @param run The candidates.
 @param lanes As in aggregateRun().
-@param bits M of pixel i and the k-th candidate at [i * lanes + k]. Others mean nothing.
+@param costs M of pixel i and the k-th candidate at [i * lanes + k], times CostVolume::scale. Others mean nothing.
 @param means Memory for as many.
 @param volume Receives the means. */
-void averageRun(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, int lanes, const uchar* bits,
+void averageRun(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, int lanes, const uchar* costs,
                 short* means, CostVolume& volume);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
@@ -139,29 +139,29 @@ inline short shareOf(short difference, short share)
     return (short)((((int)difference * share >> 14) + 1) >> 1);
 }
 
-inline short meanOf(uchar bits) { return (short)(bits * MeanNode::meanScale); }
+inline short meanOf(uchar cost) { return (short)(cost * (MeanNode::meanScale / CostVolume::scale)); }
 
 //! From the leaves to the root: U, and the sums for those of the parents in place of theirs
 template <int lanes>
-void averageUp(const int* parents, const MeanNode* nodes, int size, const uchar* bits, short* means)
+void averageUp(const int* parents, const MeanNode* nodes, int size, const uchar* costs, short* means)
 {
     for (int i = size - 1; i >= 0; --i)
     {
         const MeanNode& node = nodes[i];
         const short toParent = node.toParent, hasChildren = node.hasChildren, hasSibling = node.hasSibling;
-        const uchar* const ownBits = bits + (size_t)i * lanes;
-        const uchar* const parentBits = bits + (size_t)parents[i] * lanes;
+        const uchar* const ownCosts = costs + (size_t)i * lanes;
+        const uchar* const parentCosts = costs + (size_t)parents[i] * lanes;
         short* const own = means + (size_t)i * lanes;
         short* const parent = means + (size_t)parents[i] * lanes;
         short mean[lanes];
         HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
         {
-            mean[k] = (short)(meanOf(ownBits[k]) + (own[k] & hasChildren));
+            mean[k] = (short)(meanOf(ownCosts[k]) + (own[k] & hasChildren));
             own[k] = mean[k];
         }
         if (i > 0)
             HDP_VECTORIZED for (int k = 0; k < lanes; ++k) parent[k] =
-                (short)((parent[k] & hasSibling) + shareOf((short)(mean[k] - meanOf(parentBits[k])), toParent));
+                (short)((parent[k] & hasSibling) + shareOf((short)(mean[k] - meanOf(parentCosts[k])), toParent));
     }
 }
 
@@ -180,11 +180,11 @@ template <int lanes> inline void averageDown(const short* parent, short fromPare
 //! averageRun()
 template <int lanes> struct AverageTask
 {
-    static void run(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, const uchar* bits,
+    static void run(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, const uchar* costs,
                     short* means, CostVolume& volume)
     {
         const int* const parents = walk.parents.data();
-        averageUp<lanes>(parents, nodes, size, bits, means);
+        averageUp<lanes>(parents, nodes, size, costs, means);
         uchar* const stored = volume.costs.data();
         for (int i = 0; i < size; ++i)
         {
@@ -245,10 +245,10 @@ void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const
     runTask<AggregateTask>(lanes, walk, size, similarity, run, joins, costs, winners);
 }
 
-void averageRun(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, int lanes, const uchar* bits,
+void averageRun(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, int lanes, const uchar* costs,
                 short* means, CostVolume& volume)
 {
-    runTask<AverageTask>(lanes, walk, nodes, size, run, bits, means, volume);
+    runTask<AverageTask>(lanes, walk, nodes, size, run, costs, means, volume);
 }
 
 #endif

@@ -210,7 +210,11 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     if (plan.method == TREE_SUMS || plan.method == TREE_SCANLINES)
         plan.trees = planTrees(p, plan, size);
     if (plan.method == TREE_SCANLINES || plan.method == COST_SCANLINES)
+    {
+        // Trees on all layers search the finer ones for themselves.
+        plan.seesBelow = !plan.isFinest && aggregationOf(p) == M::AGGREGATION_SCANLINES;
         plan.volumePenalties = planVolume(p);
+    }
     plan.fillsOcclusions = p.fillOcclusions;
     // As in the authors' program; the paper says that nothing is refined.
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;

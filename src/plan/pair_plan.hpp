@@ -78,6 +78,7 @@ struct LayerPlan
     int maxDisparity = 0;   // of a map of the layer
     bool hasFractions = false;
     CostPlan cost;
+    bool seesBelow = false;    // whether the costs of a volume are those of the layer below, too
     bool smoothsGuide = false; // a median before the edges are weighed
     LayerMethod method = TREE_SUMS;
     TreePlan trees;
