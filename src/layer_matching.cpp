@@ -224,7 +224,8 @@ private:
             const WindowPrediction prediction = { isFirst ? in_.upper->disparity : own_.halved,
                                                   isFirst ? in_.upper->winners : own_.halvedWinners,
                                                   own_.sparseMatches };
-            predictWindows(prediction, plan_.numDisparities, own_.windowBuffers, own_.windows);
+            findOtherSurfaces(prediction, own_.census, plan_.numDisparities, own_.surfaceBuffers, own_.others);
+            predictWindows(prediction.upper, own_.others, plan_.numDisparities, own_.windows);
         });
     }
 

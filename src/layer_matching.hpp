@@ -9,6 +9,7 @@
 #include "paper/support_points.hpp"
 #include "plan/pair_plan.hpp"
 #include "scanlines/candidate_windows.hpp"
+#include "scanlines/other_surfaces.hpp"
 #include "video/temporal_join.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -41,8 +42,8 @@ struct LayerScratch
     ColorGradientCost colorGradient;
     Mat guide, edgeWeights;              // what edges are weighed on; their weights, if there is no forest
     Mat pixelIntv;                       // PixelIntv, section 3.1
-    WindowBuffers windowBuffers;         // memory of predictWindows()
-    Mat sparseMatches, windows;          // what the windows of scanlines are predicted from; the windows
+    SurfaceBuffers surfaceBuffers;       // memory of findOtherSurfaces()
+    Mat sparseMatches, others, windows;  // what the windows of scanlines are predicted from; the windows
     Mat filtered, halved, halvedWinners; // what a pass of scanlines leaves to the next one
     Mat residual;                        // costs of the winners
     Mat stable, refined;                 // pixels that pass the left-right check, and their refined disparities

@@ -4,72 +4,30 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
+#include "window_prediction.hpp"
 #include "../src/scanlines/candidate_windows.hpp"
-#include "../src/scanlines/sparse_matches.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using hdp::CandidateWindow;
 
 const int scale = 16;
 
-//! Disparities of a layer above another one with this number of disparities: patches of slanted surfaces.
-Mat patchesAbove(RNG& rng, Size size, int numDisparities, int patch)
+//! The other surfaces of a layer without a census
+Mat usualSurfaces(const Prediction& prediction)
 {
-    const int largest = (numDisparities - 1) / 2 * scale;
-    Mat upper(size, CV_16UC1);
-    for (int y0 = 0; y0 < size.height; y0 += patch)
-        for (int x0 = 0; x0 < size.width; x0 += patch)
-        {
-            const int offset = rng.uniform(0, largest + 1), slope = rng.uniform(-8, 9);
-            for (int y = y0; y < std::min(y0 + patch, size.height); ++y)
-                for (int x = x0; x < std::min(x0 + patch, size.width); ++x)
-                    upper.at<ushort>(y, x) = (ushort)std::min(std::max(offset + slope * (x - x0), 0), largest);
-        }
-    return upper;
+    Mat others(prediction.upper.size(), CV_16UC1);
+    for (int y = 0; y < others.rows; ++y)
+        for (int x = 0; x < others.cols; ++x)
+            others.at<ushort>(y, x) = (ushort)oracle::usualSurface(prediction, y, x);
+    return others;
 }
-
-const int noMatch = hdp::SparseMatches::noMatch;
-
-//! What is known of a layer; without matches of its own
-struct Prediction
-{
-    Mat upper, unfiltered, matches;
-
-    explicit Prediction(const Mat& upper_)
-        : upper(upper_), unfiltered(upper_.clone()),
-          matches((2 * upper.rows + 23) / 24, (2 * upper.cols + 23) / 24, CV_16UC1, Scalar(noMatch))
-    {
-    }
-};
 
 Mat predict(const Prediction& prediction, int numDisparities)
 {
-    hdp::WindowBuffers buffers;
-    buffers.min[0].create(3, 3, CV_16UC1); // of another size
     Mat windows(7, 2, CV_16UC4);
-    const hdp::WindowPrediction all = { prediction.upper, prediction.unfiltered, prediction.matches };
-    hdp::predictWindows(all, numDisparities, buffers, windows);
+    hdp::predictWindows(prediction.upper, usualSurfaces(prediction), numDisparities, windows);
     return windows;
-}
-
-//! Single pixels that the median removed, and matches of the layer itself here and there
-Prediction withThinStructuresAndMatches(RNG& rng, const Prediction& alone, int numDisparities)
-{
-    Prediction result = alone;
-    result.unfiltered = alone.upper.clone();
-    result.matches = alone.matches.clone();
-    const int largest = (numDisparities - 1) * scale;
-    for (int y = 0; y < result.unfiltered.rows; ++y)
-        for (int x = 0; x < result.unfiltered.cols; ++x)
-            if (rng.uniform(0, 30) == 0)
-                result.unfiltered.at<ushort>(y, x) = (ushort)rng.uniform(0, largest / 2 + 1);
-    for (int y = 0; y < result.matches.rows; ++y)
-        for (int x = 0; x < result.matches.cols; ++x)
-            if (rng.uniform(0, 2) == 0)
-                result.matches.at<ushort>(y, x) = (ushort)(scale * rng.uniform(0, numDisparities));
-    return result;
 }
 
 bool contains(const CandidateWindow& window, int disparity)
@@ -82,34 +40,6 @@ bool contains(const CandidateWindow& window, int disparity)
 
 int nearestDisparity(int predicted) { return cvFloor(predicted / (double)scale + 0.5); }
 
-//! The disparity in 7 x 7 pixels that is farthest from another one; of two as far, the larger one
-int farthest(const Mat& upper, int y, int x, int own)
-{
-    int result = own;
-    for (int v = std::max(y - 3, 0); v <= std::min(y + 3, upper.rows - 1); ++v)
-        for (int u = std::max(x - 3, 0); u <= std::min(x + 3, upper.cols - 1); ++u)
-        {
-            const int other = upper.at<ushort>(v, u), farther = std::abs(other - own) - std::abs(result - own);
-            if (farther > 0 || (farther == 0 && other > result))
-                result = other;
-        }
-    return result;
-}
-
-//! The disparity of the layer, times scale, that the second run is there for, or one near the pixel's own
-int otherSurface(const Prediction& prediction, int y, int x)
-{
-    const int own = 2 * prediction.upper.at<ushort>(y, x);
-    const ushort match = prediction.matches.at<ushort>(y / 12, x / 12);
-    const int sources[] = { 2 * prediction.unfiltered.at<ushort>(y, x), match != noMatch ? match : own,
-                            2 * farthest(prediction.upper, y, x, own / 2),
-                            2 * farthest(prediction.unfiltered, y, x, own / 2) };
-    for (int other : sources)
-        if (std::abs(other - own) >= 5 * scale)
-            return other;
-    return own;
-}
-
 void expectWindows(const Prediction& prediction, int numDisparities)
 {
     const Mat& upper = prediction.upper;
@@ -120,7 +50,7 @@ void expectWindows(const Prediction& prediction, int numDisparities)
         for (int x = 0; x < upper.cols; ++x)
         {
             const CandidateWindow& w = windows.ptr<CandidateWindow>(y)[x];
-            const int own = 2 * upper.at<ushort>(y, x), other = otherSurface(prediction, y, x);
+            const int own = 2 * upper.at<ushort>(y, x), other = oracle::usualSurface(prediction, y, x);
             SCOPED_TRACE(testing::Message() << "y " << y << " x " << x << ": runs from " << w.first[0] << " and "
                                             << w.first[1] << ", own " << own / 16. << ", beyond " << other / 16.);
             for (int run = 0; run < CandidateWindow::runs; ++run)
@@ -160,9 +90,10 @@ TEST(HDPStereo_CandidateWindows, properties)
             {
                 SCOPED_TRACE(testing::Message()
                              << size << ", " << numDisparities << " disparities, patches of " << patch);
-                const Prediction alone(patchesAbove(rng, size, numDisparities, patch));
-                expectWindows(alone, numDisparities);
-                expectWindows(withThinStructuresAndMatches(rng, alone, numDisparities), numDisparities);
+                Prediction prediction(patchesAbove(rng, size, numDisparities, patch));
+                expectWindows(prediction, numDisparities);
+                prediction.addThinStructuresAndMatches(rng, numDisparities);
+                expectWindows(prediction, numDisparities);
             }
 }
 
@@ -211,5 +142,4 @@ TEST(HDPStereo_CandidateWindows, halved_disparities)
         }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

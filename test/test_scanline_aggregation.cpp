@@ -9,6 +9,7 @@
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "../src/scanlines/scanline_aggregation.hpp"
+#include "../src/scanlines/other_surfaces.hpp"
 #include "../src/scanlines/sparse_matches.hpp"
 
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
@@ -51,10 +52,12 @@ struct Layer
                         if (rng.uniform(0, 10)) // noise
                             right.at<ushort>(y, x - d) = left.at<ushort>(y, x);
             }
-        hdp::WindowBuffers buffers;
+        hdp::SurfaceBuffers buffers;
         const Mat matches(1, 1, CV_16UC1, Scalar(hdp::SparseMatches::noMatch));
         const hdp::WindowPrediction prediction = { upper, upper, matches };
-        hdp::predictWindows(prediction, numDisparities, buffers, windows);
+        Mat others;
+        hdp::findOtherSurfaces(prediction, cost(), numDisparities, buffers, others);
+        hdp::predictWindows(upper, others, numDisparities, windows);
     }
 
     Size size() const { return left.size(); }

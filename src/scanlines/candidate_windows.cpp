@@ -6,67 +6,22 @@
 #include "candidate_windows.simd.hpp"
 #include "scanlines/candidate_windows.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
-#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(int, neighborhood, 3, "pixels of the upper layer",
-            "in which the surface beyond a discontinuity is: in more there is often a third one");
-HDP_TUNABLE(int, discontinuity, 5, "pixels",
-            "between different surfaces: less is in one window with them, more is in neither");
-HDP_TUNABLE(int, maxStripes, 16, "stripes", "for as many threads: more filter the rows between them twice");
-HDP_TUNABLE(int, minStripeHeight, 16, "rows of the upper layer", "for the same reason");
-
 HDP_DISPATCH(predictRow)
-
-//! The match in the square of each pixel of a row of the layer above
-void spreadMatches(const Mat& matches, int upperRow, std::vector<ushort>& row)
-{
-    const int spacing = SparseMatches::spacing / 2;
-    const ushort* match = matches.ptr<ushort>(std::min(upperRow / spacing, matches.rows - 1));
-    for (int x = 0; x < (int)row.size(); ++x)
-        row[x] = match[std::min(x / spacing, matches.cols - 1)];
-}
 
 } // namespace
 
-void predictWindows(const WindowPrediction& prediction, int numDisparities, WindowBuffers& buffers, Mat& windows)
+void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat& windows)
 {
-    const Mat maps[2] = { prediction.upper, prediction.unfiltered };
-    const Mat& upper = prediction.upper;
-    const int stripes = std::max(1, std::min<int>(maxStripes, upper.rows / minStripeHeight));
-    for (int i = 0; i < 2; ++i)
-    {
-        buffers.min[i].create(upper.size(), CV_16U);
-        buffers.max[i].create(upper.size(), CV_16U);
-    }
     windows.create(upper.size(), CV_16UC4);
-    const Mat kernel = Mat::ones(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U);
-    parallel_for_(Range(0, stripes), [&](const Range& range) {
-        std::vector<ushort> matches(upper.cols);
-        for (int i = range.start; i < range.end; ++i)
-        {
-            const Range rows(upper.rows * i / stripes, upper.rows * (i + 1) / stripes);
-            for (int map = 0; map < 2; ++map)
-            {
-                Mat minima = buffers.min[map].rowRange(rows), maxima = buffers.max[map].rowRange(rows);
-                erode(maps[map].rowRange(rows), minima, kernel); // a stripe sees its neighbours' rows
-                dilate(maps[map].rowRange(rows), maxima, kernel);
-            }
-            const auto rowOf = [&](int map, int y) {
-                const DisparityRow row = { maps[map].ptr<ushort>(y), buffers.min[map].ptr<ushort>(y),
-                                           buffers.max[map].ptr<ushort>(y) };
-                return row;
-            };
-            for (int y = rows.start; y < rows.end; ++y)
-            {
-                spreadMatches(prediction.matches, y, matches);
-                dispatched::predictRow(rowOf(0, y), rowOf(1, y), matches.data(), upper.cols, numDisparities,
-                                       discontinuity, windows.ptr<ushort>(y));
-            }
-        }
+    parallel_for_(Range(0, upper.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            dispatched::predictRow(upper.ptr<ushort>(y), others.ptr<ushort>(y), upper.cols, numDisparities,
+                                   windows.ptr<ushort>(y));
     });
 }
 

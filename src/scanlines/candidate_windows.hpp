@@ -26,39 +26,20 @@ struct CandidateWindow
     bool isContiguous() const { return first[1] == first[0] + runLength; }
 };
 
-//! What is known of a layer before it is matched
-struct WindowPrediction
+//! The first of a number of candidates around a disparity, or around the middle between two
+CV_ALWAYS_INLINE int firstCandidate(int disparity, int candidates, int numDisparities)
 {
-    const Mat& upper;      // the disparities of the layer above, CV_16UC1, a disparity map
-    const Mat& unfiltered; // the same before the median, which removes thin structures
-    const Mat& matches;    // of the layer itself, see findSparseMatches()
-};
+    const int outside = CandidateWindow::beyondRange;
+    return std::max(std::min(disparity - (candidates / 2 - 1), numDisparities + outside - candidates), -outside);
+}
 
-//! Memory of predictWindows(): the minimum and maximum disparities around each pixel, filtered or not
-struct WindowBuffers
-{
-    Mat min[2], max[2];
-};
-
-//! A row of disparities of the layer above, and the minimum and maximum around each
-struct DisparityRow
-{
-    const ushort *own, *min, *max;
-};
-
-/** Predicts the candidates of a layer. The other surface is, of those at least 5 pixels away from the pixel's own
-disparity, the first one there is of
-- the pixel's own disparity before the median,
-- the match in its square,
-- the farthest one of the disparities in 7 x 7 pixels,
-- the farthest one of those before the median.
-@param prediction What to predict from.
+/** Predicts the candidates of a layer.
+@param upper The disparities of the layer above, CV_16UC1, a disparity map.
+@param others From findOtherSurfaces().
 @param numDisparities Of the layer. Candidates are in -beyondRange .. numDisparities - 1 + beyondRange; others mean
 nothing, and there are some only if this range has less than CandidateWindow::candidates.
-@param buffers Memory to work in.
 @param windows Receives a CandidateWindow per pixel of upper, CV_16UC4. */
-CV_EXPORTS void predictWindows(const WindowPrediction& prediction, int numDisparities, WindowBuffers& buffers,
-                               Mat& windows);
+CV_EXPORTS void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat& windows);
 
 //! Disparities of a layer as the layer above would have them: half the mean of the middle two of 2 x 2 pixels. For a
 //! second pass over a layer, around the disparities of the first. disparity and upper: CV_16UC1, disparity maps.
