@@ -214,10 +214,10 @@ TEST(HDPStereo_CostVolume, fill)
             Mat left(imageSize, CV_16UC1), right(imageSize, CV_16UC1);
             rng.fill(left, RNG::UNIFORM, 0, 5);
             rng.fill(right, RNG::UNIFORM, 0, 5);
-            CensusCost own;
-            own.prepare(left, right, all.size(), blockSize);
+            CensusCost ofLayer;
+            ofLayer.prepare(left, right, all.size(), blockSize);
             TwoLayerCost cost;
-            cost.prepare(own, nullptr, all.size());
+            cost.prepare(ofLayer, nullptr, all.size());
             const oracle::CensusCost census(left, right, blockSize);
             volume.fill(cost, imageSize, all);
             EXPECT_EQ(imageSize, volume.size);

@@ -63,7 +63,7 @@ struct Prediction
 
 namespace oracle {
 
-//! Of findOtherSurfaces(): the disparity in 7 x 7 pixels that is farthest from another one; of two as far, the larger one
+//! The disparity in 7 x 7 pixels that is farthest from another one; of two as far, the larger one
 inline int farthest(const Mat& upper, int y, int x, int own)
 {
     int result = own;

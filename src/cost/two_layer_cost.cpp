@@ -14,8 +14,8 @@ namespace {
 HDP_DISPATCH(countTwoLayers)
 HDP_DISPATCH(takeEverySecond)
 
-//! Every second pixel of every second row, from column dx and row dy on. Candidate d of column x is number 2 d of column
-//! 2 x + dx: the right image is mirrored.
+//! Every second pixel of every second row, from column dx and row dy on. Candidate d of column x is number 2 d of
+//! column 2 x + dx: the right image is mirrored.
 void takePixels(const CensusPlanes& below, int dx, int dy, Mat left, Mat right)
 {
     const int width = left.cols, height = left.rows;

@@ -8,8 +8,8 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-/** The census cost of a layer and of the layer below, whose census still has the texture that means of 2 x 2 pixels take
-away. With C of the layer, C' of the one below, and the four pixels q that pixel p is the mean of,
+/** The census cost of a layer and of the layer below, whose census still has the texture that means of 2 x 2 pixels
+take away. With C of the layer, C' of the one below, and the four pixels q that pixel p is the mean of,
 
 cost(p, d) = C(p, d) / 2 + (sum over q of C'(q, 2 d)) / 8,
 

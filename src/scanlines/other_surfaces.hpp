@@ -28,7 +28,7 @@ struct OtherSurface
     };
 };
 
-//! Memory of findOtherSurfaces(): the minimum and maximum disparities around each pixel and of each block, filtered or not
+//! Memory of findOtherSurfaces(): minimum and maximum disparities around each pixel and of each block, filtered or not
 struct SurfaceBuffers
 {
     Mat min[2], max[2], blockMin[2], blockMax[2];
