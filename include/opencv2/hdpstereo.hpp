@@ -32,7 +32,7 @@ cv::stereo::HDPTreeMatcher is a cv::StereoMatcher, so a program that uses cv::St
 The spanning tree is pluggable, see cv::stereo::TreeStrategy; the distribution that drives the prediction
 is a cv::stereo::DisparityPredictionModel.
 
-Tutorials: @ref tutorial_hdpstereo_matching, @ref tutorial_hdpstereo_own_tree
+Tutorials: @ref tutorial_hdpstereo_matching, @ref tutorial_hdpstereo_own_tree, @ref tutorial_hdpstereo_beforehand
 */
 
 #endif

@@ -74,6 +74,8 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
     const short invalid = (short)((plan.minDisparity - 1) * unit);
     if (plan.disp12MaxDiff > 0)
         rejectOccluded(fixedPoint, plan.disp12MaxDiff, invalid);
+    if (plan.hasBothFilters())
+        compare(fixedPoint, Scalar(invalid), buffers.notStable, CMP_EQ);
     if (plan.speckleWindowSize > 0)
         removeSpeckles(fixedPoint, plan, invalid, buffers.speckles);
     compare(fixedPoint, Scalar(invalid), buffers.rejected, CMP_EQ);

@@ -21,12 +21,14 @@ struct OutputPlan
     int disp12MaxDiff, speckleWindowSize, speckleRange; // as of cv::StereoMatcher; <= 0: no filter
 
     bool hasFilters() const { return disp12MaxDiff > 0 || speckleWindowSize > 0; }
+    bool hasBothFilters() const { return disp12MaxDiff > 0 && speckleWindowSize > 0; }
 };
 
 //! Memory that is kept from pair to pair
 struct OutputBuffers
 {
-    Mat rejected; // CV_8UC1, 255 where a filter rejected the pixel
+    Mat rejected;  // CV_8UC1, 255 where a filter rejected the pixel
+    Mat notStable; // the same of the left-right check alone, if there are two filters
     std::vector<Mat> enlarged;
     Mat whole, fixedPoint, speckles;
 };
