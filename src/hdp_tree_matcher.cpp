@@ -5,9 +5,13 @@
 
 #include "layer_matching.hpp"
 #include "map/disparity_confidence.hpp"
+#include "map/disparity_reasons.hpp"
+#include "map/disparity_sigma.hpp"
 #include "pair/missing_pixels.hpp"
 #include "plan/pair_inputs.hpp"
 #include "video/temporal_prior.hpp"
+
+#include <limits>
 
 namespace cv { namespace stereo {
 
@@ -16,6 +20,9 @@ using namespace hdp;
 namespace {
 
 const char* const nameInFiles = "StereoMatcher.HDPTree"; // as OpenCV's StereoMatcher.SGBM
+
+// Factor of the errors from a layer to the one below that it is enlarged to: means of pixels have less noise
+const double sigmaPerLayer = 1.6;
 
 //! The setter and the getter of a parameter
 #define HDP_PARAMETER(type, Name, member)                                                                              \
@@ -166,26 +173,49 @@ public:
     {
         if (!result_.isMatched)
             return confidenceArray.release();
-        const PairPlan& pairPlan = result_.plan;
-        confidenceArray.create(pairPlan.size, CV_8U);
-        Mat confidence = confidenceArray.getMat();
-        const LayerPlan& plan = pairPlan.finest();
-        const LayerResult& finest = layers_[plan.layer];
-        const ConfidenceMaps maps = { finest.disparity, finest.winners,
-                                      plan.isTop ? Mat() : layers_[plan.layer + 1].disparity };
-        Mat ofLayer, extended;
-        if (plan.cost.isCensus)
-            disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].census, ofLayer);
-        else
-            disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].colorGradient, ofLayer);
-        const int extension = pairPlan.output.extension;
-        if (plan.layer > 0)
-            resize(ofLayer, extended, pairPlan.size + Size(extension, 0), 0, 0, INTER_LINEAR_EXACT);
-        else
-            extended = ofLayer;
-        extended.colRange(extension, extended.cols).copyTo(confidence);
+        const Mat confidence = toImage(confidenceOfLayer(), INTER_LINEAR_EXACT);
+        give(confidence, confidenceArray);
         if (output_.hasRejected)
-            confidence.setTo(Scalar(0), output_.rejected);
+            confidenceArray.setTo(Scalar(0), output_.rejected);
+    }
+
+    void getDisparitySigma(OutputArray sigmaArray) const CV_OVERRIDE
+    {
+        if (!result_.isMatched)
+            return sigmaArray.release();
+        const LayerPlan& plan = result_.plan.finest();
+        Mat mismatch, ofLayer;
+        if (plan.cost.isCensus)
+            levelMismatch(layers_[plan.layer].disparity, scratch_[plan.layer].census, mismatch);
+        // Errors of whole disparities: within 0.34 if they are the nearest ones, 0.68 if they are rounded down.
+        const float rounding = !plan.hasFractions ? 0.34f : result_.plan.output.isWhole ? 0.68f : 0.f;
+        disparitySigma(confidenceOfLayer(), mismatch, rounding, ofLayer);
+        double scale = 1;
+        for (int layer = 0; layer < plan.layer; ++layer)
+            scale *= sigmaPerLayer;
+        const Mat sigma = toImage(ofLayer * scale, INTER_NEAREST); // the same on all machines
+        give(sigma, sigmaArray);
+        if (output_.hasRejected)
+            sigmaArray.setTo(Scalar(std::numeric_limits<float>::infinity()), output_.rejected);
+    }
+
+    void getReasons(OutputArray reasonsArray) const CV_OVERRIDE
+    {
+        if (!result_.isMatched)
+            return reasonsArray.release();
+        const PairPlan& pairPlan = result_.plan;
+        Mat ofLayer;
+        findReasons(layers_[pairPlan.finest().layer].disparity, pairPlan.output, pairPlan.size.width, ofLayer);
+        const Mat reasons = toImage(ofLayer, INTER_NEAREST);
+        give(reasons, reasonsArray);
+        const OutputPlan& output = pairPlan.output;
+        if (output.hasFilters())
+            reasonsArray.setTo(Scalar(output.speckleWindowSize > 0 ? REASON_SPECKLE : REASON_UNSTABLE),
+                               output_.rejected);
+        if (output.hasBothFilters())
+            reasonsArray.setTo(Scalar(REASON_UNSTABLE), output_.notStable);
+        if (!output_.masked.empty())
+            reasonsArray.setTo(Scalar(REASON_MASKED), output_.masked);
     }
 
     // cv::Algorithm
@@ -295,6 +325,37 @@ private:
                                pyramids_.levels.brightening };
         predictFrame(left, key, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, hasPrior(lastFrame_, prediction_) };
+    }
+
+    Mat confidenceOfLayer() const
+    {
+        const LayerPlan& plan = result_.plan.finest();
+        const LayerResult& finest = layers_[plan.layer];
+        const ConfidenceMaps maps = { finest.disparity, finest.winners,
+                                      plan.isTop ? Mat() : layers_[plan.layer + 1].disparity };
+        Mat confidence;
+        if (plan.cost.isCensus)
+            disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].census, confidence);
+        else
+            disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].colorGradient, confidence);
+        return confidence;
+    }
+
+    //! Throws if the array's type is another one.
+    static void give(const Mat& map, OutputArray array)
+    {
+        array.create(map.size(), map.type());
+        map.copyTo(array);
+    }
+
+    //! From what is known of the finest layer to the image
+    Mat toImage(const Mat& ofLayer, int interpolation) const
+    {
+        const int extension = result_.plan.output.extension;
+        Mat extended = ofLayer;
+        if (result_.plan.finest().layer > 0)
+            resize(ofLayer, extended, result_.plan.size + Size(extension, 0), 0, 0, interpolation);
+        return extended.colRange(extension, extended.cols);
     }
 
     //! Without the columns that are added to the images

@@ -11,6 +11,7 @@
 #include "opencv2/core.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 
+#include "evaluation/calibration.hpp"
 #include "evaluation/command_line.hpp"
 #include "evaluation/progress.hpp"
 #include "evaluation/result_tables.hpp"
@@ -33,6 +34,7 @@ static const char* const KEYS =
     "{report          |     | folder for index.html, with the tables, pictures of all maps, and how they came about }"
     "{csv             |     | FILE.csv for the tables, and one of every pair }"
     "{maps            |     | folder for the maps: METHOD/SET/SCENE.png (16 bit, times 256, 0 = none) }"
+    "{calibration     |     | only prints how many errors are within what getDisparitySigma() says, by sets }"
     "{runs            | 1   | how often a pair is matched; the shortest time counts }"
     "{jobs            | 1   | how many pairs are matched at a time; they share the threads, and get slower }"
     "{threads         |     | number of threads; all processors if not given }";
@@ -80,6 +82,14 @@ static int run(const CommandLineParser& parser)
     setThreads(parser);
     const int threads = getNumThreads();
     const EvaluationSettings settings = readSettings(parser);
+
+    if (parser.has("calibration"))
+    {
+        for (const Method& method : settings.methods)
+            std::cout << toMarkdown(calibrationTable(method, selectScenes(parser), settings.numDisparities))
+                      << std::endl;
+        return 0;
+    }
 
     std::vector<SceneResult> results;
     for (const Scene& scene : selectScenes(parser))
@@ -134,5 +144,5 @@ int main(int argc, char** argv)
         argc, argv, String(KEYS) + TUNABLE_KEYS,
         "Tables of the paper, and a report with pictures, of a dataset of rectified stereo pairs.\n"
         "Exit status: 0 if all is well, 2 if a pair was skipped, 130 if interrupted, 1 on other errors.\n",
-        { "changes=" }, 1, run);
+        { "changes=", "calibration" }, 1, run);
 }

@@ -35,7 +35,8 @@ is a cv::stereo::DisparityPredictionModel.
 
 cv::stereo::StereoRig leads from raw images of two cameras, and calibrations of several programs, to depth.
 
-Tutorials: @ref tutorial_hdpstereo_matching, @ref tutorial_hdpstereo_own_tree, @ref tutorial_hdpstereo_cameras
+Tutorials: @ref tutorial_hdpstereo_matching, @ref tutorial_hdpstereo_own_tree, @ref tutorial_hdpstereo_cameras,
+@ref tutorial_hdpstereo_beforehand
 */
 
 #endif

@@ -53,6 +53,9 @@ void removeSpeckles(Mat& disparity, const OutputPlan& plan, short invalid, Mat& 
 
 void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity, const Mat& mask)
 {
+    buffers.masked.release();
+    if (!mask.empty())
+        compare(mask, Scalar(0), buffers.masked, CMP_EQ);
     buffers.hasRejected = plan.hasFilters() || !mask.empty();
     const Size extendedSize = disparity.size() + Size(plan.extension, 0);
     Mat extended = enlarge(finest, plan.finestLayer, extendedSize, buffers.enlarged);
@@ -74,9 +77,11 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
 
     const short invalid = (short)((plan.minDisparity - 1) * unit);
     if (!mask.empty())
-        fixedPoint.setTo(Scalar(invalid), mask == 0);
+        fixedPoint.setTo(Scalar(invalid), buffers.masked);
     if (plan.disp12MaxDiff > 0)
         rejectOccluded(fixedPoint, plan.disp12MaxDiff, invalid);
+    if (plan.hasBothFilters())
+        compare(fixedPoint, Scalar(invalid), buffers.notStable, CMP_EQ);
     if (plan.speckleWindowSize > 0)
         removeSpeckles(fixedPoint, plan, invalid, buffers.speckles);
     compare(fixedPoint, Scalar(invalid), buffers.rejected, CMP_EQ);

@@ -21,13 +21,16 @@ struct OutputPlan
     int disp12MaxDiff, speckleWindowSize, speckleRange; // as of cv::StereoMatcher; <= 0: no filter
 
     bool hasFilters() const { return disp12MaxDiff > 0 || speckleWindowSize > 0; }
+    bool hasBothFilters() const { return disp12MaxDiff > 0 && speckleWindowSize > 0; }
 };
 
 //! Memory that is kept from pair to pair
 struct OutputBuffers
 {
     bool hasRejected = false;
-    Mat rejected; // CV_8UC1, 255 where a pixel has no data or a filter rejected it; if hasRejected
+    Mat rejected;  // CV_8UC1, 255 where a pixel has no data or a filter rejected it; if hasRejected
+    Mat notStable; // CV_8UC1, 255 where the left-right check rejected it or it has no data, if there are two filters
+    Mat masked;    // CV_8UC1, 255 where it has no data; empty: all have
     std::vector<Mat> enlarged;
     Mat whole, fixedPoint, speckles;
 };

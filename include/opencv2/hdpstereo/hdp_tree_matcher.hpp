@@ -128,6 +128,17 @@ public:
         PRIOR_UPPER_LAYER = 1     //!< the disparities of the layer above
     };
 
+    //! Why a pixel has its disparity, see getReasons()
+    enum Reason
+    {
+        REASON_MATCHED = 0,  //!< the right image shows it
+        REASON_OCCLUDED = 1, //!< something nearer hides it in the right image; it has the disparity of what is beside
+        REASON_OUTSIDE = 2,  //!< the right image ends before; likewise
+        REASON_MASKED = 3,   //!< it is masked
+        REASON_UNSTABLE = 4, //!< rejected by the left-right check, see setDisp12MaxDiff()
+        REASON_SPECKLE = 5   //!< rejected by the filter for speckles, see setSpeckleWindowSize()
+    };
+
     //! Value of Params::delta0, Params::beta and Params::disparityMedianSize: the matcher chooses
     enum
     {
@@ -517,6 +528,25 @@ public:
     pixel has no data or a filter rejected it. Empty before the first compute() and after one that threw an exception.
      */
     CV_WRAP virtual void getConfidence(OutputArray confidence) const = 0;
+
+    /** @brief Returns the standard deviation of each disparity's error in the last compute().
+
+    About 68 % of the errors of pixels with a value are not larger; it is calibrated on pairs of known truth. It comes
+    from getConfidence() and from how much matched levels differ for the texture there is. Disparities that are wrong by
+    much are where it is above 1; how much they are wrong it does not tell. It is computed by this call.
+    @param sigma Receives CV_32FC1 of the left image's size, in pixels; infinite where a filter rejected the pixel.
+    Empty before the first compute() and after one that threw an exception.
+     */
+    CV_WRAP virtual void getDisparitySigma(OutputArray sigma) const = 0;
+
+    /** @brief Returns why each pixel has its disparity in the last compute().
+
+    Pixels that are not REASON_MATCHED are those that the left-right check finds in the map, within a pixel of the layer
+    at which matching ends, whether a filter rejects them or not. It is computed by this call.
+    @param reasons Receives CV_8UC1 of the left image's size: values of HDPTreeMatcher::Reason. Empty before the first
+    compute() and after one that threw an exception.
+     */
+    CV_WRAP virtual void getReasons(OutputArray reasons) const = 0;
 
     /** @brief Sets what is known of the next pairs: nothing is estimated from them then.
 

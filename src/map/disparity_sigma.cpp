@@ -1,0 +1,124 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "disparity_sigma.hpp"
+
+#include "../base/disparity_units.hpp"
+
+#include <cmath>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+const int window = DisparitySigma::window, unit = subpixelScale;
+
+// Errors in pixels by which 50 to 80 % are not larger, of PRESET_FAST on pairs of Middlebury, ETH3D and KITTI, each set
+// as much as the others; made to fall with the confidence and to rise with the mismatch.
+const int confidences = 9, mismatches = 7;
+const float confidenceOf[confidences] = { 2, 10, 20, 30, 44, 64, 88, 116, 150 };
+const float mismatchOf[mismatches] = { 0.15f, 0.3f, 0.45f, 0.65f, 0.9f, 1.4f, 2.5f };
+const float unknownMismatch = 0.65f; // that of most pixels
+const float sigmas[confidences][mismatches] = {
+    { 1.70f, 2.09f, 2.51f, 2.51f, 2.93f, 3.45f, 5.73f },
+    { 1.70f, 2.09f, 2.36f, 2.36f, 2.58f, 3.04f, 4.51f },
+    { 1.37f, 1.37f, 1.37f, 1.37f, 1.37f, 1.45f, 1.74f },
+    { 0.67f, 0.67f, 0.67f, 0.75f, 0.77f, 0.77f, 0.93f },
+    { 0.43f, 0.43f, 0.43f, 0.48f, 0.515f, 0.565f, 0.68f },
+    { 0.335f, 0.335f, 0.35f, 0.39f, 0.427f, 0.448f, 0.485f },
+    { 0.284f, 0.285f, 0.303f, 0.322f, 0.35f, 0.373f, 0.373f },
+    { 0.225f, 0.25f, 0.255f, 0.294f, 0.321f, 0.336f, 0.336f },
+    { 0.198f, 0.2f, 0.207f, 0.243f, 0.243f, 0.243f, 0.31f },
+};
+
+//! Where a value is between ascending ones: the first of two, and the share of the second
+struct Place
+{
+    int first;
+    float share;
+};
+
+Place placeOf(float value, const float* ascending, int count)
+{
+    int first = 0;
+    while (first < count - 2 && value >= ascending[first + 1])
+        ++first;
+    const float share = (value - ascending[first]) / (ascending[first + 1] - ascending[first]);
+    return { first, std::min(std::max(share, 0.f), 1.f) };
+}
+
+//! The difference of a row's levels from those matched, times unit, its square, and that of the difference of the levels
+//! beside
+void compareRow(const CensusCost& cost, const ushort* disparity, int y, int width, int* difference, int* square,
+                int* gradient)
+{
+    const uchar* const left = cost.leftPixels(y) + CensusCost::greyByte;
+    const uchar* const right = cost.rightPlane(cost.planes(), y) + width - 1;
+    for (int x = 0; x < width; ++x)
+    {
+        const int whole = disparity[x] / unit, fraction = disparity[x] % unit;
+        const uchar* const matched = right - x + whole;
+        difference[x] = unit * left[4 * x] - (unit - fraction) * matched[0] - fraction * matched[1];
+        square[x] = difference[x] * difference[x];
+        const int beside = left[4 * std::min(x + 1, width - 1)] - left[4 * std::max(x - 1, 0)];
+        gradient[x] = beside * beside;
+    }
+}
+
+void sumOverWindows(Mat& values)
+{
+    boxFilter(values.clone(), values, CV_32S, Size(window, window), Point(-1, -1), false, BORDER_REPLICATE);
+}
+
+} // namespace
+
+void levelMismatch(const Mat& disparity, const CensusCost& cost, Mat& mismatch)
+{
+    const Size size = disparity.size();
+    Mat differences(size, CV_32S), squares(size, CV_32S), gradients(size, CV_32S);
+    parallel_for_(Range(0, size.height), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            compareRow(cost, disparity.ptr<ushort>(y), y, size.width, differences.ptr<int>(y), squares.ptr<int>(y),
+                       gradients.ptr<int>(y));
+    });
+    for (Mat* values : { &differences, &squares, &gradients })
+        sumOverWindows(*values);
+    mismatch.create(size, CV_32F);
+    parallel_for_(Range(0, size.height), [&](const Range& rows) {
+        const int count = window * window;
+        for (int y = rows.start; y < rows.end; ++y)
+            for (int x = 0; x < size.width; ++x)
+            {
+                const int64 sum = differences.at<int>(y, x), squared = squares.at<int>(y, x);
+                const double deviation = std::sqrt((double)(count * squared - sum * sum)) / (unit * count);
+                const double gradient = 0.5 * std::sqrt((double)gradients.at<int>(y, x) / count);
+                mismatch.at<float>(y, x) = (float)(deviation / (gradient + 0.5));
+            }
+    });
+}
+
+void disparitySigma(const Mat& confidence, const Mat& mismatch, float rounding, Mat& sigma)
+{
+    Place places[256];
+    for (int i = 0; i < 256; ++i)
+        places[i] = placeOf((float)i, confidenceOf, confidences);
+    sigma.create(confidence.size(), CV_32F);
+    parallel_for_(Range(0, sigma.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            for (int x = 0; x < sigma.cols; ++x)
+            {
+                const Place& row = places[confidence.at<uchar>(y, x)];
+                const Place column =
+                    placeOf(mismatch.empty() ? unknownMismatch : mismatch.at<float>(y, x), mismatchOf, mismatches);
+                const float* const upper = sigmas[row.first] + column.first;
+                const float* const lower = sigmas[row.first + 1] + column.first;
+                const float above = upper[0] + column.share * (upper[1] - upper[0]),
+                            below = lower[0] + column.share * (lower[1] - lower[0]);
+                const float value = above + row.share * (below - above);
+                sigma.at<float>(y, x) = rounding > 0 ? std::sqrt(value * value + rounding * rounding) : value;
+            }
+    });
+}
+
+}}} // namespace cv::stereo::hdp
