@@ -84,14 +84,12 @@ std::vector<int> surfacesAround(const Prediction& prediction, int y, int x)
 int otherSurface(const Prediction& prediction, const Layer& layer, const oracle::CensusCost& census, int y, int x)
 {
     const int own = 2 * prediction.upper.at<ushort>(y, x), usual = oracle::usualSurface(prediction, y, x);
-    if (std::min(layer.left.rows, layer.left.cols) < 4)
+    if (std::min(layer.left.rows, layer.left.cols) < 4 || usual == own)
         return usual;
-    std::vector<int> all = surfacesAround(prediction, y, x), others;
-    if (prediction.matchAt(y, x) != Prediction::noMatch)
-        all.insert(all.begin(), prediction.matchAt(y, x));
-    for (int surface : all)
-        if (std::abs(surface - own) >= apart && (usual == own || std::abs(surface - usual) >= apart))
-            addSurface(others, surface);
+    std::vector<int> others;
+    for (int surface : surfacesAround(prediction, y, x))
+        if (std::abs(surface - own) >= apart && std::abs(surface - usual) >= apart)
+            others.push_back(surface);
     int result = usual, lowest = others.empty() ? 0 : costOf(layer, census, y, x, usual) - 16;
     for (int surface : others)
     {

@@ -100,7 +100,7 @@ private:
     const uchar *left_, *right_;
 };
 
-//! The other surface of a pixel; usual: its own if there is none; others: those that may be in its place
+//! The other surface of a pixel; others: those that may be in place of the usual one
 int chooseSurface(const WindowCosts& costs, int usual, const SurfaceList& others)
 {
     int chosen = usual, pair[2];
@@ -155,16 +155,23 @@ public:
             dilate(maps_[map].rowRange(rows), maxima, kernel);
         }
         std::vector<ushort> matches(width_);
-        std::vector<SurfaceList> lists(buffers_.blockMin[0].cols);
+        std::vector<int> blocks; // with several surfaces around
+        std::vector<SurfaceList> lists;
         for (int y = rows.start; y < rows.end; ++y)
         {
-            if (y == rows.start || y % side == 0)
-                for (int i = 0; i < (int)lists.size(); ++i)
-                    lists[i] = listSurfaces(buffers_, y / side, i);
             spreadMatches(prediction_.matches, y, matches);
             dispatched::findUsualSurfaces(rowOf(0, y), rowOf(1, y), matches.data(), width_, others_.ptr<ushort>(y));
-            for (int i = 0; hasWindows_ && i < (int)lists.size(); ++i)
-                chooseInBlock(y, i * side, matches.data(), lists[i]);
+            if (!hasWindows_)
+                continue;
+            if (y == rows.start || y % side == 0)
+            {
+                findSteps(y / side, blocks);
+                lists.clear();
+                for (int block : blocks)
+                    lists.push_back(listSurfaces(buffers_, y / side, block));
+            }
+            for (size_t i = 0; i < blocks.size(); ++i)
+                chooseInBlock(y, blocks[i] * side, lists[i]);
         }
     }
 
@@ -174,23 +181,47 @@ private:
         return { maps_[map].ptr<ushort>(y), buffers_.min[map].ptr<ushort>(y), buffers_.max[map].ptr<ushort>(y) };
     }
 
+    //! The blocks of a row around which disparities differ by those of two surfaces
+    void findSteps(int row, std::vector<int>& blocks) const
+    {
+        const Range around(std::max(row - 1, 0), std::min(row + 2, buffers_.blockMin[0].rows));
+        const int count = buffers_.blockMin[0].cols;
+        std::vector<ushort> lowest(count + 2, USHRT_MAX), highest(count + 2, 0); // with a block more at both ends
+        for (int map = 0; map < 2; ++map)
+            for (int y = around.start; y < around.end; ++y)
+            {
+                const ushort* min = buffers_.blockMin[map].ptr<ushort>(y);
+                const ushort* max = buffers_.blockMax[map].ptr<ushort>(y);
+                for (int i = 0; i < count; ++i)
+                {
+                    lowest[i + 1] = std::min(lowest[i + 1], min[i]);
+                    highest[i + 1] = std::max(highest[i + 1], max[i]);
+                }
+            }
+        blocks.clear();
+        for (int i = 0; i < count; ++i)
+        {
+            const int low = std::min(std::min(lowest[i], lowest[i + 1]), lowest[i + 2]);
+            const int high = std::max(std::max(highest[i], highest[i + 1]), highest[i + 2]);
+            if (areApart(2 * low, 2 * high))
+                blocks.push_back(i);
+        }
+    }
+
     //! A row of a block from column x on
-    void chooseInBlock(int y, int x, const ushort* matches, const SurfaceList& listed)
+    void chooseInBlock(int y, int x, const SurfaceList& listed)
     {
         const ushort* own = prediction_.upper.ptr<ushort>(y);
         ushort* others = others_.ptr<ushort>(y);
         for (const int end = std::min(x + side, width_); x < end; ++x)
         {
             const int here = 2 * own[x], usual = others[x];
+            if (usual == here)
+                continue;
             SurfaceList list;
-            const auto addOther = [&](int surface) {
-                if (areApart(surface, here) && (usual == here || areApart(surface, usual)))
-                    list.add(surface);
-            };
-            if (matches[x] != SparseMatches::noMatch)
-                addOther(matches[x]);
-            for (int i = 0; listed.count > 1 && i < listed.count; ++i)
-                addOther(listed.surfaces[i]);
+            for (int i = 0; i < listed.count; ++i)
+                if (areApart(listed.surfaces[i], here) && areApart(listed.surfaces[i], usual))
+                    list.surfaces[list.count++] = listed.surfaces[i];
             if (list.count > 0)
                 others[x] = (ushort)chooseSurface(WindowCosts(cost_, numDisparities_, y, x), usual, list);
         }

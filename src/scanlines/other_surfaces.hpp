@@ -47,15 +47,14 @@ OtherSurface::distance away from it. The usual one is the first one there is of
 - the farthest one of the disparities in 7 x 7 pixels,
 - the farthest one of those before the median.
 
-Others are the match and the surfaces listed around the pixel's block of 4 x 4 pixels: of this block, then of its
+If there is one, others are the surfaces listed around the pixel's block of 4 x 4 pixels: of this block, then of its
 neighbours in the order of an image, the minimum and maximum disparity, then those before the median, as far as each is
 a surface apart from those before in the list, up to OtherSurface::listed of them.
 
 Another one takes the place of the usual one if it is apart from this, too, and if the layer's census is clearly for it:
 if its cost is less by more than a bit per pixel. The cost of a surface is the lowest one of the eight candidates around
 it, summed over the 4 x 4 pixels of the layer in the middle of which the pixel is, or the nearest ones in the image, at
-most 255. Where there is no usual surface, it has to be better than the pixel's own. The first one of the lowest cost
-wins. Layers smaller than the window have the usual ones.
+most 255. The first one of the lowest cost wins. Layers smaller than the window have the usual ones.
 @param prediction What to find them in.
 @param cost The layer's census cost.
 @param numDisparities Of the layer.
