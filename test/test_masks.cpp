@@ -374,4 +374,22 @@ TEST(HDPStereo_Masks, costs_of_pixels_without_data)
             }
 }
 
+TEST(HDPStereo_Masks, reason_and_sigma)
+{
+    const MaskedPair pair(CV_8UC1);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 40);
+    matcher->setMasks(pair.leftMask, pair.rightMask);
+    for (bool isFiltered : { false, true })
+    {
+        matcher->setDisp12MaxDiff(isFiltered ? 1 : 0);
+        matcher->setSpeckleWindowSize(isFiltered ? 50 : 0);
+        match(*matcher, pair.left, pair.right);
+        Mat reasons, sigma;
+        matcher->getReasons(reasons);
+        matcher->getDisparitySigma(sigma);
+        expectIdentical(pair.leftMask == 0, reasons == HDPTreeMatcher::REASON_MASKED);
+        EXPECT_EQ(0, countNonZero((pair.leftMask == 0) & (sigma < 1e30)));
+    }
+}
+
 }} // namespace opencv_test
