@@ -182,7 +182,7 @@ public:
 
         The result depends on the pairs before. A video begins with the first pair, after clear(), read() or a pair
         without temporal prediction, with another size, minDisparity, numDisparities or finestLayer, and where the left
-        image shows another scene. A matcher is for one video; it keeps about 11 bytes per pixel more. Needs
+        image shows another scene. A matcher is for one video; it keeps about 12 bytes per pixel more. Needs
         HDPTreeMatcher::COST_CENSUS. All: false. */
         CV_PROP_RW bool useTemporalPrediction;
 
