@@ -8,12 +8,14 @@ Matches many rectified pairs on many machines, by a Dask cluster.
 
 usage:
     hdp_dask.py LEFTS RIGHTS OUT [--scheduler=tcp://HOST:8786] [--workers=2] [--preset=fast]
-                [--min-disparity=0] [--num-disparities=128] [--format=png]
+                [--min-disparity=0] [--num-disparities=128] [--format=png] [--tile=1152]
 
 LEFTS and RIGHTS are folders with files of the same names, of 8 or 16 bit. OUT gets the maps: PNG of 16 bit, disparity *
 256, 0 = none, for disparities from 0 to 255; or TIFF of floats, NaN = none, for any. All machines have to see the three
 under the same names. Maps that are there are kept: run again, it does what is left. OUT/options.json says what made
-them; with other options it stops. Without a scheduler, it makes a cluster of this machine. On Debian: apt install
+them; with other options it stops. LEFTS and RIGHTS may also be the two files of one large pair: it is cut into tiles,
+which are matched with one model of the pair, OUT/model.yml, so that there are no seams; OUT/map.tif is put together when
+all tiles are there. Without a scheduler, it makes a cluster of this machine. On Debian: apt install
 python3-distributed python3-opencv
 '''
 
@@ -53,6 +55,99 @@ def match(left, right, output, options):
     os.replace(part, output)
 
 
+def read(path):
+    '''An image, grey if it is of 16 bit; a worker keeps those it has read.'''
+    import cv2
+    import numpy as np
+    from distributed import get_worker
+
+    try:
+        kept = get_worker().__dict__.setdefault('images_of_hdp_dask', {})
+    except ValueError:  # this is no worker
+        kept = {}
+    if path not in kept:
+        image = cv2.imread(str(path), cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH)
+        if image is None:
+            raise ValueError("cannot read the image '%s'" % path)
+        kept[path] = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY) if image.dtype == np.uint16 else image
+    return kept[path]
+
+
+def find_model(left, right, options):
+    '''What all tiles are matched with: that of the pair, halved until it has some megapixels.'''
+    import cv2
+    import hdpstereo
+
+    (height, width), times = left.shape[:2], 0
+    while (height >> times) * (width >> times) > 3e6:
+        times += 1
+    size = (width >> times, height >> times)
+    small = [cv2.resize(image[:size[1] << times, :size[0] << times], size, interpolation=cv2.INTER_AREA)
+             for image in (left, right)]
+    matcher = hdpstereo.HDPTreeMatcher.create(options['min_disparity'] >> times,
+                                              (options['num_disparities'] >> times) + 1, options['preset'])
+    matcher.compute(*small)
+    return matcher.getPairModel().enlarged(times, width, height)
+
+
+def match_tile(left, right, tile, inside, model, output, options):
+    '''A tile of a pair, with its margins; inside: what is kept of it. Both are (x, y, width, height).'''
+    import cv2
+    import hdpstereo
+
+    x, y, width, height = tile
+    matcher = hdpstereo.HDPTreeMatcher.create(options['min_disparity'], options['num_disparities'], options['preset'])
+    matcher.setPairModel(hdpstereo.PairModel.load(model).tile(x, y, width, height))
+    disparity = matcher.compute(*[read(path)[y:y + height, x:x + width] for path in (left, right)], as_float=True)
+    first, top = inside[0] - x, inside[1] - y
+    part = '%s.%s.%d.part' % (output, socket.gethostname(), os.getpid())
+    with open(part, 'wb') as f:
+        f.write(cv2.imencode('.tif', disparity[top:top + inside[3], first:first + inside[2]])[1])
+    os.replace(part, output)
+
+
+def cut(width, height, options):
+    '''Tiles with their margins, and what is kept of each.'''
+    grid, margin = 384, 128  # of all that the matcher looks at in a grid; what scanlines need
+    largest = max(options['min_disparity'] + options['num_disparities'] - 1, 0)
+    before, after = -(-(largest + margin) // grid) * grid, max(-options['min_disparity'], 0) + margin
+    for y in range(0, height, options['tile']):
+        for x in range(0, width, options['tile']):
+            right, bottom = min(x + options['tile'], width), min(y + options['tile'], height)
+            x0, y0 = max(x - before, 0), max(y - grid, 0)
+            yield ((x0, y0, min(right + after, width) - x0, min(bottom + margin, height) - y0),
+                   (x, y, right - x, bottom - y))
+
+
+def match_tiles(args, options, cluster):
+    '''One pair. Returns the exit status.'''
+    import cv2
+    import numpy as np
+
+    paths = [path.resolve() for path in (args.lefts, args.rights)]
+    out, model = args.out.resolve(), args.out.resolve() / 'model.yml'
+    left, right = (read(path) for path in paths)
+    height, width = left.shape[:2]
+    if not model.exists():
+        part = out / 'part.model.yml'
+        find_model(left, right, options).save(part)
+        os.replace(part, model)
+    tiles = {out / ('%d_%d.tif' % inside[:2]): (tile, inside) for tile, inside in cut(width, height, options)}
+    missing = [path for path in tiles if not path.exists()]
+    print('%d tiles, %d of them are there' % (len(tiles), len(tiles) - len(missing)))
+    with Client(**cluster) as client:
+        futures = [client.submit(match_tile, *paths, *tiles[path], model, path, options, pure=False)
+                   for path in missing]
+        for done, future in enumerate(as_completed(futures), 1):
+            future.result()
+            print('%d/%d' % (done, len(missing)))
+    whole = np.empty((height, width), np.float32)
+    for path, (_, (x, y, columns, rows)) in tiles.items():
+        whole[y:y + rows, x:x + columns] = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    cv2.imwrite(str(out / 'map.tif'), whole)
+    return 0
+
+
 def keep_options(path, options):
     '''What the maps were made with, so that those of other options are not taken for these.'''
     if not path.exists():
@@ -64,8 +159,8 @@ def keep_options(path, options):
 
 def main():
     parser = argparse.ArgumentParser(description='Disparities of many rectified pairs, by a Dask cluster.')
-    parser.add_argument('lefts', type=pathlib.Path, help='folder of left images')
-    parser.add_argument('rights', type=pathlib.Path, help='folder of right images, of the same names')
+    parser.add_argument('lefts', type=pathlib.Path, help='folder of left images, or one left image')
+    parser.add_argument('rights', type=pathlib.Path, help='folder of right images, of the same names, or one')
     parser.add_argument('out', type=pathlib.Path, help='folder for the maps')
     parser.add_argument('--scheduler', help='its address; without one, a cluster of this machine')
     parser.add_argument('--workers', type=int, default=2, help='of the cluster of this machine (default: 2)')
@@ -73,7 +168,18 @@ def main():
     parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity (default: 0)')
     parser.add_argument('--num-disparities', type=int, default=128, help='number of disparities (default: 128)')
     parser.add_argument('--format', default='png', choices=['png', 'tif'], help='of the maps (default: png)')
+    parser.add_argument('--tile', type=int, default=1152, help='side of the tiles of one pair, a multiple of 384')
     args = parser.parse_args()
+    cluster = {'address': args.scheduler} if args.scheduler else {
+        'n_workers': args.workers, 'threads_per_worker': 1, 'dashboard_address': None}
+    if args.lefts.is_file() and args.rights.is_file():
+        if args.tile <= 0 or args.tile % 384 != 0:
+            sys.exit('error: --tile must be a multiple of 384')
+        args.out.mkdir(parents=True, exist_ok=True)
+        options = {name: getattr(args, name) for name in ('preset', 'min_disparity', 'num_disparities', 'tile')}
+        options.update(left=str(args.lefts.resolve()), right=str(args.rights.resolve()))
+        keep_options(args.out / 'options.json', options)
+        return match_tiles(args, options, cluster)
     for folder in args.lefts, args.rights:
         if not folder.is_dir():
             sys.exit("error: there is no folder '%s'" % folder)
@@ -89,8 +195,6 @@ def main():
     missing = [left for left in lefts if not outputs[left].exists()]
     print('%d pairs, %d of them are there' % (len(lefts), len(lefts) - len(missing)))
 
-    cluster = {'address': args.scheduler} if args.scheduler else {
-        'n_workers': args.workers, 'threads_per_worker': 1, 'dashboard_address': None}
     bad = 0
     with Client(**cluster) as client:
         # If a worker dies, Dask gives its pairs to the others.

@@ -108,7 +108,11 @@ public:
         checkPairModel(model);
         pairModel_ = model;
     }
-    PairModel getPairModel() const CV_OVERRIDE { return result_.isMatched ? result_.model : PairModel(); }
+    PairModel getPairModel() const CV_OVERRIDE
+    {
+        const bool hasScale = result_.model.depth == CV_32F; // which is that of its levels, and no other's
+        return result_.isMatched && !hasScale ? result_.model : PairModel();
+    }
     void setMasks(InputArray leftMask, InputArray rightMask) CV_OVERRIDE
     {
         hdp::setMasks(leftMask, rightMask, inputs_);

@@ -391,6 +391,11 @@ TEST(HDPStereo_PairModel, other_images)
     expectRejected([&] { compute(model.tile(small), pair.left(small), pair.right(small)); }, "left must have");
     expectIdentical(expected, disparity);
     EXPECT_TRUE(matcher->getPairModel().empty()) << "after an exception";
+    for (Mat& image : deep)
+        image.convertTo(image, CV_32F);
+    expectRejected([&] { compute(model, deep[0], deep[1]); }, "left must have 8 bits");
+    compute(PairModel(), deep[0], deep[1]);
+    EXPECT_TRUE(matcher->getPairModel().empty()) << "levels of floats are scaled by their own range";
     matcher->setPairModel(PairModel());
     expectIdentical(expected, match(*matcher, pair.left, pair.right));
 }

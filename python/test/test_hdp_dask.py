@@ -82,6 +82,32 @@ def main():
         disparity = cv2.imread(str(folder / 'deep' / 'out' / 'a.tif'), cv2.IMREAD_UNCHANGED)
         assert disparity.dtype == np.float32 and abs(np.nanmedian(disparity) + 20) < 0.5, disparity
 
+        # Tiles of one pair, while a worker is killed; what is there is kept
+        scene = cv2.GaussianBlur(rng.randint(0, 256, (1200, 1240, 3)).astype(np.uint8), (3, 3), 0)
+        cv2.imwrite(str(folder / 'left.png'), scene[:, :1200])
+        cv2.imwrite(str(folder / 'right.png'), scene[:, 20:1220])
+        command[2:5] = ['left.png', 'right.png', 'tiles']
+        command.append('--tile=384')
+        pid = next(iter(cluster.workers.values())).pid
+        run = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, text=True)
+        while len(list(folder.glob('tiles/*_*.tif'))) < 2:
+            assert run.poll() is None and time.time() < deadline + 600, run.communicate()[0]
+            time.sleep(0.001)
+        os.kill(pid, signal.SIGKILL)
+        print(run.communicate(timeout=600)[0])
+        assert run.returncode == 0
+        tiles = sorted(folder.glob('tiles/*_*.tif'))
+        assert len(tiles) == 16, tiles
+        whole = cv2.imread(str(folder / 'tiles' / 'map.tif'), cv2.IMREAD_UNCHANGED)
+        matcher = hdpstereo.HDPTreeMatcher.create(0, 64)
+        matcher.setPairModel(hdpstereo.PairModel.load(folder / 'tiles' / 'model.yml'))
+        expected = matcher.compute(scene[:, :1200], scene[:, 20:1220], as_float=True)
+        assert np.mean(whole != expected) < 0.001, np.mean(whole != expected)
+        tiles[3].unlink()
+        again = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True, check=True).stdout
+        assert again.startswith('16 tiles, 15 of them are there\n1/1\n'), again
+        np.testing.assert_array_equal(whole, cv2.imread(str(folder / 'tiles' / 'map.tif'), cv2.IMREAD_UNCHANGED))
+
 
 if __name__ == '__main__':
     main()

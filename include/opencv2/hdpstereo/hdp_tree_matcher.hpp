@@ -558,8 +558,8 @@ public:
      */
     CV_WRAP virtual void setPairModel(const PairModel& model) = 0;
 
-    //! Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute() and
-    //! after one that threw an exception.
+    //! Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute(), after
+    //! one that threw an exception, and for images of CV_32FC1, whose levels are scaled by their own range.
     CV_WRAP virtual PairModel getPairModel() const = 0;
 
     //! Returns what the last compute() found out about the pair.

@@ -63,7 +63,7 @@ struct CV_EXPORTS_W_SIMPLE PairModel
 
     CV_PROP_RW int width;          //!< of the images, in pixels, > 0; 0: the model is empty. Up to 2^24
     CV_PROP_RW int height;         //!< of the images, in pixels, likewise
-    CV_PROP_RW int depth;          //!< of the images: CV_8U or CV_16U
+    CV_PROP_RW int depth;          //!< of the images: CV_8U or CV_16U; CV_32F has no model
     CV_PROP_RW int x;              //!< first column of the tile that is matched, >= 0; 0 without tiles
     CV_PROP_RW int y;              //!< first row of the tile, >= 0
     CV_PROP_RW int tileWidth;      //!< of the tile, in pixels, > 0; width without tiles
