@@ -18,17 +18,18 @@ inline std::string textOf(const hdp::LayerPlan& p)
          << " max " << p.maxDisparity << " fractions " << p.hasFractions << " method " << (int)p.method << "\n  cost "
          << p.cost.isCensus << " " << p.cost.windowSide << " tolerance " << p.cost.tolerance << " truncation "
          << p.cost.colorTruncation << " " << p.cost.gradientTruncation << " weight " << p.cost.colorWeight
-         << " sees below " << p.seesBelow << " smooths guide " << p.smoothsGuide << "\n  trees: prior " << (int)p.trees.prior << " upper "
-         << p.trees.upperDisparities << " delta " << p.trees.delta << " margin " << p.trees.margin << " beta "
-         << p.trees.beta << " links " << p.trees.linksTrees << " gamma " << p.trees.gamma << " planes "
-         << p.trees.prefersPlanes << " refinement " << p.trees.refinementGamma << "\n  volume "
+         << " sees below " << p.seesBelow << " smooths guide " << p.smoothsGuide << "\n  trees: prior "
+         << (int)p.trees.prior << " upper " << p.trees.upperDisparities << " delta " << p.trees.delta << " margin "
+         << p.trees.margin << " beta " << p.trees.beta << " links " << p.trees.linksTrees << " gamma " << p.trees.gamma
+         << " planes " << p.trees.prefersPlanes << " refinement " << p.trees.refinementGamma << "\n  volume "
          << p.volumePenalties.small << " " << p.volumePenalties.large << " " << p.volumePenalties.gamma << "\n  passes";
     for (const hdp::ScanlinePass& pass : p.passes)
         text << " [" << pass.penalties.small << " " << pass.penalties.large << " slope " << pass.penalties.edgeSlope
              << " prior " << pass.penalties.prior << " from below " << pass.hasFromBelow << "]";
-    text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
-         << p.fillsOcclusions << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " x "
-         << p.medianPasses << " thin structures " << p.restoresThinStructures << "\n";
+    text << "\n  compares surfaces " << p.comparesSurfaces << " checks last frame " << p.checksLastFrame
+         << " prefers it " << p.prefersLastFrame << " fills " << p.fillsOcclusions << " joins last frame "
+         << p.joinsLastFrame << " median " << p.medianSize << " x " << p.medianPasses << " thin structures "
+         << p.restoresThinStructures << "\n";
     return text.str();
 }
 

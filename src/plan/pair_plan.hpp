@@ -88,6 +88,7 @@ struct LayerPlan
     bool hasIntervals = false;     // whether pixels have candidates of their own
     bool joinsPrior = false;       // whether winners are joined with what is known beforehand
     bool checksLastFrame = false;  // whether the pair's own costs may refuse the last frame
+    bool comparesSurfaces = false; // whether the census decides between other surfaces around a pixel
     bool prefersLastFrame = false; // whether what the last frame predicts has lower costs
     bool fillsOcclusions = false;
     bool joinsLastFrame = false;
@@ -119,8 +120,8 @@ struct PairPlan
 @param model What is known of the images beforehand; valid by itself.
 @param inputs What is known of the pair beforehand, as checkInputs() accepts it.
 @throws cv::Exception if the parameters do not go with one another or with the images. */
-CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int type,
-                         const PairModel& model = PairModel(), const PairInputs& inputs = PairInputs());
+CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int type, const PairModel& model = PairModel(),
+                         const PairInputs& inputs = PairInputs());
 
 /** What is done now that the pair has been seen.
 @param plan From plan().
