@@ -122,9 +122,11 @@ py::array toImage(const py::object& image, const char* name)
     return py::reinterpret_borrow<py::array>(image);
 }
 
-//! An array that may be left out: None
+//! An array that may be left out: None; or a number
 cv::Mat toInput(const py::object& array, const char* name, std::vector<py::array>& kept)
 {
+    if (py::isinstance<py::float_>(array) || py::isinstance<py::int_>(array))
+        return cv::Mat(1, 1, CV_64F, cv::Scalar(array.cast<double>()));
     return array.is_none() ? cv::Mat() : toMat(toImage(array, name), name, kept);
 }
 

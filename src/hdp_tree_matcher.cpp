@@ -7,6 +7,8 @@
 #include "map/disparity_confidence.hpp"
 #include "map/disparity_reasons.hpp"
 #include "map/disparity_sigma.hpp"
+#include "pair/disparity_ranges.hpp"
+#include "pair/image_pyramid.hpp"
 #include "pair/missing_pixels.hpp"
 #include "plan/pair_inputs.hpp"
 #include "video/temporal_prior.hpp"
@@ -47,15 +49,19 @@ public:
         checkPair(left, right);
         checkInputs(inputs_, left.size());
         const int depth = outputDepth(disparityArray);
-        const PairPlan pairPlan = plan(p_, left.size(), left.type(), pairModel_);
+        const int type = left.depth() == CV_32F ? CV_16UC1 : left.type(); // that is matched, see completePair()
+        const PairPlan pairPlan = plan(p_, left.size(), type, pairModel_, inputs_);
         clock_.restart();
 
+        known_ = KnownDisparities();
         const bool mayMiss = inputs_.hasMasks() || left.depth() == CV_32F;
         const auto complete = [&] { completePair(left, right, inputs_.leftMask, inputs_.rightMask, pair_); };
         if (mayMiss)
             clock_.run("missing pixels", complete);
         else
             complete(); // nothing is to be done
+        if (inputs_.hasRanges() || inputs_.hasPrior())
+            clock_.run("known disparities", [&] { takeKnown(pairPlan); });
         if (matchPair(pair_, pairPlan) == CONTRADICTED)
         {
             lastFrame_.clear();
@@ -65,12 +71,14 @@ public:
         disparityArray.create(left.size(), depth);
         Mat disparity = disparityArray.getMat();
         const Mat& finest = layers_[pairPlan.finest().layer].disparity;
-        clock_.run("output", [&] { outputDisparity(finest, pairPlan.output, output_, disparity, pair_.masks.left); });
+        clock_.run("output", [&] {
+            outputDisparity(finest, pairPlan.output, output_, disparity, pair_.masks.left, known_.ranges);
+        });
         pair_.forgetImages();
         result_.isMatched = true;
         result_.model = pairPlan.given.isGiven
                             ? pairModel_
-                            : toPairModel(pairPlan.pyramids, left.size(), left.depth(),
+                            : toPairModel(pairPlan.pyramids, left.size(), CV_MAT_DEPTH(type),
                                           pairPlan.alignment.numDisparities, pyramids_.levels, result_.findings);
     }
 
@@ -117,6 +125,12 @@ public:
     {
         hdp::setMasks(leftMask, rightMask, inputs_);
     }
+
+    void setDisparityRange(InputArray smallest, InputArray largest) CV_OVERRIDE
+    {
+        setRange(smallest, largest, inputs_);
+    }
+    void setPriorDisparity(InputArray disparity, InputArray sigma) CV_OVERRIDE { setPrior(disparity, sigma, inputs_); }
 
     Findings getFindings() const CV_OVERRIDE
     {
@@ -269,6 +283,30 @@ private:
         return result_.isMatched && layer >= result_.plan.finest().layer && layer <= result_.plan.top().layer;
     }
 
+    //! What is known of disparities beforehand, in terms of the layers
+    struct KnownDisparities
+    {
+        PixelRanges ranges;
+        std::vector<Mat> intervals;                  // of the layers, if there are ranges
+        std::vector<std::vector<PriorPoint>> points; // of the layers
+    };
+
+    void takeKnown(const PairPlan& plan)
+    {
+        const OutputPlan& output = plan.output;
+        const Range disparities(p_.minDisparity, p_.minDisparity + p_.numDisparities - 1);
+        std::vector<int> counts;
+        for (int layer = 0; layer <= plan.top().layer; ++layer)
+            counts.push_back(layerDisparities(p_.numDisparities, layer, plan.top().hasFractions));
+        expandRanges(inputs_.smallest, inputs_.largest, plan.size, disparities, output.isWhole, known_.ranges);
+        buildIntervals(known_.ranges, output.minDisparity, output.extension, counts, known_.intervals);
+        known_.points.resize(counts.size());
+        for (const LayerPlan& layer : plan.layers)
+            if (layer.joinsPrior)
+                pointsOfLayer(inputs_.prior, inputs_.sigma, output.minDisparity, output.extension, layer.layer,
+                              layer.numDisparities, known_.points[layer.layer]);
+    }
+
     //! From the images to the disparities of the finest layer. CONTRADICTED: the pair was matched as the next frame of
     //! a video, and is none.
     Verdict matchPair(const CompletePair& pair, const PairPlan& pairPlan)
@@ -307,7 +345,11 @@ private:
         for (const LayerPlan& layer : adapted.layers)
         {
             const CensusCost* below = layer.isFinest ? nullptr : &scratch_[layer.layer - 1].census;
-            const LayerInput input = { adapted, layer, images[layer.layer], upper, below, lastFrame_, prediction_ };
+            const Mat intervals = layer.hasIntervals ? known_.intervals[layer.layer] : Mat();
+            const std::vector<PriorPoint> points =
+                layer.joinsPrior ? known_.points[layer.layer] : std::vector<PriorPoint>();
+            const LayerInput input = { adapted,   layer,  images[layer.layer], upper,      below,
+                                       intervals, points, lastFrame_,          prediction_ };
             verdict = matchLayer(input, scratch_[layer.layer], shared_, clock_, layers_[layer.layer]);
             if (verdict == CONTRADICTED)
                 return CONTRADICTED;
@@ -389,6 +431,7 @@ private:
 
     // Memory that is kept between calls
     CompletePair pair_;
+    KnownDisparities known_;
     PairPyramids pyramids_;
     AlignmentBuffers alignmentBuffers_;
     std::vector<LayerResult> layers_; // by layer, as are the next ones

@@ -8,6 +8,7 @@
 #include "base/tunable.hpp"
 #include "forest/disparity_prediction.hpp"
 #include "forest/tree_planes.hpp"
+#include "pair/disparity_ranges.hpp"
 #include "map/left_right_check.hpp"
 #include "map/median_filter.hpp"
 #include "map/occlusion_filling.hpp"
@@ -111,11 +112,15 @@ private:
         {
             own_.pixelIntv.create(size, CV_16UC2);
             own_.pixelIntv.setTo(Scalar(0, plan_.numDisparities - 1));
-            return;
         }
-        predictIntervals(*in_.pair.model, plan_.layer, result_.prior, trees.upperDisparities, trees.delta, trees.margin,
-                         shared_.intervals);
-        assignIntervals(in_.upper->disparity, size, shared_.intervals, own_.pixelIntv);
+        else
+        {
+            predictIntervals(*in_.pair.model, plan_.layer, result_.prior, trees.upperDisparities, trees.delta,
+                             trees.margin, shared_.intervals);
+            assignIntervals(in_.upper->disparity, size, shared_.intervals, own_.pixelIntv);
+        }
+        if (plan_.hasIntervals)
+            intersectIntervals(in_.intervals, own_.pixelIntv);
     }
 
     //! What gives the edge weights. The median is that of the M+ systems, and of noisy pairs; as in the authors'
@@ -147,10 +152,19 @@ private:
             return false;
         if (plan_.prefersLastFrame)
             preferLastFrame(in_.lastFrame, in_.prediction, lastFrameSide(), true, volume);
-        aggregateVolume(volume, forest.weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
-        if (plan_.trees.prefersPlanes && preferTreePlanes(forest, result_.winners, volume) > 0)
-            aggregateVolume(volume, forest.weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
+        scanVolume(forest.weights);
+        const bool hasPlanes = plan_.trees.prefersPlanes && volume.isUniform; // which ranges may change
+        if (hasPlanes && preferTreePlanes(forest, result_.winners, volume) > 0)
+            scanVolume(forest.weights);
         return true;
+    }
+
+    //! Winners of the volume; weights: see weighEdges()
+    void scanVolume(const Mat& weights)
+    {
+        if (plan_.hasIntervals)
+            excludeCandidates(in_.intervals, shared_.volume);
+        aggregateVolume(shared_.volume, weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
     }
 
     //! What the costs of a volume are
@@ -177,8 +191,7 @@ private:
         });
         clock_.run("cost aggregation", [&] {
             weighEdges(guide(), own_.edgeWeights);
-            aggregateVolume(shared_.volume, own_.edgeWeights, plan_.volumePenalties, shared_.volumeScanlines,
-                            result_.winners);
+            scanVolume(own_.edgeWeights);
         });
         finishWinners();
     }
@@ -188,6 +201,7 @@ private:
     {
         if (plan_.hasFractions && plan_.layer > 0)
             min(result_.winners, plan_.maxDisparity, result_.winners);
+        correctWinners();
         if (plan_.fillsOcclusions)
             clock_.run("occlusions", [&] {
                 own_.census.ofDisparities(result_.winners, own_.residual);
@@ -221,6 +235,7 @@ private:
                                    own_.windows, pass.penalties, pass.hasFromBelow, shared_.scanlines, result_.winners,
                                    own_.residual);
             });
+            correctWinners();
             if (plan_.fillsOcclusions)
                 clock_.run("occlusions", [&] { fillOcclusions(); });
         }
@@ -240,6 +255,8 @@ private:
                                                   own_.sparseMatches };
             findOtherSurfaces(prediction, own_.census, plan_.numDisparities, own_.surfaceBuffers, own_.others);
             predictWindows(prediction.upper, own_.others, plan_.numDisparities, own_.windows);
+            if (plan_.hasIntervals)
+                restrictWindows(in_.intervals, plan_.numDisparities, own_.windows);
         });
     }
 
@@ -254,6 +271,31 @@ private:
 
     //! From the winners to the layer's disparities. The authors' program has this median; the paper has no such filter.
     void filter()
+    {
+        keepIntervals(result_.winners); // which occlusions or the last frame may have left
+        filterMap();
+        keepIntervals(result_.disparity);
+    }
+
+    //! Winners in the intervals of the pixels, joined with what is known beforehand
+    void correctWinners()
+    {
+        keepIntervals(result_.winners);
+        if (!plan_.joinsPrior)
+            return;
+        clock_.run("prior", [&] {
+            joinPrior(in_.prior, in_.images.guide, own_.census, plan_.layer, plan_.maxDisparity, result_.winners);
+        });
+        keepIntervals(result_.winners);
+    }
+
+    void keepIntervals(Mat& disparity) const
+    {
+        if (plan_.hasIntervals)
+            moveIntoIntervals(in_.intervals, disparity);
+    }
+
+    void filterMap()
     {
         if (plan_.medianSize == 0)
             return result_.winners.copyTo(result_.disparity);

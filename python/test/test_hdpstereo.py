@@ -452,6 +452,23 @@ class Matching(Test):
         self.assertRaises(ValueError, lambda: matcher.setMasks(mask.astype(np.int16), None))
         self.assertRaises(TypeError, lambda: matcher.setMasks('mask', None))
 
+    def test_known_disparities(self):
+        matcher = HDPTreeMatcher(0, 32)
+        without = matcher.compute(LEFT, RIGHT)
+        limits = np.full((1, 1), 3, np.int16)
+        matcher.setDisparityRange(limits, limits + 4)
+        disparity = matcher.compute(LEFT, RIGHT)
+        self.assertEqual((True, True), (disparity.min() >= 3 * 16, disparity.max() <= 7 * 16))
+        self.assertRaises(ValueError, lambda: matcher.setDisparityRange(limits + 4, limits))
+        matcher.setDisparityRange(None, None)
+        self.assertSame(without, matcher.compute(LEFT, RIGHT))
+        matcher.setPriorDisparity(TRUTH.astype(np.float32), 0.5)
+        self.assertLessEqual(wrong(matcher.compute(LEFT, RIGHT)), wrong(without))
+        matcher.setPriorDisparity(TRUTH.astype(np.float32), np.full(TRUTH.shape, 0.5, np.float32))
+        self.assertRaises(ValueError, lambda: matcher.setPriorDisparity(TRUTH.astype(np.float32), -1.0))
+        matcher.setPriorDisparity(None, None)
+        self.assertSame(without, matcher.compute(LEFT, RIGHT))
+
     def test_float(self):
         matcher = HDPTreeMatcher.create(-2, 32, disp12MaxDiff=1)
         expected = matcher.compute(LEFT, RIGHT)

@@ -8,9 +8,9 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-/** What pixels without data may cost. One of the left image costs nothing, whatever its candidate is: it prefers none. A
-candidate in the right image that has no data costs no more than an ordinary pixel: it is neither preferred to a match
-nor avoided as a bad one would be. */
+/** What pixels without data may cost. One of the left image costs nothing, whatever its candidate is: it prefers none.
+A candidate in the right image that has no data costs no more than an ordinary pixel: it is neither preferred to a
+match nor avoided as a bad one would be. */
 class CV_EXPORTS CostLimits
 {
 public:

@@ -66,6 +66,9 @@ private:
     std::vector<int> pixels_;      // in the order of the trees, if all have the same candidates
 };
 
+//! Excludes the candidates that pixels do not have, by the largest cost. intervals: DisparityInterval, of the layer.
+CV_EXPORTS void excludeCandidates(const Mat& intervals, CostVolume& volume);
+
 /** Raises the costs of a pixel's other disparities than a preferred one: by a unit of cost, CostVolume::scale, per
 pixel of distance, up to a limit. */
 class CV_EXPORTS CostPreference

@@ -39,6 +39,18 @@ void convert(const Mat& map, int depth, double scale, double shift, Mat& convert
     });
 }
 
+//! The nearest disparity that a pixel may have
+void keepRanges(const PixelRanges& ranges, short invalid, Mat& disparity)
+{
+    for (int y = 0; y < disparity.rows; ++y)
+    {
+        const short *smallest = ranges.smallest.ptr<short>(y), *largest = ranges.largest.ptr<short>(y);
+        short* const row = disparity.ptr<short>(y);
+        for (int x = 0; x < disparity.cols; ++x)
+            row[x] = smallest[x] <= largest[x] ? std::min(std::max(row[x], smallest[x]), largest[x]) : invalid;
+    }
+}
+
 void removeSpeckles(Mat& disparity, const OutputPlan& plan, short invalid, Mat& speckles)
 {
     // One byte more than cv::filterSpeckles allocates: it writes there if no two pixels belong together.
@@ -51,12 +63,13 @@ void removeSpeckles(Mat& disparity, const OutputPlan& plan, short invalid, Mat& 
 
 } // namespace
 
-void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity, const Mat& mask)
+void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity, const Mat& mask,
+                     const PixelRanges& ranges)
 {
     buffers.masked.release();
     if (!mask.empty())
         compare(mask, Scalar(0), buffers.masked, CMP_EQ);
-    buffers.hasRejected = plan.hasFilters() || !mask.empty();
+    buffers.hasRejected = plan.hasFilters() || !mask.empty() || !ranges.isEmpty();
     const Size extendedSize = disparity.size() + Size(plan.extension, 0);
     Mat extended = enlarge(finest, plan.finestLayer, extendedSize, buffers.enlarged);
     if (plan.isWhole)
@@ -76,6 +89,12 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
         return;
 
     const short invalid = (short)((plan.minDisparity - 1) * unit);
+    if (!ranges.isEmpty())
+    {
+        keepRanges(ranges, invalid, fixedPoint);
+        if (isFloat)
+            convert(fixedPoint, CV_32F, 1. / unit, 0, disparity);
+    }
     if (!mask.empty())
         fixedPoint.setTo(Scalar(invalid), buffers.masked);
     if (plan.disp12MaxDiff > 0)

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_DISPARITY_OUTPUT_HPP
 #define OPENCV_HDPSTEREO_DISPARITY_OUTPUT_HPP
 
-#include "opencv2/core.hpp"
+#include "../pair/disparity_ranges.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -41,9 +41,10 @@ minDisparity on, less those without data and what the left-right check and the s
 @param plan What to do.
 @param buffers Memory to work in; receives what was rejected.
 @param disparity CV_16SC1 or CV_32FC1 of the image's size; receives the result.
-@param mask Of the image, CV_8UC1, 0 where it has no data; empty: it has everywhere. */
+@param mask Of the image, CV_8UC1, 0 where it has no data; empty: it has everywhere.
+@param ranges What each pixel may have: the nearest of that, or nothing if it may have none of the candidates. */
 CV_EXPORTS void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity,
-                                const Mat& mask = Mat());
+                                const Mat& mask = Mat(), const PixelRanges& ranges = PixelRanges());
 
 }}} // namespace cv::stereo::hdp
 

@@ -28,8 +28,8 @@ struct CompletePair
 CV_EXPORTS void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
                              CompletePair& complete);
 
-/** The levels of a pair in CV_16UC1, by one scale for both: the darkest pixel becomes 0 and the brightest 65535, but for
-one pixel in 1024 at each end, which are black or white, as defects and highlights are.
+/** The levels of a pair in CV_16UC1, by one scale for both: the darkest pixel becomes 0 and the brightest 65535, but
+for one pixel in 1024 at each end, which are black or white, as defects and highlights are.
 @param left CV_32FC1.
 @param right The same.
 @param masks Which pixels count; those that are not finite must not be among them.

@@ -4,6 +4,9 @@
 #include "../precomp.hpp"
 #include "pair_inputs.hpp"
 
+#include <cfloat>
+#include <cmath>
+
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
@@ -34,10 +37,55 @@ void setMasks(InputArray left, InputArray right, PairInputs& inputs)
     inputs.rightMask = rightMask;
 }
 
+void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inputs)
+{
+    const Mat smallest = smallestArray.empty() ? Mat() : smallestArray.getMat().clone(),
+              largest = largestArray.empty() ? Mat() : largestArray.getMat().clone();
+    if (!smallest.empty() && (smallest.dims != 2 || (smallest.type() != CV_16SC1 && smallest.type() != CV_32FC1)))
+        CV_Error(Error::StsUnsupportedFormat, "smallest must be CV_16SC1 or CV_32FC1, disparities in pixels");
+    if (largest.dims != smallest.dims || largest.type() != smallest.type() || largest.size() != smallest.size())
+        CV_Error(Error::StsUnmatchedSizes, "largest must have the size and type of smallest");
+    Mat isLess;
+    if (!smallest.empty())
+        compare(largest, smallest, isLess, CMP_LT);
+    if (!isLess.empty() && countNonZero(isLess) > 0)
+        CV_Error(Error::StsOutOfRange,
+                 format("largest must not be less than smallest, as it is in %d pixels", countNonZero(isLess)));
+    inputs.smallest = smallest;
+    inputs.largest = largest;
+}
+
+void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inputs)
+{
+    const Mat disparity = disparityArray.empty() ? Mat() : disparityArray.getMat().clone();
+    Mat sigma = disparity.empty() || sigmaArray.empty() ? Mat() : sigmaArray.getMat().clone();
+    if (!disparity.empty() && (disparity.dims != 2 || disparity.type() != CV_32FC1))
+        CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_32FC1, in pixels, NaN where nothing is known");
+    const bool isNumber = sigma.type() == CV_64FC1 && (sigma.total() == 1 || sigma.size() == Size(1, 4)); // or a Scalar
+    if (isNumber)
+        sigma = Mat(disparity.size(), CV_32F, Scalar(sigma.at<double>(0)));
+    if (!disparity.empty() && (sigma.type() != CV_32FC1 || sigma.size() != disparity.size()))
+        CV_Error(Error::StsUnmatchedSizes, "sigma must be a number, or CV_32FC1 of the size of disparity");
+    for (int y = 0; y < disparity.rows; ++y)
+        for (int x = 0; x < disparity.cols; ++x)
+        {
+            const float own = sigma.ptr<float>(y)[x];
+            if (!std::isnan(disparity.ptr<float>(y)[x]) && !(own >= 0 && own <= FLT_MAX))
+                CV_Error(Error::StsOutOfRange, "sigma must be finite and >= 0 where there is a disparity");
+        }
+    inputs.prior = disparity;
+    inputs.sigma = sigma;
+}
+
 void checkInputs(const PairInputs& inputs, Size size)
 {
     checkSize(inputs.leftMask, size, "leftMask");
     checkSize(inputs.rightMask, size, "rightMask");
+    checkSize(inputs.prior, size, "the disparity of the prior");
+    if (inputs.smallest.cols > size.width || inputs.smallest.rows > size.height)
+        CV_Error(Error::StsUnmatchedSizes,
+                 format("smallest and largest must have at most the size of the images, %d x %d, not %d x %d",
+                        size.width, size.height, inputs.smallest.cols, inputs.smallest.rows));
 }
 
 }}} // namespace cv::stereo::hdp

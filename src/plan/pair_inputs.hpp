@@ -12,12 +12,18 @@ namespace cv { namespace stereo { namespace hdp {
 struct PairInputs
 {
     Mat leftMask, rightMask; // CV_8UC1, 0 where there is no data; empty: there is everywhere
+    Mat smallest, largest;   // CV_16SC1 or CV_32FC1, disparities of the pixels; empty: there are no ranges
+    Mat prior, sigma;        // CV_32FC1, disparities that are about known; empty: none are
 
     bool hasMasks() const { return !leftMask.empty() || !rightMask.empty(); }
+    bool hasRanges() const { return !smallest.empty(); }
+    bool hasPrior() const { return !prior.empty(); }
 };
 
-//! The masks of a caller, copied. Throws if they are none.
+// What a caller tells, copied; see the methods of HDPTreeMatcher. They throw if it is not that, and change nothing.
 void setMasks(InputArray left, InputArray right, PairInputs& inputs);
+void setRange(InputArray smallest, InputArray largest, PairInputs& inputs);
+void setPrior(InputArray disparity, InputArray sigma, PairInputs& inputs);
 
 //! Throws if an input is not for images of this size.
 void checkInputs(const PairInputs& inputs, Size size);

@@ -40,6 +40,10 @@ HDP_TUNABLE(double, edgeGamma, 0.7, "gamma of the trees' sums",
 HDP_TUNABLE(double, refinementGamma, 0.25, "gamma of the trees' sums",
             "of the non-local refinement: with the same one it blurs slanted surfaces");
 
+HDP_TUNABLE(
+    double, rangeBeta, 0.5, "share of the hull",
+    "by which ranges of the caller overlap in a tree: more makes small trees, less searches what none may have");
+
 // Scanlines over windows
 HDP_TUNABLE(int, finestSlope, 5, "halves of a bit per grey level",
             "by which the large penalty falls on the finest layer, where edges are those of surfaces");
@@ -66,7 +70,7 @@ bool hasFractions(const MatcherParameters& p) { return p.useSubpixel || aggregat
 
 bool isLarge(Size size) { return size.width >= largeImageWidth; }
 
-void checkCombinations(const MatcherParameters& p, Size size)
+void checkCombinations(const MatcherParameters& p, Size size, bool hasPrior)
 {
     const int64 min = ((int64)p.minDisparity - 1) * M::DISP_SCALE;
     const int64 max = ((int64)p.minDisparity + p.numDisparities - 1) * M::DISP_SCALE;
@@ -79,6 +83,7 @@ void checkCombinations(const MatcherParameters& p, Size size)
                                     : aggregation == M::AGGREGATION_TREE_SCANLINES ? "AGGREGATION_TREE_SCANLINES"
                                     : p.fillOcclusions                             ? "fillOcclusions"
                                     : p.useTemporalPrediction                      ? "useTemporalPrediction"
+                                    : hasPrior                                     ? "setPriorDisparity()"
                                                                                    : nullptr;
     if (needsCensus && p.matchingCost != M::COST_CENSUS)
         CV_Error(Error::StsBadArg, format("matchingCost must be COST_CENSUS for %s", needsCensus));
@@ -247,9 +252,9 @@ int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int m
     return layers;
 }
 
-PairPlan plan(const MatcherParameters& p, Size size, int type, const PairModel& model)
+PairPlan plan(const MatcherParameters& p, Size size, int type, const PairModel& model, const PairInputs& inputs)
 {
-    checkCombinations(p, size);
+    checkCombinations(p, size, inputs.hasPrior());
     PairPlan plan;
     plan.size = size;
     plan.treeStrategy = p.treeStrategy;
@@ -269,6 +274,13 @@ PairPlan plan(const MatcherParameters& p, Size size, int type, const PairModel& 
         plan.layers.back().frame = plan.given.alignment.frame.ofLayer(layer);
     }
     plan.layers.back().joinsLastFrame = plan.followsVideo;
+    for (LayerPlan& layer : plan.layers)
+    {
+        layer.hasIntervals = inputs.hasRanges();
+        layer.joinsPrior = inputs.hasPrior();
+    }
+    if (inputs.hasRanges())
+        plan.layers.front().trees.beta = rangeBeta;
     plan.output = { p.minDisparity,
                     extension,
                     finest,

@@ -12,6 +12,7 @@
 #include "../scanlines/volume_scanlines.hpp"
 #include "../video/verdict.hpp"
 #include "matcher_parameters.hpp"
+#include "pair_inputs.hpp"
 #include "pair_model.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -85,6 +86,8 @@ struct LayerPlan
     VolumePenalties volumePenalties = { 0, 0, 0 };
     std::vector<ScanlinePass> passes;
     bool checksLastFrame = false;  // whether the pair's own costs may refuse the last frame
+    bool hasIntervals = false;     // whether pixels have candidates of their own
+    bool joinsPrior = false;       // whether winners are joined with what is known beforehand
     bool prefersLastFrame = false; // whether what the last frame predicts has lower costs
     bool fillsOcclusions = false;
     bool joinsLastFrame = false;
@@ -114,9 +117,10 @@ struct PairPlan
 @param size Of the images.
 @param type Of the images, as checkPair() accepts it.
 @param model What is known of the images beforehand; valid by itself.
+@param inputs What is known of the pair beforehand, as checkInputs() accepts it.
 @throws cv::Exception if the parameters do not go with one another or with the images. */
 CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int type,
-                         const PairModel& model = PairModel());
+                         const PairModel& model = PairModel(), const PairInputs& inputs = PairInputs());
 
 /** What is done now that the pair has been seen.
 @param plan From plan().

@@ -25,6 +25,39 @@ void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat
     });
 }
 
+void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows)
+{
+    const int length = CandidateWindow::runLength, all = CandidateWindow::candidates,
+              outside = CandidateWindow::beyondRange;
+    for (int y = 0; y < windows.rows; ++y)
+        for (int x = 0; x < windows.cols; ++x)
+        {
+            CandidateWindow& window = windows.ptr<CandidateWindow>(y)[x];
+            int first = INT_MAX, last = 0; // of the pixels below
+            for (int i = 0; i < 4; ++i)
+            {
+                const int row = std::min(2 * y + i / 2, intervals.rows - 1),
+                          column = std::min(2 * x + i % 2, intervals.cols - 1);
+                const DisparityInterval& own = intervals.ptr<DisparityInterval>(row)[column];
+                first = std::min(first, (int)own.first);
+                last = std::max(last, (int)own.last);
+            }
+            const auto isUsed = [&](int run) {
+                return window.first[run] <= last && window.first[run] + length > first;
+            };
+            const bool used[] = { isUsed(0), isUsed(1) };
+            if (used[0] && used[1])
+                continue;
+            const int run = used[1] ? 1 : 0;
+            const int centre = std::min(std::max(wholeDisparity(window.predicted[run]), first), last);
+            const int begin = std::max(std::min(centre - (all / 2 - 1), numDisparities + outside - all), -outside);
+            window.first[0] = (short)begin;
+            window.first[1] = (short)(begin + length);
+            window.predicted[0] = window.predicted[1] =
+                (ushort)(used[run] ? window.predicted[run] : centre * subpixelScale);
+        }
+}
+
 void halveDisparity(const Mat& disparity, Mat& upper)
 {
     upper.create(disparity.rows / 2, disparity.cols / 2, CV_16U);

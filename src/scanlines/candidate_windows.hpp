@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_CANDIDATE_WINDOWS_HPP
 #define OPENCV_HDPSTEREO_CANDIDATE_WINDOWS_HPP
 
-#include "opencv2/core.hpp"
+#include "../base/disparity_units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -40,6 +40,12 @@ CV_ALWAYS_INLINE int firstCandidate(int disparity, int candidates, int numDispar
 nothing, and there are some only if this range has less than CandidateWindow::candidates.
 @param windows Receives a CandidateWindow per pixel of upper, CV_16UC4. */
 CV_EXPORTS void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat& windows);
+
+/** Leaves runs out of windows that have no candidate which a pixel may have: the other run's window is whole then.
+@param intervals A DisparityInterval per pixel of the layer.
+@param numDisparities Of the layer.
+@param windows From predictWindows(), changed. */
+CV_EXPORTS void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows);
 
 //! Disparities of a layer as the layer above would have them: half the mean of the middle two of 2 x 2 pixels. For a
 //! second pass over a layer, around the disparities of the first. disparity and upper: CV_16UC1, disparity maps.

@@ -153,7 +153,7 @@ private:
         }
     }
 
-    //! large(p, q) of edges of a step, see weighScanlineEdges(): number `at` from the pixel on the left of its columns on
+    //! large(p, q) of edges of a step, see weighScanlineEdges(): number `at` from the pixel left of its columns on
     template <int at> CV_ALWAYS_INLINE ByteLanes largePenalty(int step) const
     {
         const uchar* edges[groups];

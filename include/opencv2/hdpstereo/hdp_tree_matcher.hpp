@@ -34,7 +34,8 @@ A cv::StereoMatcher: a program that uses cv::StereoSGBM changes the line that cr
 
 **What goes in**: a rectified pair, both images of one size and type: CV_8UC1, CV_8UC3 (BGR), CV_8UC4 (BGR and alpha,
 which is ignored), CV_16UC1 (a camera of 10 to 16 bits) or CV_32FC1 (any levels). They may have 1 x 1 to 32767 x 32767
-pixels, and fewer columns than there are disparities. What is known of them beforehand goes in, too: setMasks().
+pixels, and fewer columns than there are disparities. What is known of them beforehand goes in, too:
+setMasks(), setDisparityRange(), setPriorDisparity().
 
 **What comes out**: the disparity of every pixel of the left image. A pixel (x, y) of the left image shows the same
 point as (x - disparity, y) of the right one. The map is CV_16SC1, times 16 (StereoMatcher::DISP_SCALE), or CV_32FC1 in
@@ -68,11 +69,11 @@ on several parameters or on the images is checked by compute(), before any work.
   32767 pixels, or have 2^31 bytes and more, with the columns that a negative minDisparity adds;
 - speckleWindowSize is > 0 and the images have more than 238609294 pixels;
 - 16 times the disparities, and 16 times (minDisparity - 1), do not fit into CV_16S;
-- the cost is not COST_CENSUS with scanlines, Params::fillOcclusions or Params::useTemporalPrediction;
+- the cost is not COST_CENSUS with scanlines, Params::fillOcclusions, Params::useTemporalPrediction or a prior;
 - Params::predictionModel has too few layers;
 - the images are not those of the PairModel that is set;
 - the output array has a fixed type other than CV_16SC1 and CV_32FC1;
-- a mask has not the size of the images;
+- a mask or a prior has not the size of the images, or the maps of setDisparityRange() are larger;
 - a TreeStrategy throws, or does not leave a permutation of the edges. Only this is found while matching; the matcher
   stays usable, and the output array is unchanged.
 
@@ -517,6 +518,30 @@ public:
     @throws cv::Exception if a mask is of another type; both are unchanged.
      */
     CV_WRAP virtual void setMasks(InputArray leftMask, InputArray rightMask) = 0;
+
+    /** @brief Tells which disparities each pixel of the left image may have: a coarse product, the depth of a room.
+
+    No others occur in the map. A pixel for which there are none between minDisparity and the last one gets minDisparity
+    - 1. Trees search about their pixels' ranges alone; what is found outside of a range moves to its end. The maps stay
+    until others are set. They are no parameters: files do not have them.
+    @param smallest CV_16SC1 or CV_32FC1, in pixels, of the images' size or coarser: each pixel then has the range of
+    the nearest one. NaN limits nothing. Copied. Both empty: there are no ranges.
+    @param largest Of the same size and type; nowhere less than smallest.
+    @throws cv::Exception if the maps are not that; both are unchanged.
+     */
+    CV_WRAP virtual void setDisparityRange(InputArray smallest, InputArray largest) = 0;
+
+    /** @brief Tells disparities that are about known: of a lidar, of structure from motion, of the last survey.
+
+    They are believed as far as the images do not contradict them. Where a point and the images differ, it counts if its
+    neighbours agree with it and the costs allow it; a prior that mostly differs has no effect. Needs
+    HDPTreeMatcher::COST_CENSUS. The prior stays until another one is set. It is no parameter: files do not have it.
+    @param disparity CV_32FC1 in pixels, of the images' size, NaN where nothing is known: nearly everywhere, perhaps.
+    Copied. Empty: there is no prior.
+    @param sigma Standard deviation of the disparities in pixels, finite, >= 0: a number, or CV_32FC1 of the same size.
+    @throws cv::Exception if the arguments are not that; the prior is unchanged.
+     */
+    CV_WRAP virtual void setPriorDisparity(InputArray disparity, InputArray sigma) = 0;
 
     /** @brief Returns how reliable each disparity of the last compute() is.
 

@@ -1,0 +1,322 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "prior_join.hpp"
+
+#include "../base/disparity_units.hpp"
+#include "../base/tunable.hpp"
+#include "../base/vectorized.hpp"
+
+#include <cmath>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+HDP_TUNABLE(double, minAgreement, 0.5, "share of the points", "that agree with the winners, in a prior of this scene");
+HDP_TUNABLE(double, tolerance, 0.7, "pixels", "of what agrees, beside two sigmas: less takes rounding for errors");
+HDP_TUNABLE(double, slope, 0.15, "pixels per pixel", "by which disparities of a surface may differ beside that");
+HDP_TUNABLE(int, reach, 48, "pixels of the image", "from a pixel to the points it knows: more sees other surfaces");
+HDP_TUNABLE(double, pointsOfCell, 6, "points", "in a square of the reach that are enough: more cost time");
+HDP_TUNABLE(int, neighbours, 8, "points", "around a pixel that speak: more are farther away");
+HDP_TUNABLE(double, colorScale, 30, "grey levels", "that weigh as much as distanceScale: less sees fewer points");
+HDP_TUNABLE(double, distanceScale, 8, "pixels of the image", "by which the weight of a point falls to 1 / e");
+HDP_TUNABLE(double, flatness, 0.1, "squared distanceScale", "by which planes resist being tilted: points in a row");
+HDP_TUNABLE(int, windowSide, 5, "pixels", "of the costs that are compared: single ones are noise");
+HDP_TUNABLE(double, contradiction, 7, "bits", "that a cost is higher by: more follows errors of the prior");
+HDP_TUNABLE(double, contradictionAlone, 5, "bits", "the same where no point speaks against a winner: thin things");
+
+//! A point near a pixel
+struct Neighbour
+{
+    int index;
+    double weight, distance;
+};
+
+//! What is known of a point
+enum Verdict
+{
+    AGREES,
+    COUNTS, // against the winner
+    FAILS
+};
+
+//! Joins a layer's winners with its points.
+class PriorJoin
+{
+public:
+    PriorJoin(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer, Mat& winners)
+        : points_(points), guide_(guide), cost_(cost), winners_(winners), width_(winners.cols),
+          reach_(reachOf(winners.size(), points.size(), layer)), scale_(1. / (1 << layer)),
+          grid_((width_ + reach_ - 1) / reach_, (winners.rows + reach_ - 1) / reach_), cells_(grid_.area()),
+          verdicts_(points.size(), AGREES), before_(points.size())
+    {
+        for (size_t i = 0; i < points.size(); ++i)
+        {
+            const Point place = points[i].place;
+            cells_[place.y / reach_ * grid_.width + place.x / reach_].push_back((int)i);
+            before_[i] = winners.ptr<ushort>(place.y)[place.x] * (1.f / subpixelScale);
+        }
+    }
+
+    //! Whether the prior is of this scene
+    bool judgePoints()
+    {
+        size_t agreeing = 0;
+        for (size_t i = 0; i < points_.size(); ++i)
+        {
+            if (!areAlike(before_[i], points_[i].disparity, points_[i].sigma, 0))
+                verdicts_[i] = FAILS;
+            agreeing += verdicts_[i] == AGREES;
+        }
+        if (points_.empty() || agreeing < minAgreement * points_.size())
+            return false;
+        std::vector<uchar> counts(points_.size());
+        parallel_for_(Range(0, (int)points_.size()), [&](const Range& range) {
+            for (int i = range.start; i < range.end; ++i)
+                counts[i] = verdicts_[i] == FAILS && !isContradicted(i) && isSupported(i);
+        });
+        for (size_t i = 0; i < points_.size(); ++i)
+            if (counts[i])
+                verdicts_[i] = COUNTS;
+        return true;
+    }
+
+    int join(int maxDisparity)
+    {
+        Mat hypotheses(winners_.size(), CV_16U), speech(winners_.size(), CV_8U), ofWinners, ofHypotheses;
+        parallel_for_(Range(0, winners_.rows), [&](const Range& rows) {
+            std::vector<Neighbour> found;
+            for (int y = rows.start; y < rows.end; ++y)
+                for (int x = 0; x < width_; ++x)
+                    speech.ptr(y)[x] = (uchar)propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
+        });
+        sumCosts(winners_, ofWinners);
+        sumCosts(hypotheses, ofHypotheses);
+        const int area = windowSide * windowSide;
+        int changed = 0;
+        for (int y = 0; y < winners_.rows; ++y)
+            for (int x = 0; x < width_; ++x)
+            {
+                const int said = speech.ptr(y)[x], more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners.ptr<ushort>(y)[x];
+                if (said == FOR || more > area * (said == AGAINST ? contradiction : contradictionAlone))
+                    continue;
+                winners_.ptr<ushort>(y)[x] = hypotheses.ptr<ushort>(y)[x];
+                ++changed;
+            }
+        return changed;
+    }
+
+private:
+    //! What the points say of a winner
+    enum Speech
+    {
+        FOR,
+        AGAINST,
+        NOTHING
+    };
+
+    //! In a dense prior a pixel knows enough points that are near.
+    static int reachOf(Size size, size_t points, int layer)
+    {
+        const int ofDensity = cvCeil(std::sqrt(pointsOfCell * size.area() / std::max<double>((double)points, 1)));
+        return std::max(std::min(reach >> layer, ofDensity), std::min(4, std::max(ofDensity, 2)));
+    }
+
+    bool areAlike(float a, float b, float sigma, double distance) const
+    {
+        return std::abs(a - b) <= tolerance + 2 * sigma + slope * distance;
+    }
+
+    double weigh(Point place, int index, double distance) const
+    {
+        const int channels = guide_.channels();
+        const Point other = points_[index].place;
+        const uchar *const p = guide_.ptr(place.y) + place.x * channels, *const q =
+                                                                             guide_.ptr(other.y) + other.x * channels;
+        int color = 0;
+        for (int c = 0; c < channels; ++c)
+            color = std::max(color, std::abs(p[c] - q[c]));
+        return std::exp(-distance / (distanceScale * scale_) - color / colorScale);
+    }
+
+    //! The points around a pixel that weigh most, but for those that fail if they are not asked for
+    void find(Point place, bool alsoFailing, std::vector<Neighbour>& found) const
+    {
+        found.clear();
+        const int x = place.x / reach_, y = place.y / reach_;
+        for (int i = std::max(y - 1, 0); i <= std::min(y + 1, grid_.height - 1); ++i)
+            for (int j = std::max(x - 1, 0); j <= std::min(x + 1, grid_.width - 1); ++j)
+                for (const int index : cells_[i * grid_.width + j])
+                {
+                    const Point d = points_[index].place - place;
+                    const double distance = std::sqrt((double)d.dot(d));
+                    if (distance <= reach_ && (alsoFailing || verdicts_[index] != FAILS))
+                        found.push_back({ index, weigh(place, index, distance), distance });
+                }
+        const auto isHeavier = [](const Neighbour& a, const Neighbour& b) {
+            return a.weight != b.weight ? a.weight > b.weight : a.index < b.index;
+        };
+        const size_t count = std::min(found.size(), (size_t)neighbours);
+        std::partial_sort(found.begin(), found.begin() + count, found.end(), isHeavier);
+        found.resize(count);
+    }
+
+    //! Whether the costs around a point are much higher at its disparity than at the winner
+    bool isContradicted(int index) const
+    {
+        const PriorPoint& point = points_[index];
+        const int radius = windowSide / 2;
+        int sum = 0;
+        for (int dy = -radius; dy <= radius; ++dy)
+            for (int dx = -radius; dx <= radius; ++dx)
+            {
+                const int y = clamped(point.place.y + dy, 0, winners_.rows - 1),
+                          x = clamped(point.place.x + dx, 0, width_ - 1), pixel = y * width_ + x;
+                uchar own[4], other[4];
+                cost_.evaluate(&pixel, 1, cvRound(point.disparity), 4, own);
+                cost_.evaluate(&pixel, 1, wholeDisparity(winners_.ptr<ushort>(y)[x]), 4, other);
+                sum += own[0] - other[0];
+            }
+        return sum > contradiction * windowSide * windowSide;
+    }
+
+    //! Whether a third of the points around, by weight, agrees with a point
+    bool isSupported(int index) const
+    {
+        std::vector<Neighbour> found;
+        find(points_[index].place, true, found);
+        double supporting = 0, all = 0;
+        for (const Neighbour& n : found)
+            if (n.index != index)
+            {
+                all += n.weight;
+                if (areAlike(points_[n.index].disparity, points_[index].disparity, points_[index].sigma, n.distance))
+                    supporting += n.weight;
+            }
+        return supporting > 0 && 3 * supporting >= all;
+    }
+
+    //! What the points around a pixel say of its winner, and which disparity they propose
+    Speech propose(Point place, int maxDisparity, std::vector<Neighbour>& found, ushort& proposed) const
+    {
+        const ushort own = winners_.ptr<ushort>(place.y)[place.x];
+        const float winner = own * (1.f / subpixelScale);
+        proposed = own;
+        find(place, false, found);
+        double speaksFor = 0, against = 0;
+        for (const Neighbour& n : found)
+        {
+            const PriorPoint& point = points_[n.index];
+            if (areAlike(winner, point.disparity, point.sigma, n.distance))
+                speaksFor += n.weight;
+            else if (verdicts_[n.index] == COUNTS && areAlike(winner, before_[n.index], point.sigma, n.distance))
+                against += n.weight;
+        }
+        if (found.size() < 2 || (speaksFor > 0 && speaksFor >= against))
+            return FOR;
+        const float disparity = planeAt(place, found);
+        proposed = (ushort)clamped(cvRound(disparity * subpixelScale), 0, maxDisparity);
+        return against > 0 ? AGAINST : NOTHING;
+    }
+
+    //! The disparity of the plane through the points that are alike
+    float planeAt(Point place, const std::vector<Neighbour>& found) const
+    {
+        double best = -1;
+        int centre = 0;
+        for (const Neighbour& candidate : found)
+        {
+            double weight = 0;
+            for (const Neighbour& n : found)
+                weight += isOnSurface(n.index, candidate.index) ? n.weight : 0;
+            if (weight > best)
+            {
+                best = weight;
+                centre = candidate.index;
+            }
+        }
+        const double unit = distanceScale * scale_;
+        Matx33d normal(0, 0, 0, 0, flatness, 0, 0, 0, flatness);
+        Vec3d right(0, 0, 0);
+        for (const Neighbour& n : found)
+            if (isOnSurface(n.index, centre))
+            {
+                const PriorPoint& point = points_[n.index];
+                const Vec3d basis(1, (point.place.x - place.x) / unit, (point.place.y - place.y) / unit);
+                const double weight = n.weight / best;
+                normal += weight * basis * basis.t();
+                right += weight * (point.disparity - points_[centre].disparity) * basis;
+            }
+        return points_[centre].disparity + (float)normal.solve(right, DECOMP_CHOLESKY)[0];
+    }
+
+    bool isOnSurface(int a, int b) const
+    {
+        const Point d = points_[a].place - points_[b].place;
+        return areAlike(points_[a].disparity, points_[b].disparity, points_[a].sigma, std::sqrt((double)d.dot(d)));
+    }
+
+    //! Sums of the costs of disparities over windows
+    void sumCosts(const Mat& disparity, Mat& sums) const
+    {
+        Mat costs;
+        cost_.ofDisparities(disparity, costs);
+        boxFilter(costs, sums, CV_16U, Size(windowSide, windowSide), Point(-1, -1), false, BORDER_REPLICATE);
+    }
+
+    const std::vector<PriorPoint>& points_;
+    const Mat& guide_;
+    const CensusCost& cost_;
+    Mat& winners_;
+    const int width_, reach_;
+    const double scale_; // of the layer
+    const Size grid_;
+    std::vector<std::vector<int>> cells_;
+    std::vector<Verdict> verdicts_;
+    std::vector<float> before_; // winners at the points
+};
+
+} // namespace
+
+void pointsOfLayer(const Mat& disparity, const Mat& sigma, int minDisparity, int extension, int layer,
+                   int numDisparities, std::vector<PriorPoint>& points)
+{
+    points.clear();
+    const float scale = 1.f / (1 << layer);
+    const int side = 1 << layer, rows = disparity.rows >> layer, columns = (disparity.cols + extension) >> layer;
+    for (int y = 0; y < rows; ++y)
+        for (int x = extension >> layer; x < columns; ++x)
+        {
+            float nearest = -1, sum = 0, sigmas = 0;
+            int count = 0;
+            for (int pass = 0; pass < 2; ++pass)
+                for (int i = y * side; i < (y + 1) * side; ++i)
+                    for (int j = x * side - extension; j < (x + 1) * side - extension; ++j)
+                    {
+                        const float own = (disparity.ptr<float>(i)[j] - minDisparity) * scale;
+                        if (!(own >= 0 && own <= numDisparities - 1))
+                            continue;
+                        if (pass == 0)
+                            nearest = std::max(nearest, own);
+                        else if (own >= nearest - 1)
+                        {
+                            sum += own;
+                            sigmas += sigma.ptr<float>(i)[j] * scale;
+                            ++count;
+                        }
+                    }
+            if (count > 0)
+                points.push_back({ Point(x, y), sum / count, sigmas / count });
+        }
+}
+
+int joinPrior(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer,
+              int maxDisparity, Mat& winners)
+{
+    PriorJoin join(points, guide, cost, layer, winners);
+    return join.judgePoints() ? join.join(maxDisparity) : 0;
+}
+
+}}} // namespace cv::stereo::hdp
