@@ -4,7 +4,7 @@
 # of this distribution and at http://opencv.org/license.html.
 
 '''
-What HDPTreeMatcher.setDisparityPrior() is worth on KITTI 2015:
+What HDPTreeMatcher.setPriorDisparity() is worth on KITTI 2015:
     PYTHONPATH=BUILD/python measure_prior.py FOLDER [PRESET [STEP]]
 FOLDER has SCENE/{left,right,disp_left}.png, of which every STEP-th is matched. The prior has 500 random points of the
 truth, with noise of 0.5 pixels: as they are, 10 % of them wrong by 5 to 50 pixels, and all of them by 20. Prints D1, the
@@ -42,7 +42,7 @@ def main():
             if values is not None:
                 prior = np.full(truth.shape, np.nan, np.float32)
                 prior[rows, columns] = values
-                matcher.setDisparityPrior(prior, SIGMA)
+                matcher.setPriorDisparity(prior, SIGMA)
             error = np.abs(matcher.compute(left, right) / 16.0 - truth)
             errors.setdefault(name, []).append(100 * np.mean(((error > 3) & (error > 0.05 * truth))[truth > 0]))
     for name, values in errors.items():

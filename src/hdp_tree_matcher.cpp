@@ -130,7 +130,7 @@ public:
     {
         setRange(smallest, largest, inputs_);
     }
-    void setDisparityPrior(InputArray disparity, InputArray sigma) CV_OVERRIDE { setPrior(disparity, sigma, inputs_); }
+    void setPriorDisparity(InputArray disparity, InputArray sigma) CV_OVERRIDE { setPrior(disparity, sigma, inputs_); }
 
     Findings getFindings() const CV_OVERRIDE
     {

@@ -33,7 +33,7 @@ struct LayerInput
     const LayerResult* upper;             // the layer above; none at the top layer
     const CensusCost* below;              // that of the layer below; none at the finest layer
     const Mat& intervals;                 // DisparityInterval of each pixel, if the plan has them
-    const std::vector<PriorPoint>& prior; // what is known beforehand, if the plan prefers it
+    const std::vector<PriorPoint>& prior; // what is known beforehand, if the plan joins it
     const FrameMemory& lastFrame;         // of a video
     const FramePrediction& prediction;    // of this frame, if it is one of a video
 };

@@ -37,11 +37,11 @@ TEST(HDPStereo_DisparityPrior, is_believed_as_far_as_the_images_do_not_contradic
             const auto errors = [&] { return badPixels(match(*matcher, pair.left, pair.right), pair.truth, all, 2); };
             RNG rng(seed);
             none += errors();
-            matcher->setDisparityPrior(makePrior(rng, pair.truth, 400, 0, 0), 0.5);
+            matcher->setPriorDisparity(makePrior(rng, pair.truth, 400, 0, 0), 0.5);
             good += errors();
-            matcher->setDisparityPrior(makePrior(rng, pair.truth, 400, 0.1, 20), 0.5);
+            matcher->setPriorDisparity(makePrior(rng, pair.truth, 400, 0.1, 20), 0.5);
             some += errors();
-            matcher->setDisparityPrior(makePrior(rng, pair.truth, 400, 1, 20), 0.5);
+            matcher->setPriorDisparity(makePrior(rng, pair.truth, 400, 1, 20), 0.5);
             bad += errors();
         }
         EXPECT_LT(good, 0.9 * none) << preset.name;
@@ -58,13 +58,13 @@ TEST(HDPStereo_DisparityPrior, nothing_known_changes_nothing)
         {
             const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 40, minDisparity);
             const Mat without = match(*matcher, pair.left, pair.right).clone();
-            matcher->setDisparityPrior(Mat(pair.left.size(), CV_32F, Scalar(unknown)), 1);
+            matcher->setPriorDisparity(Mat(pair.left.size(), CV_32F, Scalar(unknown)), 1);
             expectIdentical(without, match(*matcher, pair.left, pair.right));
-            matcher->setDisparityPrior(Mat(pair.left.size(), CV_32F, Scalar(1000)), 1); // no candidate
+            matcher->setPriorDisparity(Mat(pair.left.size(), CV_32F, Scalar(1000)), 1); // no candidate
             expectIdentical(without, match(*matcher, pair.left, pair.right));
-            matcher->setDisparityPrior(pair.truth, Mat(pair.left.size(), CV_32F, Scalar(0.5)));
+            matcher->setPriorDisparity(pair.truth, Mat(pair.left.size(), CV_32F, Scalar(0.5)));
             match(*matcher, pair.left, pair.right);
-            matcher->setDisparityPrior(noArray(), noArray());
+            matcher->setPriorDisparity(noArray(), noArray());
             expectIdentical(without, match(*matcher, pair.left, pair.right));
         }
 }
@@ -73,23 +73,23 @@ TEST(HDPStereo_DisparityPrior, bad_priors_change_nothing)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(200, 120), 40, 3);
     const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, 40);
-    matcher->setDisparityPrior(pair.truth, 0.5);
+    matcher->setPriorDisparity(pair.truth, 0.5);
     const Mat expected = match(*matcher, pair.left, pair.right).clone();
     for (int type : { CV_8UC1, CV_16SC1, CV_32FC2, CV_64FC1 })
-        expectRejected([&] { matcher->setDisparityPrior(Mat(pair.left.size(), type, Scalar::all(1)), 0.5); },
+        expectRejected([&] { matcher->setPriorDisparity(Mat(pair.left.size(), type, Scalar::all(1)), 0.5); },
                        "disparity must be CV_32FC1");
     for (double bad : { -1., (double)unknown, std::numeric_limits<double>::infinity() })
-        expectRejected([&] { matcher->setDisparityPrior(pair.truth, bad); }, "sigma must be finite and >= 0");
-    expectRejected([&] { matcher->setDisparityPrior(pair.truth, noArray()); }, "sigma must be a number");
-    expectRejected([&] { matcher->setDisparityPrior(pair.truth, pair.truth.colRange(1, 99)); }, "sigma must be a");
+        expectRejected([&] { matcher->setPriorDisparity(pair.truth, bad); }, "sigma must be finite and >= 0");
+    expectRejected([&] { matcher->setPriorDisparity(pair.truth, noArray()); }, "sigma must be a number");
+    expectRejected([&] { matcher->setPriorDisparity(pair.truth, pair.truth.colRange(1, 99)); }, "sigma must be a");
     expectIdentical(expected, match(*matcher, pair.left, pair.right));
 
     Mat disparity;
-    matcher->setDisparityPrior(pair.truth.colRange(1, 100), 0.5);
+    matcher->setPriorDisparity(pair.truth.colRange(1, 100), 0.5);
     expectRejected([&] { matcher->compute(pair.left, pair.right, disparity); }, "the disparity of the prior must have");
     const Ptr<HDPTreeMatcher> paper = createSystem(presetPaper, 40);
-    paper->setDisparityPrior(pair.truth, 0.5);
-    expectRejected([&] { paper->compute(pair.left, pair.right, disparity); }, "COST_CENSUS for setDisparityPrior()");
+    paper->setPriorDisparity(pair.truth, 0.5);
+    expectRejected([&] { paper->compute(pair.left, pair.right, disparity); }, "COST_CENSUS for setPriorDisparity()");
     EXPECT_TRUE(disparity.empty());
 }
 

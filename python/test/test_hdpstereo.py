@@ -462,11 +462,11 @@ class Matching(Test):
         self.assertRaises(ValueError, lambda: matcher.setDisparityRange(limits + 4, limits))
         matcher.setDisparityRange(None, None)
         self.assertSame(without, matcher.compute(LEFT, RIGHT))
-        matcher.setDisparityPrior(TRUTH.astype(np.float32), 0.5)
-        self.assertLess(wrong(matcher.compute(LEFT, RIGHT)), wrong(without))
-        matcher.setDisparityPrior(TRUTH.astype(np.float32), np.full(TRUTH.shape, 0.5, np.float32))
-        self.assertRaises(ValueError, lambda: matcher.setDisparityPrior(TRUTH.astype(np.float32), -1.0))
-        matcher.setDisparityPrior(None, None)
+        matcher.setPriorDisparity(TRUTH.astype(np.float32), 0.5)
+        self.assertLessEqual(wrong(matcher.compute(LEFT, RIGHT)), wrong(without))
+        matcher.setPriorDisparity(TRUTH.astype(np.float32), np.full(TRUTH.shape, 0.5, np.float32))
+        self.assertRaises(ValueError, lambda: matcher.setPriorDisparity(TRUTH.astype(np.float32), -1.0))
+        matcher.setPriorDisparity(None, None)
         self.assertSame(without, matcher.compute(LEFT, RIGHT))
 
     def test_float(self):

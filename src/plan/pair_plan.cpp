@@ -83,7 +83,7 @@ void checkCombinations(const MatcherParameters& p, Size size, bool hasPrior)
                                     : aggregation == M::AGGREGATION_TREE_SCANLINES ? "AGGREGATION_TREE_SCANLINES"
                                     : p.fillOcclusions                             ? "fillOcclusions"
                                     : p.useTemporalPrediction                      ? "useTemporalPrediction"
-                                    : hasPrior                                     ? "setDisparityPrior()"
+                                    : hasPrior                                     ? "setPriorDisparity()"
                                                                                    : nullptr;
     if (needsCensus && p.matchingCost != M::COST_CENSUS)
         CV_Error(Error::StsBadArg, format("matchingCost must be COST_CENSUS for %s", needsCensus));

@@ -35,7 +35,7 @@ A cv::StereoMatcher: a program that uses cv::StereoSGBM changes the line that cr
 **What goes in**: a rectified pair, both images of one size and type: CV_8UC1, CV_8UC3 (BGR), CV_8UC4 (BGR and alpha,
 which is ignored), CV_16UC1 (a camera of 10 to 16 bits) or CV_32FC1 (any levels). They may have 1 x 1 to 32767 x 32767
 pixels, and fewer columns than there are disparities. What is known of them beforehand goes in, too:
-setMasks(), setDisparityRange(), setDisparityPrior().
+setMasks(), setDisparityRange(), setPriorDisparity().
 
 **What comes out**: the disparity of every pixel of the left image. A pixel (x, y) of the left image shows the same
 point as (x - disparity, y) of the right one. The map is CV_16SC1, times 16 (StereoMatcher::DISP_SCALE), or CV_32FC1 in
@@ -541,7 +541,7 @@ public:
     @param sigma Standard deviation of the disparities in pixels, finite, >= 0: a number, or CV_32FC1 of the same size.
     @throws cv::Exception if the arguments are not that; the prior is unchanged.
      */
-    CV_WRAP virtual void setDisparityPrior(InputArray disparity, InputArray sigma) = 0;
+    CV_WRAP virtual void setPriorDisparity(InputArray disparity, InputArray sigma) = 0;
 
     /** @brief Returns how reliable each disparity of the last compute() is.
 
