@@ -7,10 +7,8 @@
 #include "map/disparity_confidence.hpp"
 #include "map/disparity_reasons.hpp"
 #include "map/disparity_sigma.hpp"
-#include "pair/disparity_ranges.hpp"
-#include "pair/image_pyramid.hpp"
 #include "pair/missing_pixels.hpp"
-#include "plan/pair_inputs.hpp"
+#include "plan/known_disparities.hpp"
 #include "video/temporal_prior.hpp"
 
 #include <limits>
@@ -49,8 +47,7 @@ public:
         checkPair(left, right);
         checkInputs(inputs_, left.size());
         const int depth = outputDepth(disparityArray);
-        const int type = left.depth() == CV_32F ? CV_16UC1 : left.type(); // that is matched, see completePair()
-        const PairPlan pairPlan = plan(p_, left.size(), type, pairModel_, inputs_);
+        const PairPlan pairPlan = plan(p_, left.size(), left.type(), pairModel_, inputs_);
         clock_.restart();
 
         known_ = KnownDisparities();
@@ -61,7 +58,7 @@ public:
         else
             complete(); // nothing is to be done
         if (inputs_.hasRanges() || inputs_.hasPrior())
-            clock_.run("known disparities", [&] { takeKnown(pairPlan); });
+            clock_.run("known disparities", [&] { takeKnown(inputs_, pairPlan, known_); });
         if (matchPair(pair_, pairPlan) == CONTRADICTED)
         {
             lastFrame_.clear();
@@ -78,7 +75,7 @@ public:
         result_.isMatched = true;
         result_.model = pairPlan.given.isGiven
                             ? pairModel_
-                            : toPairModel(pairPlan.pyramids, left.size(), CV_MAT_DEPTH(type),
+                            : toPairModel(pairPlan.pyramids, left.size(), left.depth(),
                                           pairPlan.alignment.numDisparities, pyramids_.levels, result_.findings);
     }
 
@@ -281,30 +278,6 @@ private:
         if (layer < 0)
             CV_Error(Error::StsOutOfRange, format("layer must be >= 0, not %d", layer));
         return result_.isMatched && layer >= result_.plan.finest().layer && layer <= result_.plan.top().layer;
-    }
-
-    //! What is known of disparities beforehand, in terms of the layers
-    struct KnownDisparities
-    {
-        PixelRanges ranges;
-        std::vector<Mat> intervals;                  // of the layers, if there are ranges
-        std::vector<std::vector<PriorPoint>> points; // of the layers
-    };
-
-    void takeKnown(const PairPlan& plan)
-    {
-        const OutputPlan& output = plan.output;
-        const Range disparities(p_.minDisparity, p_.minDisparity + p_.numDisparities - 1);
-        std::vector<int> counts;
-        for (int layer = 0; layer <= plan.top().layer; ++layer)
-            counts.push_back(layerDisparities(p_.numDisparities, layer, plan.top().hasFractions));
-        expandRanges(inputs_.smallest, inputs_.largest, plan.size, disparities, output.isWhole, known_.ranges);
-        buildIntervals(known_.ranges, output.minDisparity, output.extension, counts, known_.intervals);
-        known_.points.resize(counts.size());
-        for (const LayerPlan& layer : plan.layers)
-            if (layer.joinsPrior)
-                pointsOfLayer(inputs_.prior, inputs_.sigma, output.minDisparity, output.extension, layer.layer,
-                              layer.numDisparities, known_.points[layer.layer]);
     }
 
     //! From the images to the disparities of the finest layer. CONTRADICTED: the pair was matched as the next frame of

@@ -18,9 +18,9 @@ from ._hdpstereo import (CV_16S, CV_32F, DisparityPredictionModel, HDPTreeMatche
                          createMinimumSpanningTree, createRandomTree, createSegmentTree, getNumThreads,
                          readStereoCalibration, setNumThreads)
 
-__all__ = ['CV_16S', 'CV_32F', 'DisparityPredictionModel', 'HDPTreeMatcher', 'PairModel', 'RigDrift', 'StereoCalibration',
-           'StereoRig', 'TreeState', 'TreeStrategy', 'createMinimumSpanningTree', 'createRandomTree',
-           'createSegmentTree', 'getNumThreads', 'readStereoCalibration', 'setNumThreads']
+__all__ = ['CV_16S', 'CV_32F', 'DisparityPredictionModel', 'HDPTreeMatcher', 'PairModel', 'RigDrift',
+           'StereoCalibration', 'StereoRig', 'TreeState', 'TreeStrategy', 'createMinimumSpanningTree',
+           'createRandomTree', 'createSegmentTree', 'getNumThreads', 'readStereoCalibration', 'setNumThreads']
 
 # Parameters by name, and repr(), which has the form of the call that creates the matcher
 

@@ -67,8 +67,6 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
                      const PixelRanges& ranges)
 {
     buffers.masked.release();
-    if (!mask.empty())
-        compare(mask, Scalar(0), buffers.masked, CMP_EQ);
     buffers.hasRejected = plan.hasFilters() || !mask.empty() || !ranges.isEmpty();
     const Size extendedSize = disparity.size() + Size(plan.extension, 0);
     Mat extended = enlarge(finest, plan.finestLayer, extendedSize, buffers.enlarged);
@@ -96,7 +94,9 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
             convert(fixedPoint, CV_32F, 1. / unit, 0, disparity);
     }
     if (!mask.empty())
-        fixedPoint.setTo(Scalar(invalid), buffers.masked);
+        fixedPoint.setTo(Scalar(invalid), mask == 0);
+    if (!mask.empty() || !ranges.isEmpty())
+        compare(fixedPoint, Scalar(invalid), buffers.masked, CMP_EQ);
     if (plan.disp12MaxDiff > 0)
         rejectOccluded(fixedPoint, plan.disp12MaxDiff, invalid);
     if (plan.hasBothFilters())

@@ -30,7 +30,7 @@ struct OutputBuffers
     bool hasRejected = false;
     Mat rejected;  // CV_8UC1, 255 where a pixel has no data or a filter rejected it; if hasRejected
     Mat notStable; // CV_8UC1, 255 where the left-right check rejected it or it has no data, if there are two filters
-    Mat masked;    // CV_8UC1, 255 where it has no data; empty: all have
+    Mat masked;    // CV_8UC1, 255 where it has no data, or its range no candidate; empty: all have
     std::vector<Mat> enlarged;
     Mat whole, fixedPoint, speckles;
 };

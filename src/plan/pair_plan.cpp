@@ -267,7 +267,8 @@ PairPlan plan(const MatcherParameters& p, Size size, int type, const PairModel& 
     const int layers = countLayers(p, whole, plan.model);
     checkPairModelOf(model, size, type, layers);
     const int finest = std::min(p.finestLayer, layers - 1);
-    const int extension = countExtension(p, size, type, layers);
+    const int matchedType = CV_MAT_DEPTH(type) == CV_32F ? CV_16UC1 : type; // see completePair()
+    const int extension = countExtension(p, size, matchedType, layers);
     plan.pyramids = { p.minDisparity, extension, layers, p.matchingCost == M::COST_CENSUS, p.noiseThreshold > 0 };
     plan.alignment = { p.numDisparities, p.maxRowOffset, p.useLightAlignment, p.noiseThreshold, finest };
     plan.given = toGivenPair(model, plan.pyramids, size);

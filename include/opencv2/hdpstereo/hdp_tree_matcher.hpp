@@ -135,7 +135,7 @@ public:
         REASON_MATCHED = 0,  //!< the right image shows it
         REASON_OCCLUDED = 1, //!< something nearer hides it in the right image; it has the disparity of what is beside
         REASON_OUTSIDE = 2,  //!< the right image ends before; likewise
-        REASON_MASKED = 3,   //!< it is masked
+        REASON_MASKED = 3,   //!< it is masked, or its range has nothing in common with the matcher's
         REASON_UNSTABLE = 4, //!< rejected by the left-right check, see setDisp12MaxDiff()
         REASON_SPECKLE = 5   //!< rejected by the filter for speckles, see setSpeckleWindowSize()
     };
@@ -583,8 +583,8 @@ public:
      */
     CV_WRAP virtual void setPairModel(const PairModel& model) = 0;
 
-    //! Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute(), after
-    //! one that threw an exception, and for images of CV_32FC1, whose levels are scaled by their own range.
+    //! Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute(),
+    //! after one that threw an exception, and for images of CV_32FC1, whose levels are scaled by their own range.
     CV_WRAP virtual PairModel getPairModel() const = 0;
 
     //! Returns what the last compute() found out about the pair.
