@@ -253,8 +253,7 @@ private:
             const WindowPrediction prediction = { isFirst ? in_.upper->disparity : own_.halved,
                                                   isFirst ? in_.upper->winners : own_.halvedWinners,
                                                   own_.sparseMatches };
-            findOtherSurfaces(prediction, own_.census, plan_.numDisparities, plan_.comparesSurfaces,
-                              own_.surfaceBuffers, own_.others);
+            findOtherSurfaces(prediction, own_.census, plan_.numDisparities, own_.surfaceBuffers, own_.others);
             predictWindows(prediction.upper, own_.others, plan_.numDisparities, own_.windows);
             if (plan_.hasIntervals)
                 restrictWindows(in_.intervals, plan_.numDisparities, own_.windows);

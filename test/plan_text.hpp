@@ -26,10 +26,9 @@ inline std::string textOf(const hdp::LayerPlan& p)
     for (const hdp::ScanlinePass& pass : p.passes)
         text << " [" << pass.penalties.small << " " << pass.penalties.large << " slope " << pass.penalties.edgeSlope
              << " prior " << pass.penalties.prior << " from below " << pass.hasFromBelow << "]";
-    text << "\n  compares surfaces " << p.comparesSurfaces << " checks last frame " << p.checksLastFrame
-         << " prefers it " << p.prefersLastFrame << " fills " << p.fillsOcclusions << " joins last frame "
-         << p.joinsLastFrame << " median " << p.medianSize << " x " << p.medianPasses << " thin structures "
-         << p.restoresThinStructures << "\n";
+    text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
+         << p.fillsOcclusions << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " x "
+         << p.medianPasses << " thin structures " << p.restoresThinStructures << "\n";
     return text.str();
 }
 

@@ -57,7 +57,7 @@ struct Layer
         const Mat matches(1, 1, CV_16UC1, Scalar(hdp::SparseMatches::noMatch));
         const hdp::WindowPrediction prediction = { upper, upper, matches };
         Mat others;
-        hdp::findOtherSurfaces(prediction, cost(), numDisparities, true, buffers, others);
+        hdp::findOtherSurfaces(prediction, cost(), numDisparities, buffers, others);
         hdp::predictWindows(upper, others, numDisparities, windows);
     }
 

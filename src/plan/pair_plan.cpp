@@ -207,11 +207,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.cost = planCost(p);
     plan.method = methodOf(p, plan.isTop);
     if (plan.method == WINDOW_SCANLINES)
-    {
         plan.passes = planPasses(p, plan);
-        // On the finest layer it takes a tenth of the time of one pass.
-        plan.comparesSurfaces = !plan.isFinest || p.scanlinePasses > 1;
-    }
     else
         plan.smoothsGuide = p.useMedianPrefilter;
     if (plan.method == TREE_SUMS || plan.method == TREE_SCANLINES)

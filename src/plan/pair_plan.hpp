@@ -88,7 +88,6 @@ struct LayerPlan
     bool hasIntervals = false;     // whether pixels have candidates of their own
     bool joinsPrior = false;       // whether winners are joined with what is known beforehand
     bool checksLastFrame = false;  // whether the pair's own costs may refuse the last frame
-    bool comparesSurfaces = false; // whether the census decides between other surfaces around a pixel
     bool prefersLastFrame = false; // whether what the last frame predicts has lower costs
     bool fillsOcclusions = false;
     bool joinsLastFrame = false;

@@ -125,17 +125,17 @@ int chooseSurface(const WindowCosts& costs, int usual, const SurfaceList& others
 class SurfaceRows
 {
 public:
-    SurfaceRows(const WindowPrediction& prediction, const CensusCost& cost, int numDisparities, bool compares,
-                SurfaceBuffers& buffers, Mat& others)
+    SurfaceRows(const WindowPrediction& prediction, const CensusCost& cost, int numDisparities, SurfaceBuffers& buffers,
+                Mat& others)
         : prediction_(prediction), maps_{ prediction.upper, prediction.unfiltered }, cost_(cost),
           numDisparities_(numDisparities), buffers_(buffers), others_(others), width_(prediction.upper.cols),
-          compares_(compares && std::min(cost.size().width, cost.size().height) >= window)
+          hasWindows_(std::min(cost.size().width, cost.size().height) >= window)
     {
     }
 
     void findExtremes(const Range& blockRows)
     {
-        for (int i = blockRows.start; compares_ && i < blockRows.end; ++i)
+        for (int i = blockRows.start; i < blockRows.end; ++i)
             for (int map = 0; map < 2; ++map)
             {
                 const int rows = std::min(side, maps_[map].rows - i * side);
@@ -161,7 +161,7 @@ public:
         {
             spreadMatches(prediction_.matches, y, matches);
             dispatched::findUsualSurfaces(rowOf(0, y), rowOf(1, y), matches.data(), width_, others_.ptr<ushort>(y));
-            if (!compares_)
+            if (!hasWindows_)
                 continue;
             if (y == rows.start || y % side == 0)
             {
@@ -234,12 +234,12 @@ private:
     SurfaceBuffers& buffers_;
     Mat& others_;
     const int width_;
-    const bool compares_;
+    const bool hasWindows_;
 };
 
 } // namespace
 
-void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost& cost, int numDisparities, bool compares,
+void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost& cost, int numDisparities,
                        SurfaceBuffers& buffers, Mat& others)
 {
     const Size size = prediction.upper.size(), blocks((size.width + side - 1) / side, (size.height + side - 1) / side);
@@ -251,7 +251,7 @@ void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost& cos
         buffers.blockMax[map].create(blocks, CV_16U);
     }
     others.create(size, CV_16U);
-    SurfaceRows all(prediction, cost, numDisparities, compares, buffers, others);
+    SurfaceRows all(prediction, cost, numDisparities, buffers, others);
     parallel_for_(Range(0, blocks.height), [&](const Range& blockRows) { all.findExtremes(blockRows); });
     const int stripes = std::max(1, std::min<int>(maxStripes, size.height / minStripeHeight));
     parallel_for_(Range(0, stripes), [&](const Range& range) {

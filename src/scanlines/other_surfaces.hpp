@@ -58,12 +58,11 @@ most 255. The first one of the lowest cost wins. Layers smaller than the window 
 @param prediction What to find them in.
 @param cost The layer's census cost.
 @param numDisparities Of the layer.
-@param compares Whether costs are compared; if not, the usual surfaces are it.
 @param buffers Memory to work in.
 @param others Receives CV_16UC1 of the size of the layer above, in 1 / subpixelScale pixel of the layer: the other
 surface, or the pixel's own disparity if there is none. */
 CV_EXPORTS void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost& cost, int numDisparities,
-                                  bool compares, SurfaceBuffers& buffers, Mat& others);
+                                  SurfaceBuffers& buffers, Mat& others);
 
 }}} // namespace cv::stereo::hdp
 
