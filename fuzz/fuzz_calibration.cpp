@@ -7,7 +7,6 @@
 // - something else is thrown than a cv::Exception of one line,
 // - a rig does not keep its size, or its depth is not above 0,
 // - the same files give another rig.
-#include "opencv2/core/utils/logger.hpp"
 #include "opencv2/hdpstereo.hpp"
 
 #include "../src/rig/calibration_files.hpp"
@@ -95,9 +94,7 @@ void checkRig(Input& input, const StereoCalibration& calibration)
 extern "C" int LLVMFuzzerInitialize(int*, char***);
 extern "C" int LLVMFuzzerInitialize(int*, char***)
 {
-    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT);
-    redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
-    return 0;
+    return silenceErrors();
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);

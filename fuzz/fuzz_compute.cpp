@@ -10,7 +10,6 @@
 // - a disparity is out of range, or the output is of another type or size,
 // - a setter or read() throws and has changed the matcher or model nevertheless,
 // - a matcher gives something else than one that was never used before, or than with another number of threads.
-#include "opencv2/core/utils/logger.hpp"
 #include "opencv2/hdpstereo.hpp"
 #include "opencv2/imgproc.hpp"
 
@@ -535,9 +534,7 @@ Ptr<HDPTreeMatcher> freshCopy(const HDPTreeMatcher& matcher)
 extern "C" int LLVMFuzzerInitialize(int*, char***);
 extern "C" int LLVMFuzzerInitialize(int*, char***)
 {
-    utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT);
-    redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
-    return 0;
+    return silenceErrors();
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);

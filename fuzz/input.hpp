@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_FUZZ_INPUT_HPP
 
 #include "opencv2/core.hpp"
+#include "opencv2/core/utils/logger.hpp"
 
 #include <fuzzer/FuzzedDataProvider.h>
 
@@ -15,6 +16,14 @@
 // What the fuzzers make of their bytes
 
 typedef FuzzedDataProvider Input;
+
+//! Exceptions are reported by their catchers. Returns what LLVMFuzzerInitialize() has to.
+inline int silenceErrors()
+{
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
+    return 0;
+}
 
 inline void require(bool condition, const char* what)
 {

@@ -48,13 +48,10 @@ and distCoeffs2 have 4, 5, 8, 12 or 14 numbers; with isFisheye they are those of
     matrix("T", &StereoCalibration::T, "Translation from the left to the right camera: 3 x 1, in metres");
     calibration.def_readwrite("isFisheye", &StereoCalibration::isFisheye, "Whether distortion is that of cv2.fisheye");
 
-    const auto path = [](const py::object& name) {
-        return py::module_::import("os").attr("fspath")(name).cast<std::string>();
-    };
     module.def(
         "readStereoCalibration",
-        [path](const py::object& first, const py::object& second, const Pair& imageSize, double unit) {
-        return cv::stereo::readStereoCalibration(path(first), second.is_none() ? std::string() : path(second),
+        [](const py::object& first, const py::object& second, const Pair& imageSize, double unit) {
+        return cv::stereo::readStereoCalibration(nameOf(first), second.is_none() ? std::string() : nameOf(second),
                                                  toSize(imageSize), unit);
         },
         py::arg("first"), py::arg("second") = py::none(), py::arg("imageSize") = Pair(0, 0), py::arg("unit") = 1.,

@@ -8,7 +8,6 @@
 #include "map/disparity_reasons.hpp"
 #include "map/disparity_sigma.hpp"
 #include "pair/missing_pixels.hpp"
-#include "plan/known_disparities.hpp"
 #include "video/temporal_prior.hpp"
 
 #include <limits>
@@ -317,12 +316,9 @@ private:
         Verdict verdict = FIRST;
         for (const LayerPlan& layer : adapted.layers)
         {
-            const CensusCost* below = layer.isFinest ? nullptr : &scratch_[layer.layer - 1].census;
-            const Mat intervals = layer.hasIntervals ? known_.intervals[layer.layer] : Mat();
-            const std::vector<PriorPoint> points =
-                layer.joinsPrior ? known_.points[layer.layer] : std::vector<PriorPoint>();
-            const LayerInput input = { adapted,   layer,  images[layer.layer], upper,      below,
-                                       intervals, points, lastFrame_,          prediction_ };
+            const CensusCost* below = layer.seesBelow ? &scratch_[layer.layer - 1].census : nullptr;
+            const LayerInput input = { adapted, layer,  images[layer.layer], upper,
+                                       below,   known_, lastFrame_,          prediction_ };
             verdict = matchLayer(input, scratch_[layer.layer], shared_, clock_, layers_[layer.layer]);
             if (verdict == CONTRADICTED)
                 return CONTRADICTED;

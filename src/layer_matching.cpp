@@ -120,7 +120,7 @@ private:
             assignIntervals(in_.upper->disparity, size, shared_.intervals, own_.pixelIntv);
         }
         if (plan_.hasIntervals)
-            intersectIntervals(in_.intervals, own_.pixelIntv);
+            intersectIntervals(intervals(), own_.pixelIntv);
     }
 
     //! What gives the edge weights. The median is that of the M+ systems, and of noisy pairs; as in the authors'
@@ -163,16 +163,15 @@ private:
     void scanVolume(const Mat& weights)
     {
         if (plan_.hasIntervals)
-            excludeCandidates(in_.intervals, shared_.volume);
+            excludeCandidates(intervals(), shared_.volume);
         aggregateVolume(shared_.volume, weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
     }
 
+    //! DisparityInterval of each pixel, if the plan has them
+    const Mat& intervals() const { return in_.known.intervals[plan_.layer]; }
+
     //! What the costs of a volume are
-    void prepareVolumeCost()
-    {
-        const CensusCost* below = plan_.seesBelow ? in_.below : nullptr;
-        shared_.volumeCost.prepare(own_.census, below, plan_.numDisparities);
-    }
+    void prepareVolumeCost() { shared_.volumeCost.prepare(own_.census, in_.below, plan_.numDisparities); }
 
     //! Side of this layer's pixels, in pixels of the layer that the last frame is of
     int lastFrameSide() const { return 1 << (plan_.layer - in_.pair.finest().layer); }
@@ -214,7 +213,7 @@ private:
     {
         const PairMasks& masks = in_.images.masks;
         if (!masks.isEmpty())
-            own_.residual.setTo(Scalar(UCHAR_MAX), masks.left < 128); // hasData()
+            own_.residual.setTo(Scalar(UCHAR_MAX), pixelsWithData(masks.left) == 0);
         fillOccluded(result_.winners, own_.residual, in_.images.right, masks.right);
     }
 
@@ -256,7 +255,7 @@ private:
             findOtherSurfaces(prediction, own_.census, plan_.numDisparities, own_.surfaceBuffers, own_.others);
             predictWindows(prediction.upper, own_.others, plan_.numDisparities, own_.windows);
             if (plan_.hasIntervals)
-                restrictWindows(in_.intervals, plan_.numDisparities, own_.windows);
+                restrictWindows(intervals(), plan_.numDisparities, own_.windows);
         });
     }
 
@@ -284,7 +283,8 @@ private:
         if (!plan_.joinsPrior)
             return;
         clock_.run("prior", [&] {
-            joinPrior(in_.prior, in_.images.guide, own_.census, plan_.layer, plan_.maxDisparity, result_.winners);
+            joinPrior(in_.known.points[plan_.layer], in_.images.guide, own_.census, plan_.layer, plan_.maxDisparity,
+                      result_.winners);
         });
         keepIntervals(result_.winners);
     }
@@ -292,7 +292,7 @@ private:
     void keepIntervals(Mat& disparity) const
     {
         if (plan_.hasIntervals)
-            moveIntoIntervals(in_.intervals, disparity);
+            moveIntoIntervals(intervals(), disparity);
     }
 
     void filterMap()

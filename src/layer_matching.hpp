@@ -6,9 +6,8 @@
 
 #include "base/stage_clock.hpp"
 #include "forest/forest_aggregation.hpp"
-#include "map/prior_join.hpp"
 #include "paper/support_points.hpp"
-#include "plan/pair_plan.hpp"
+#include "plan/known_disparities.hpp"
 #include "scanlines/candidate_windows.hpp"
 #include "scanlines/other_surfaces.hpp"
 #include "video/temporal_join.hpp"
@@ -30,12 +29,11 @@ struct LayerInput
     const PairPlan& pair;
     const LayerPlan& plan;
     const LayerImages& images;
-    const LayerResult* upper;             // the layer above; none at the top layer
-    const CensusCost* below;              // that of the layer below; none at the finest layer
-    const Mat& intervals;                 // DisparityInterval of each pixel, if the plan has them
-    const std::vector<PriorPoint>& prior; // what is known beforehand, if the plan joins it
-    const FrameMemory& lastFrame;         // of a video
-    const FramePrediction& prediction;    // of this frame, if it is one of a video
+    const LayerResult* upper;          // the layer above; none at the top layer
+    const CensusCost* below;           // that of the layer below, if the plan sees it
+    const KnownDisparities& known;     // beforehand, if the plan has intervals or joins a prior
+    const FrameMemory& lastFrame;      // of a video
+    const FramePrediction& prediction; // of this frame, if it is one of a video
 };
 
 //! Memory of one layer, kept for the next pair

@@ -10,6 +10,7 @@
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/imgproc.hpp"
 
+#include "evaluation/bad_cameras.hpp"
 #include "evaluation/command_line.hpp"
 #include "evaluation/datasets.hpp"
 #include "evaluation/methods.hpp"

@@ -20,6 +20,9 @@ struct PairMasks
 //! Of the pixel of a mask: whether half of the image's pixels that it stands for have data
 inline bool hasData(uchar share) { return share >= 128; }
 
+//! hasData() of all pixels of a mask: CV_8UC1, 255 where, else 0
+inline Mat pixelsWithData(const Mat& mask) { return mask >= 128; }
+
 }}} // namespace cv::stereo::hdp
 
 #endif

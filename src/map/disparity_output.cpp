@@ -78,7 +78,7 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
     }
     const Mat map = extended.colRange(plan.extension, extended.cols);
     const bool isFloat = disparity.depth() == CV_32F;
-    if (isFloat)
+    if (isFloat && ranges.isEmpty())
         convert(map, CV_32F, 1. / unit, plan.minDisparity, disparity);
     Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
     if (!isFloat || buffers.hasRejected)

@@ -48,8 +48,8 @@ Place placeOf(float value, const float* ascending, int count)
     return { first, std::min(std::max(share, 0.f), 1.f) };
 }
 
-//! The difference of a row's levels from those matched, times unit, its square, and that of the difference of the levels
-//! beside
+//! The difference of a row's levels from those matched, times unit, its square, and that of the difference of the
+//! levels beside
 void compareRow(const CensusCost& cost, const ushort* disparity, int y, int width, int* difference, int* square,
                 int* gradient)
 {

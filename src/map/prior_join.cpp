@@ -35,7 +35,7 @@ struct Neighbour
 };
 
 //! What is known of a point
-enum Verdict
+enum PointState
 {
     AGREES,
     COUNTS, // against the winner
@@ -50,7 +50,7 @@ public:
         : points_(points), guide_(guide), cost_(cost), winners_(winners), width_(winners.cols),
           reach_(reachOf(winners.size(), points.size(), layer)), scale_(1. / (1 << layer)),
           grid_((width_ + reach_ - 1) / reach_, (winners.rows + reach_ - 1) / reach_), cells_(grid_.area()),
-          verdicts_(points.size(), AGREES), before_(points.size())
+          states_(points.size(), AGREES), before_(points.size())
     {
         for (size_t i = 0; i < points.size(); ++i)
         {
@@ -67,19 +67,19 @@ public:
         for (size_t i = 0; i < points_.size(); ++i)
         {
             if (!areAlike(before_[i], points_[i].disparity, points_[i].sigma, 0))
-                verdicts_[i] = FAILS;
-            agreeing += verdicts_[i] == AGREES;
+                states_[i] = FAILS;
+            agreeing += states_[i] == AGREES;
         }
         if (points_.empty() || agreeing < minAgreement * points_.size())
             return false;
         std::vector<uchar> counts(points_.size());
         parallel_for_(Range(0, (int)points_.size()), [&](const Range& range) {
             for (int i = range.start; i < range.end; ++i)
-                counts[i] = verdicts_[i] == FAILS && !isContradicted(i) && isSupported(i);
+                counts[i] = states_[i] == FAILS && !isContradicted(i) && isSupported(i);
         });
         for (size_t i = 0; i < points_.size(); ++i)
             if (counts[i])
-                verdicts_[i] = COUNTS;
+                states_[i] = COUNTS;
         return true;
     }
 
@@ -152,7 +152,7 @@ private:
                 {
                     const Point d = points_[index].place - place;
                     const double distance = std::sqrt((double)d.dot(d));
-                    if (distance <= reach_ && (alsoFailing || verdicts_[index] != FAILS))
+                    if (distance <= reach_ && (alsoFailing || states_[index] != FAILS))
                         found.push_back({ index, weigh(place, index, distance), distance });
                 }
         const auto isHeavier = [](const Neighbour& a, const Neighbour& b) {
@@ -211,7 +211,7 @@ private:
             const PriorPoint& point = points_[n.index];
             if (areAlike(winner, point.disparity, point.sigma, n.distance))
                 speaksFor += n.weight;
-            else if (verdicts_[n.index] == COUNTS && areAlike(winner, before_[n.index], point.sigma, n.distance))
+            else if (states_[n.index] == COUNTS && areAlike(winner, before_[n.index], point.sigma, n.distance))
                 against += n.weight;
         }
         if (found.size() < 2 || (speaksFor > 0 && speaksFor >= against))
@@ -274,7 +274,7 @@ private:
     const double scale_; // of the layer
     const Size grid_;
     std::vector<std::vector<int>> cells_;
-    std::vector<Verdict> verdicts_;
+    std::vector<PointState> states_;
     std::vector<float> before_; // winners at the points
 };
 

@@ -48,10 +48,9 @@ HDP_DISPATCH(trackingSums)
 //! Whether all windows that are matched around pixels have data: CV_8UC1, 255 where, else 0; empty for an empty mask
 Mat windowsWithData(const Mat& mask)
 {
-    Mat has;
     if (mask.empty())
-        return has;
-    compare(mask, Scalar(128), has, CMP_GE); // hasData()
+        return Mat();
+    Mat has = pixelsWithData(mask);
     const int width = CornerMatching::trackWidth + 1, height = CornerMatching::trackHeight + 2;
     erode(has, has, Mat::ones(height, width, CV_8U), Point(-1, -1), 1, BORDER_REPLICATE);
     return has;
@@ -263,16 +262,14 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
     if (std::min(coarseLeft.rows, coarseLeft.cols) < 2 * (CornerMatching::searchSide + CornerMatching::searchRadius))
         return;
     const int cell = std::max<int>(minSpacing >> coarse.layer, minCoarseSpacing);
-    PairMasks coarseMasks = masks;
-    for (int layer = 0; layer < coarse.layer && !masks.isEmpty(); ++layer)
-        for (Mat* mask : { &coarseMasks.left, &coarseMasks.right })
-        {
-            Mat half;
-            halveImage(*mask, half);
-            *mask = half;
-        }
-    findCornerMatches(coarseLeft, coarseRight, coarseMasks, layerDisparities(numDisparities, coarse.layer, true), cell,
-                      coarse.windows, coarse.matches);
+    std::vector<Mat> leftMasks(1), rightMasks(1);
+    if (!masks.isEmpty())
+    {
+        buildPyramid({ masks.left }, coarse.layer + 1, leftMasks);
+        buildPyramid({ masks.right }, coarse.layer + 1, rightMasks);
+    }
+    findCornerMatches(coarseLeft, coarseRight, { leftMasks.back(), rightMasks.back() },
+                      layerDisparities(numDisparities, coarse.layer, true), cell, coarse.windows, coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
 }
 

@@ -145,9 +145,9 @@ PairModel PairModel::enlarged(int times, int largeWidth, int largeHeight) const
     PairModel model = *this;
     model.width = model.tileWidth = largeWidth;
     model.height = model.tileHeight = largeHeight;
-    model.minDisparity *= 1 << times;
-    model.numDisparities *= 1 << times;
-    model.addedColumns <<= times;
+    model.minDisparity = saturate_cast<int>(minDisparity * scale);
+    model.numDisparities = saturate_cast<int>(numDisparities * scale);
+    model.addedColumns = saturate_cast<int>(addedColumns * scale);
     model.rows[0] *= scale;
     model.rows[3] /= scale;
     model.rows[4] /= scale;

@@ -27,8 +27,7 @@ void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat
 
 void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows)
 {
-    const int length = CandidateWindow::runLength, all = CandidateWindow::candidates,
-              outside = CandidateWindow::beyondRange;
+    const int length = CandidateWindow::runLength;
     for (int y = 0; y < windows.rows; ++y)
         for (int x = 0; x < windows.cols; ++x)
         {
@@ -50,7 +49,7 @@ void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows)
                 continue;
             const int run = used[1] ? 1 : 0;
             const int centre = std::min(std::max(wholeDisparity(window.predicted[run]), first), last);
-            const int begin = std::max(std::min(centre - (all / 2 - 1), numDisparities + outside - all), -outside);
+            const int begin = firstCandidate(centre, CandidateWindow::candidates, numDisparities);
             window.first[0] = (short)begin;
             window.first[1] = (short)(begin + length);
             window.predicted[0] = window.predicted[1] =

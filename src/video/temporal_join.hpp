@@ -83,8 +83,7 @@ measured one, that of the last frame at the same place, if the image stands stil
 the camera takes there, if the image looks the same where it comes from. One of the last frame is kept unless the
 measured one has lower costs in the window around, clearly lower ones if the two are near each other. It moves towards
 the measured one if both agree, by less the more frames it stands for; if not, it stands for fewer frames, in the end
-for none, and the measured one is taken. If
-that is so for many of the pixels, the pair contradicts the last frame.
+for none, and the measured one is taken. If that is so for many of the pixels, the pair contradicts the last frame.
 @param cost The layer's census cost.
 @param last The last frame.
 @param prediction What predictFrame() found.

@@ -76,8 +76,8 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
     return scaled(fitMotion(points, size, smallError), cell);
 }
 
-//! Whether this frame shows another scene, or none: on the coarsest level, about as much changed as there is contrast, or
-//! there is hardly any.
+//! Whether this frame shows another scene, or none: on the coarsest level, about as much changed as there is contrast,
+//! or there is hardly any.
 bool isCut(const std::vector<Mat>& greyBefore, const FramePrediction& p)
 {
     const int level = (int)p.grey.size() - 1, side = cell << level;

@@ -13,8 +13,8 @@ namespace cv { namespace stereo { namespace hdp {
 //! moves, as joinLastFrame() keeps disparities then.
 CV_EXPORTS bool hasPrior(const FrameMemory& last, const FramePrediction& prediction);
 
-/** Whether this frame's own costs refuse the last frame: at many of the pixels that it predicts a disparity for, another
-one is much better.
+/** Whether this frame's own costs refuse the last frame: at many of the pixels that it predicts a disparity for,
+another one is much better.
 @param last The last frame.
 @param prediction What predictFrame() found; the frame continues.
 @param side That of the volume's pixels, in pixels of the layer that the prediction is of.

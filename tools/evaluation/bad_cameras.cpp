@@ -30,12 +30,17 @@ ImageChange changeLevels(const std::function<double(double)>& change)
 
 ImageChange addNoise(double deviation)
 {
-    return [deviation](const Mat& image, RNG& rng) {
-        Mat noise(image.size(), CV_32FC3), changed;
-        rng.fill(noise, RNG::NORMAL, 0, deviation);
-        add(image, noise, changed, noArray(), CV_8U);
-        return changed;
-    };
+    return [deviation](const Mat& image, RNG& rng) { return addNoise(image, deviation, rng); };
+}
+
+Mat addNoise(const Mat& image, double deviation, RNG& rng)
+{
+    if (deviation == 0)
+        return image;
+    Mat noise(image.size(), CV_MAKETYPE(CV_32F, image.channels())), noisy;
+    rng.fill(noise, RNG::NORMAL, 0, image.depth() == CV_16U ? 257 * deviation : deviation);
+    add(image, noise, noisy, noArray(), image.depth());
+    return noisy;
 }
 
 ImageChange compress(int quality)

@@ -26,6 +26,9 @@ ImageChange changeLevels(const std::function<double(double)>& change);
 //! Gaussian noise of this standard deviation is added, in levels.
 ImageChange addNoise(double deviation);
 
+//! The same, in levels of 255, of an image of 8 or 16 bit and any number of channels
+Mat addNoise(const Mat& image, double deviation, cv::RNG& rng);
+
 //! JPEG of this quality
 ImageChange compress(int quality);
 

@@ -9,6 +9,7 @@
 
 #include "opencv2/imgproc.hpp"
 
+#include "bad_cameras.hpp"
 #include "command_line.hpp"
 
 namespace hdp_tools {
@@ -157,16 +158,6 @@ void changeFrame(const VariantFrame& frame, RNG& rng, Pair& pair)
             image->convertTo(*image, -1, frame.gain);
         *image = addNoise(*image, frame.noise, rng);
     }
-}
-
-Mat addNoise(const Mat& image, double deviation, RNG& rng)
-{
-    if (deviation == 0)
-        return image;
-    Mat noise(image.size(), CV_MAKETYPE(CV_32F, image.channels())), noisy;
-    rng.fill(noise, RNG::NORMAL, 0, image.depth() == CV_16U ? 257 * deviation : deviation);
-    add(image, noise, noisy, noArray(), image.depth());
-    return noisy;
 }
 
 } // namespace hdp_tools

@@ -48,9 +48,6 @@ std::vector<VideoVariant> selectVariants(const String& list, int frames);
 //! Does with a recorded frame what a variant does with it.
 void changeFrame(const VariantFrame& frame, cv::RNG& rng, Pair& pair);
 
-//! Adds Gaussian noise, in levels of 255.
-Mat addNoise(const Mat& image, double deviation, cv::RNG& rng);
-
 } // namespace hdp_tools
 
 #endif

@@ -113,48 +113,53 @@ double affordedPixels(const CommandLineParser& parser, double otherBytes)
     return pixels;
 }
 
-//! What all tiles are matched with. Rows and light are those of the reduced pair, the rest that of a part in the middle.
-//! layers: receives the number of layers.
-PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, HDPTreeMatcher& matcher, double pixels,
-                    int& layers)
+//! A matcher as the options say, with the model of this pair, estimated by itself
+Ptr<HDPTreeMatcher> matchAlone(const CommandLineParser& parser, int width, const Mat& left, const Mat& right,
+                               int minDisparity, int numDisparities)
+{
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, width);
+    matcher->setPairModel(PairModel());
+    matcher->setMinDisparity(minDisparity);
+    matcher->setNumDisparities(numDisparities);
+    computeDisparity(*matcher, left, right);
+    return matcher;
+}
+
+//! What all tiles are matched with: --findings, or rows and light of the reduced pair and the rest of a part in the
+//! middle. layers: receives the number of layers.
+PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, const HDPTreeMatcher& matcher,
+                    double pixels, int& layers)
 {
     const Size size = pair.size();
     int times = 0;
     while ((double)(size.width >> times) * (size.height >> times) > std::min(overviewPixels, pixels))
         ++times;
-    const Mat left = reduced(*pair.left, times), right = reduced(*pair.right, times);
     const int min = matcher.getMinDisparity(), count = matcher.getNumDisparities();
-    const Ptr<HDPTreeMatcher> small = createMatcher(parser, size.width);
-    small->setPairModel(PairModel());
-    small->setMinDisparity(min >> times);
-    small->setNumDisparities((count >> times) + 1);
-    if (times == 0)
-        small->setNumDisparities(count);
-    computeDisparity(*small, left, right);
-    layers = (int)small->getFindings().searchRatios.size();
-    PairModel model = small->getPairModel();
-    if (times == 0)
-        return parser.has("findings") ? PairModel::load(parser.get<String>("findings")) : model;
-
     const int side = (int)std::sqrt(std::min(overviewPixels, pixels));
-    const Rect middle = (Rect((size.width - side) / 2, (size.height - side) / 2, side, side)) & Rect(Point(), size);
-    const Ptr<HDPTreeMatcher> part = createMatcher(parser, size.width);
-    part->setPairModel(PairModel());
-    computeDisparity(*part, pair.left->read(middle), pair.right->read(middle));
-    layers = (int)part->getFindings().searchRatios.size();
+    const Rect all(Point(), size), middle = Rect((size.width - side) / 2, (size.height - side) / 2, side, side) & all;
+    const Rect part = times == 0 ? all : middle;
+    const Ptr<HDPTreeMatcher> ofPart =
+        matchAlone(parser, size.width, pair.left->read(part), pair.right->read(part), min, count);
+    layers = (int)ofPart->getFindings().searchRatios.size();
     if (parser.has("findings"))
         return PairModel::load(parser.get<String>("findings"));
-    const PairModel ofPart = part->getPairModel();
-    model = model.enlarged(times, size.width, size.height);
-    if (ofPart.noise > 0)
+    const PairModel found = ofPart->getPairModel();
+    if (times == 0)
+        return found;
+
+    PairModel model = matchAlone(parser, size.width, reduced(*pair.left, times), reduced(*pair.right, times),
+                                 min >> times, (count >> times) + 1)
+                          ->getPairModel()
+                          .enlarged(times, size.width, size.height);
+    if (found.noise > 0)
     {
-        model.noise = ofPart.noise;
-        model.noiseLayer = ofPart.noiseLayer;
+        model.noise = found.noise;
+        model.noiseLayer = found.noiseLayer;
     }
-    model.leftBlockStart = (ofPart.leftBlockStart + middle.x) % 8;
-    model.leftBlockStep = ofPart.leftBlockStep;
-    model.rightBlockStart = (ofPart.rightBlockStart + middle.x) % 8;
-    model.rightBlockStep = ofPart.rightBlockStep;
+    model.leftBlockStart = (found.leftBlockStart + part.x) % 8;
+    model.leftBlockStep = found.leftBlockStep;
+    model.rightBlockStart = (found.rightBlockStart + part.x) % 8;
+    model.rightBlockStep = found.rightBlockStep;
     return model;
 }
 
