@@ -120,7 +120,7 @@ private:
             assignIntervals(in_.upper->disparity, size, shared_.intervals, own_.pixelIntv);
         }
         if (plan_.hasIntervals)
-            intersectIntervals(intervals(), own_.pixelIntv);
+            intersectIntervals(candidateIntervals(), own_.pixelIntv);
     }
 
     //! What gives the edge weights. The median is that of the M+ systems, and of noisy pairs; as in the authors'
@@ -163,15 +163,24 @@ private:
     void scanVolume(const Mat& weights)
     {
         if (plan_.hasIntervals)
-            excludeCandidates(intervals(), shared_.volume);
+            excludeCandidates(candidateIntervals(), shared_.volume);
         aggregateVolume(shared_.volume, weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
     }
 
     //! DisparityInterval of each pixel, if the plan has them
     const Mat& intervals() const { return in_.known.intervals[plan_.layer]; }
 
+    //! The same in candidates of a volume
+    const Mat& candidateIntervals()
+    {
+        if (!plan_.seesBelow)
+            return intervals();
+        doubleIntervals(intervals(), plan_.numDisparities, own_.candidateIntervals);
+        return own_.candidateIntervals;
+    }
+
     //! What the costs of a volume are
-    void prepareVolumeCost() { shared_.volumeCost.prepare(own_.census, in_.below, plan_.numDisparities); }
+    void prepareVolumeCost() { shared_.volumeCost.prepare(own_.census, in_.below); }
 
     //! Side of this layer's pixels, in pixels of the layer that the last frame is of
     int lastFrameSide() const { return 1 << (plan_.layer - in_.pair.finest().layer); }

@@ -181,7 +181,7 @@ void expectMeans(const CensusLayer& layer, double gamma, hdp::AggregationBuffers
 {
     hdp::CostVolume volume;
     hdp::TwoLayerCost cost;
-    cost.prepare(layer.census, nullptr, numDisparities);
+    cost.prepare(layer.census, nullptr);
     hdp::aggregateMeans(layer.forest, cost, gamma, buffers, volume);
     ASSERT_EQ(layer.left.size(), volume.size);
     std::vector<char> isTaken(volume.rows);

@@ -166,6 +166,12 @@ TEST(HDPStereo_CostVolume, prefer)
     preference.apply(0, 1e6, volume); // beyond the candidates, whose costs all rise by as much
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[0]);
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[candidates - 1]);
+
+    volume.costs = before;
+    volume.steps = 2; // candidates per pixel of disparity
+    preference.apply(0, 7.25 / 2, volume);
+    for (int k = 0; k < candidates; ++k)
+        EXPECT_EQ(flatCost + std::min(cvRound(CostVolume::scale * std::abs(k - 7.25)), largest), costsOf(0)[k]);
 }
 
 //! More candidates than 16 bits hold units of
@@ -217,7 +223,7 @@ TEST(HDPStereo_CostVolume, fill)
             CensusCost ofLayer;
             ofLayer.prepare(left, right, all.size(), blockSize);
             TwoLayerCost cost;
-            cost.prepare(ofLayer, nullptr, all.size());
+            cost.prepare(ofLayer, nullptr);
             const oracle::CensusCost census(left, right, blockSize);
             volume.fill(cost, imageSize, all);
             EXPECT_EQ(imageSize, volume.size);

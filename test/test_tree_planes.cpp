@@ -8,7 +8,7 @@
 
 namespace opencv_test { namespace {
 
-const int candidates = 24;
+const int candidates = 48;
 const int flatCost = 60, winnerCost = 40; // in units of the volume
 
 //! A layer whose trees are the surfaces of a colour, with costs that are the same for all candidates, and winners 0
@@ -18,12 +18,13 @@ struct Layer
     hdp::CostVolume volume;
     Mat disparity;
 
-    explicit Layer(const Mat& colors) : disparity(colors.size(), CV_16U, Scalar(0))
+    explicit Layer(const Mat& colors, int steps = 1) : disparity(colors.size(), CV_16U, Scalar(0))
     {
         hdp::ForestBuffers buffers;
         hdp::buildForest(colors, Mat(colors.size(), CV_16UC2, Scalar(0, candidates - 1)), *createSegmentTree(), 0.6,
                          false, buffers, forest);
         volume.create(forest);
+        volume.steps = steps;
         hdp::TreeWalk walk;
         for (size_t t = 0; t < forest.trees.size(); ++t)
         {
@@ -39,7 +40,7 @@ struct Layer
     void win(int x, int y, double value, int cost = winnerCost)
     {
         disparity.at<ushort>(y, x) = (ushort)cvRound(value * hdp::subpixelScale);
-        costs(x, y)[cvRound(value)] = (uchar)cost;
+        costs(x, y)[cvRound(volume.steps * value)] = (uchar)cost;
     }
 
     int preferPlanes() { return hdp::preferTreePlanes(forest, disparity, volume); }
@@ -61,11 +62,12 @@ int penalty(double plane, int candidate)
 }
 
 //! Half of a surface is bare, and has disparities of its neighbour.
-TEST(HDPStereo_TreePlanes, bare_half)
+//! steps: candidates per pixel of disparity
+void preferPlanesOfBareHalf(int steps)
 {
     const Size size(80, 60);
     const int left = 30;
-    Layer layer(twoSurfaces(size, left));
+    Layer layer(twoSurfaces(size, left), steps);
     ASSERT_EQ(2u, layer.forest.trees.size());
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
@@ -81,7 +83,7 @@ TEST(HDPStereo_TreePlanes, bare_half)
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
         {
-            const double plane = x < left ? 20 : slanted(x, y);
+            const double plane = steps * (x < left ? 20 : slanted(x, y));
             const bool isBare = x >= left && y >= size.height / 2;
             for (int k = 0; k < candidates; ++k)
                 ASSERT_NEAR((!isBare && k == cvRound(plane) ? winnerCost : flatCost) + penalty(plane, k),
@@ -89,6 +91,10 @@ TEST(HDPStereo_TreePlanes, bare_half)
                     << k << " at " << x << ", " << y;
         }
 }
+
+TEST(HDPStereo_TreePlanes, bare_half) { preferPlanesOfBareHalf(1); }
+
+TEST(HDPStereo_TreePlanes, candidates_of_half_a_pixel) { preferPlanesOfBareHalf(2); }
 
 //! Pixels whose costs are 3 bits lower elsewhere are those of another surface.
 TEST(HDPStereo_TreePlanes, other_surface_in_front)

@@ -47,18 +47,21 @@ TEST(HDPStereo_TwoLayerCost, definition_per_pixel)
                 const Mat leftBelow = randomImage(rng, finer, CV_16UC1, 9),
                           rightBelow = randomImage(rng, finer, CV_16UC1, 9);
                 CensusCost own, below;
-                own.prepare(left, right, candidates, blockSize);
+                own.prepare(left, right, candidates + 1, blockSize);
                 below.prepare(leftBelow, rightBelow, 2 * candidates, blockSize, 1);
                 const oracle::CensusCost ownFormula(left, right, blockSize);
                 const oracle::CensusCost belowFormula(leftBelow, rightBelow, blockSize, 1);
-                cost.prepare(own, &below, candidates);
-                expectCosts(cost, size, candidates, [&](int y, int x, int d) {
-                    int sum = 4 * (int)ownFormula(y, x, d);
+                cost.prepare(own, &below);
+                ASSERT_EQ(2, cost.steps());
+                expectCosts(cost, size, 2 * candidates, [&](int y, int x, int h) {
+                    double sum = 0;
                     for (int i = 0; i < 4; ++i)
-                        sum += (int)belowFormula(2 * y + i / 2, 2 * x + i % 2, 2 * d);
-                    return sum;
+                        sum += belowFormula(2 * y + i / 2, 2 * x + i % 2, h);
+                    const double ofOwn = ownFormula(y, x, h / 2) + ownFormula(y, x, (h + 1) / 2);
+                    return cvCeil(8 * (ofOwn / 8 + 3 * sum / 16));
                 });
-                cost.prepare(own, nullptr, candidates);
+                cost.prepare(own, nullptr);
+                ASSERT_EQ(1, cost.steps());
                 expectCosts(cost, size, candidates, [&](int y, int x, int d) { return 8 * (int)ownFormula(y, x, d); });
             }
 }

@@ -134,6 +134,22 @@ TEST(HDPStereo_VolumeScanlines, formula_for_any_number_of_disparities)
         }
 }
 
+TEST(HDPStereo_VolumeScanlines, candidates_of_half_a_pixel)
+{
+    RNG rng(63);
+    hdp::VolumeScanlineBuffers buffers;
+    for (bool isFull : { true, false })
+    {
+        Layer layer(rng, Size(19, 11), 33, 256, isFull);
+        const Mat ofPixels = layer.expected(usualPenalties);
+        layer.volume.steps = 2;
+        Mat expected(ofPixels.size(), CV_16U);
+        for (int p = 0; p < (int)expected.total(); ++p)
+            expected.ptr<ushort>()[p] = (ushort)(ofPixels.ptr<ushort>()[p] / 2);
+        expectIdentical(expected, layer.aggregate(usualPenalties, buffers));
+    }
+}
+
 TEST(HDPStereo_VolumeScanlines, formula_for_candidates_of_each_pixel)
 {
     RNG rng(67);

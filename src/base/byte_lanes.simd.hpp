@@ -66,6 +66,10 @@ struct ByteLanes
         return ByteLanes(v_load_halves(low[0] + offset, high[0] + offset),
                          v_load_halves(low[1] + offset, high[1] + offset));
     }
+    static ByteLanes loadInTurns(const uchar* first, const uchar* second)
+    {
+        return ByteLanes(inTurns(first, second), inTurns(first + 8, second + 8));
+    }
     //! The group at bytes, and 0, 1, .. 15 in the other one
     static ByteLanes first(const uchar* bytes) { return ByteLanes(v_load(bytes), laneNumbers()); }
     //! The group at bytes, then the first one of before
@@ -82,11 +86,20 @@ struct ByteLanes
     {
         return v_load_halves(low[0] + offset, high[0] + offset);
     }
+    //! A byte of the first, one of the second and so on; 8 more of each may be read.
+    static ByteLanes loadInTurns(const uchar* first, const uchar* second) { return inTurns(first, second); }
     static ByteLanes first(const uchar* bytes) { return v_load(bytes); }
     static ByteLanes shiftIn(const uchar* bytes, const ByteLanes&) { return v_load(bytes); }
     void storeLast(uchar* bytes) const { v_store(bytes, v); }
 #endif
     void store(uchar* bytes) const { v_store(bytes, v); }
+
+    static v_uint8x16 inTurns(const uchar* first, const uchar* second)
+    {
+        v_uint8x16 low, high;
+        v_zip(v_load(first), v_load(second), low, high);
+        return low;
+    }
 
     static v_uint8x16 laneNumbers()
     {
@@ -114,6 +127,8 @@ struct ByteLanes
     ByteLanes min(const ByteLanes& b) const { return v_min(v, b.v); }
     ByteLanes difference(const ByteLanes& b) const { return v_absdiff(v, b.v); } // its absolute value
 
+    //! Half of each lane, rounded down
+    ByteLanes half() const { return ByteLanes(v_reinterpret_as_u8(v_shr<1>(v_reinterpret_as_u16(v)))) & repeat(127); }
     //! A quarter of each lane, rounded down
     ByteLanes quarter() const { return ByteLanes(v_reinterpret_as_u8(v_shr<2>(v_reinterpret_as_u16(v)))) & repeat(63); }
 

@@ -89,7 +89,7 @@ void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, uc
 {
     dispatched::countCensusCost(planes_, pixels, count, first, lanes, cost);
     if (!limits_.isEmpty())
-        limits_.apply(pixels, count, first, lanes, 1, cost);
+        limits_.apply(pixels, count, first, lanes, 1, 1, cost);
 }
 
 void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const

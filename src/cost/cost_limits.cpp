@@ -48,15 +48,19 @@ void CostLimits::apply(const int* pixels, int count, int first, int lanes, float
     }
 }
 
-void CostLimits::apply(const int* pixels, int count, int first, int lanes, uchar unit, uchar* cost) const
+void CostLimits::apply(const int* pixels, int count, int first, int lanes, uchar unit, int steps, uchar* cost) const
 {
     for (int i = 0; i < count; ++i, cost += lanes)
     {
         const int y = pixels[i] / width_, x = pixels[i] - y * width_;
         const uchar own = left(y)[x];
-        const uchar* const limit = right(y) + width_ - 1 - x + first;
-        HDP_VECTORIZED for (int k = 0; k < lanes; ++k) cost[k] =
-            (uchar)std::min((int)cost[k], unit * std::min(own, limit[k]));
+        const uchar* const limit = right(y) + width_ - 1 - x;
+        for (int k = 0; k < lanes; ++k)
+        {
+            const int candidate = first + k;
+            const uchar both = std::min(limit[candidate / steps], limit[(candidate + steps - 1) / steps]);
+            cost[k] = (uchar)std::min((int)cost[k], unit * std::min(own, both));
+        }
     }
 }
 

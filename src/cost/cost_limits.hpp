@@ -37,7 +37,8 @@ public:
     /** Limits what MatchingCost::evaluate() has found.
     @param unit The cost of a bit. */
     void apply(const int* pixels, int count, int first, int lanes, float unit, float* cost) const;
-    void apply(const int* pixels, int count, int first, int lanes, uchar unit, uchar* cost) const;
+    //! steps: candidates per pixel of disparity. What is between two pixels has data if both have.
+    void apply(const int* pixels, int count, int first, int lanes, uchar unit, int steps, uchar* cost) const;
     //! Limits the costs of a row of disparities.
     void apply(int y, const ushort* disparity, uchar* cost) const;
     //! Marks the pixels of a row by 0 whose matches have no data.

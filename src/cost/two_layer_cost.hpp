@@ -8,12 +8,13 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-/** The census cost of a layer and of the layer below, whose census still has the texture that means of 2 x 2 pixels
-take away. With C of the layer, C' of the one below, and the four pixels q that pixel p is the mean of,
+/** The matching cost of a layer's pixels at the disparities of the layer below, which has the texture that means of
+2 x 2 pixels take away, and twice as many disparities. With C of the layer, C' of the one below, and the four pixels q
+that pixel p is the mean of, candidate h, a disparity of h / 2 pixels, costs
 
-cost(p, d) = C(p, d) / 2 + (sum over q of C'(q, 2 d)) / 8,
+cost(p, h) = (C(p, floor(h / 2)) + C(p, ceil(h / 2))) / 8 + 3 / 16 * sum over q of C'(q, h).
 
-or C(p, d) without a layer below. */
+Without a layer below, candidates are those of the layer, and cost(p, d) = C(p, d). */
 class CV_EXPORTS TwoLayerCost
 {
 public:
@@ -21,21 +22,16 @@ public:
     {
         scale = 8 // of the costs, for their fractions
     };
-    /** Takes the cost of a layer, which has to stay where it is.
-    @param own The layer's.
-    @param below That of the layer below, twice as large; null for the layer's alone. It is not needed after this.
-    @param numDisparities The number of candidates a pixel may be asked for. */
-    void prepare(const CensusCost& own, const CensusCost* below, int numDisparities);
+    /** Takes the costs of a layer, and of the one below, twice as large, or null. They have to stay where they are. */
+    void prepare(const CensusCost& own, const CensusCost* below);
 
-    //! CensusCost::evaluate(), times scale
+    //! Candidates per pixel of disparity
+    int steps() const { return below_ ? 2 : 1; }
+    //! CensusCost::evaluate(), times scale and rounded up
     void evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const;
 
 private:
-    const CensusCost* own_ = nullptr;
-    bool seesBelow_ = false;
-    // Every second pixel of every second row of the layer below, from each of the four on: pairs of the layer's size
-    CensusPlanes below_[4];
-    Mat left_, right_; // their census, one after the other, as CensusCost has it; without grey levels of the right one
+    const CensusCost *own_ = nullptr, *below_ = nullptr;
 };
 
 }}} // namespace cv::stereo::hdp

@@ -4,75 +4,102 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "two_layer_cost.hpp"
-#include "../base/vectorized.hpp"
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "census_counting.simd.hpp"
+#include "../base/byte_lanes.simd.hpp"
+#include <cstring>
 #endif
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** TwoLayerCost::evaluate() with a layer below.
-@param own The layer's census.
-@param below That of the layer below, as four of the layer's size. */
-void countTwoLayers(const CensusPlanes& own, const CensusPlanes* below, const int* pixels, int count, int first,
+//! TwoLayerCost::evaluate() with a layer below
+void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
                     int lanes, uchar* cost);
-
-//! Every second byte or pixel of a row
-void takeEverySecond(const uchar* from, int count, uchar* taken);
-void takeEverySecond(const unsigned* from, int count, unsigned* taken);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
-template <int lanes>
-void countTwoLayers(const CensusPlanes& own, const CensusPlanes* below, const int* pixels, int count, int first,
-                    uchar* cost)
+//! A pixel of the left image, and its candidates in the first plane of the right one
+struct PixelCensus
 {
-    const int block = 32; // pixels, whose costs stay in the cache
-    const uchar ownWeight = TwoLayerCost::scale / 2;
-    for (int begin = 0; begin < count; begin += block)
+    const uchar *left, *right;
+
+    PixelCensus(const CensusPlanes& census, int y, int x, int first)
+        : left(census.left + y * census.leftStep + 4 * x),
+          right(census.right + y * census.rightStep + (census.width - 1 - x + first))
     {
-        const int size = std::min(block, count - begin);
-        uchar* const to = cost + (size_t)begin * lanes;
-        evaluateCosts<lanes>(own, pixels + begin, size, first, [=](const uchar* bits, int number, int position) {
-            HDP_VECTORIZED for (int k = 0; k < number; ++k) to[position + k] = (uchar)(ownWeight * bits[k]);
-        });
-        for (int i = 0; i < 4; ++i)
-            evaluateCosts<lanes>(below[i], pixels + begin, size, first,
-                                 [=](const uchar* bits, int number, int position) {
-                HDP_VECTORIZED for (int k = 0; k < number; ++k) to[position + k] = (uchar)(to[position + k] + bits[k]);
-            });
+    }
+
+    //! C of some candidates from number k on
+    template <int planes> CV_ALWAYS_INLINE ByteLanes costs(size_t rightPlane, int k) const
+    {
+        ByteLanes sum = (ByteLanes::repeat(left[0]) ^ ByteLanes::load(right + k)).countBits();
+        for (int plane = 1; plane < planes; ++plane)
+            sum = sum + (ByteLanes::repeat(left[plane]) ^ ByteLanes::load(right + plane * rightPlane + k)).countBits();
+        return sum;
+    }
+
+    //! C(floor(h / 2)) + C(ceil(h / 2)) of candidates h, from number 2 * k on
+    template <int planes> CV_ALWAYS_INLINE ByteLanes costsOfHalves(size_t rightPlane, int k) const
+    {
+        ByteLanes sum = ByteLanes::repeat(0);
+        for (int plane = 0; plane < planes; ++plane)
+        {
+            const ByteLanes pixel = ByteLanes::repeat(left[plane]);
+            const uchar* const from = right + plane * rightPlane + k;
+            sum = sum + (pixel ^ ByteLanes::loadInTurns(from, from)).countBits() +
+                  (pixel ^ ByteLanes::loadInTurns(from, from + 1)).countBits();
+        }
+        return sum;
+    }
+};
+
+template <int planes>
+void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
+                    int lanes, uchar* cost)
+{
+    const double rowsPerPixel = 1. / own.width;
+    const int vector = 16 * ByteLanes::groups;
+    for (int i = 0; i < count; ++i, cost += lanes)
+    {
+        const int y = rowOf(pixels[i], rowsPerPixel), x = pixels[i] - y * own.width;
+        const PixelCensus pixel(own, y, x, first / 2);
+        const PixelCensus a(below, 2 * y, 2 * x, first), b(below, 2 * y, 2 * x + 1, first);
+        const PixelCensus c(below, 2 * y + 1, 2 * x, first), d(below, 2 * y + 1, 2 * x + 1, first);
+        for (int k = 0; k < lanes; k += vector)
+        {
+            const size_t plane = below.rightPlane;
+            const ByteLanes sum = a.costs<planes>(plane, k) + b.costs<planes>(plane, k) + c.costs<planes>(plane, k) +
+                                  d.costs<planes>(plane, k);
+            const ByteLanes all =
+                pixel.costsOfHalves<planes>(own.rightPlane, k / 2) + sum + (sum + ByteLanes::repeat(1)).half();
+            if (lanes >= vector)
+            {
+                all.store(cost + k);
+                continue;
+            }
+            uchar stored[vector];
+            all.store(stored);
+            std::memcpy(cost, stored, lanes);
+        }
     }
 }
 
 } // namespace
 
-void countTwoLayers(const CensusPlanes& own, const CensusPlanes* below, const int* pixels, int count, int first,
+void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
                     int lanes, uchar* cost)
 {
-    switch (lanes)
+    switch (own.count)
     {
-    case 4:
-        return countTwoLayers<4>(own, below, pixels, count, first, cost);
-    case 8:
-        return countTwoLayers<8>(own, below, pixels, count, first, cost);
-    case 16:
-        return countTwoLayers<16>(own, below, pixels, count, first, cost);
+    case 1:
+        return countTwoLayers<1>(own, below, pixels, count, first, lanes, cost);
+    case 2:
+        return countTwoLayers<2>(own, below, pixels, count, first, lanes, cost);
     default:
-        return countTwoLayers<32>(own, below, pixels, count, first, cost);
+        return countTwoLayers<3>(own, below, pixels, count, first, lanes, cost);
     }
-}
-
-void takeEverySecond(const uchar* from, int count, uchar* taken)
-{
-    HDP_VECTORIZED for (int i = 0; i < count; ++i) taken[i] = from[2 * i];
-}
-
-void takeEverySecond(const unsigned* from, int count, unsigned* taken)
-{
-    HDP_VECTORIZED for (int i = 0; i < count; ++i) taken[i] = from[2 * i];
 }
 
 #endif

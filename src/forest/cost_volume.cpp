@@ -49,6 +49,7 @@ void CostVolume::create(const DisparityForest& forest)
 void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const DisparityInterval& interval)
 {
     size = layerSize;
+    steps = cost.steps();
     numDisparities = interval.last + 1;
     usualRows_ = rowsOf(interval);
     rows = (size_t)size.area() * usualRows_;
@@ -131,7 +132,7 @@ void CostPreference::apply(int pixel, float disparity, CostVolume& volume) const
     const CostVolume::Candidates own = volume.of(pixel);
     uchar* costs = volume.costs.data() + own.start();
     // In whole numbers from the first candidate on
-    const int d = cvRound(CostVolume::scale * disparity) - CostVolume::scale * own.interval.first;
+    const int d = cvRound(CostVolume::scale * volume.steps * disparity) - CostVolume::scale * own.interval.first;
     const int whole = d >> 3, fraction = d & (CostVolume::scale - 1);
     static_assert(+CostVolume::scale == 1 << 3, "whole numbers of candidates");
     for (int r = 0; r < own.rows(); ++r, costs += CostVolume::row)
@@ -147,7 +148,7 @@ void CostPreference::apply(int pixel, float disparity, CostVolume& volume) const
 bool CostPreference::isContradicted(int pixel, float disparity, const CostVolume& volume)
 {
     const CostVolume::Candidates own = volume.of(pixel);
-    const int count = own.interval.size(), nearest = cvFloor(disparity + 0.5f) - own.interval.first;
+    const int count = own.interval.size(), nearest = cvFloor(volume.steps * disparity + 0.5f) - own.interval.first;
     if (count <= 0)
         return false;
     const uchar* const costs = volume.costs.data() + own.start();

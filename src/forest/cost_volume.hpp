@@ -32,6 +32,7 @@ struct CV_EXPORTS CostVolume
 
     Size size;
     int numDisparities = 0;             // all candidates are less
+    int steps = 1;                      // candidates per pixel of disparity
     bool isUniform = false;             // whether all pixels have the same candidates
     std::vector<Candidates> candidates; // of pixel y * width + x, unless they are the same, see of()
     size_t rows = 0;                    // of costs
@@ -70,16 +71,16 @@ private:
 CV_EXPORTS void excludeCandidates(const Mat& intervals, CostVolume& volume);
 
 /** Raises the costs of a pixel's other disparities than a preferred one: by a unit of cost, CostVolume::scale, per
-pixel of distance, up to a limit. */
+candidate of distance, up to a limit. */
 class CV_EXPORTS CostPreference
 {
 public:
     enum
     {
         contradiction = 3 * CostVolume::scale, // see isContradicted()
-        farthest = 6                           // pixels up to which costs may go on rising
+        farthest = 6                           // candidates up to which costs may go on rising
     };
-    //! largest: the most that a cost rises by, up to farthest pixels, in units of the volume
+    //! largest: the most that a cost rises by, up to farthest candidates, in units of the volume
     explicit CostPreference(int largest);
 
     //! Raises the costs of pixel y * width + x; disparity in pixels.

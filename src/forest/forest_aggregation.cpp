@@ -359,6 +359,7 @@ void aggregateMeans(const DisparityForest& forest, const TwoLayerCost& cost, dou
                     CostVolume& volume)
 {
     volume.create(forest);
+    volume.steps = cost.steps();
     const MeanAggregation aggregation = { forest, cost, EdgeSimilarity(gamma), volume };
     forEachTree(
         forest, buffers, [&](const DisparityTree& tree) { aggregation.processLarge(tree, buffers); },

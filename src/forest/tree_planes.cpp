@@ -39,7 +39,8 @@ class TreeSamples
 {
 public:
     TreeSamples(const int* pixels, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
-        : interval_(tree.interval), size_(tree.size), begin_(0, volume.size.width, volume.size.height)
+        : interval_(tree.interval), steps_((float)volume.steps), size_(tree.size),
+          begin_(0, volume.size.width, volume.size.height)
     {
         const ushort* const winners = disparity.ptr<ushort>();
         const int step = std::max(tree.size / samples, 1), candidates = interval_.size();
@@ -126,7 +127,7 @@ private:
     int candidateAt(float disparity) const
     {
         const float first = interval_.first, last = interval_.last;
-        return (int)(std::min(std::max(disparity, first), last) - first + 0.5f);
+        return (int)(std::min(std::max(steps_ * disparity, first), last) - first + 0.5f);
     }
 
     //! By how much the plane raises the costs of a group, in sum
@@ -206,6 +207,7 @@ private:
 
     static const int groups = 8;
     const DisparityInterval interval_;
+    const float steps_; // candidates per pixel of disparity
     const int size_;    // of the tree
     Vec3d begin_, end_; // of its columns and rows
     int count_;

@@ -139,6 +139,19 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
     }
 }
 
+void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled)
+{
+    doubled.create(intervals.size(), CV_16UC2);
+    for (int y = 0; y < intervals.rows; ++y)
+        for (int x = 0; x < intervals.cols; ++x)
+        {
+            const DisparityInterval& own = intervals.ptr<DisparityInterval>(y)[x];
+            const int first = std::min(2 * own.first, candidates - 1),
+                      last = std::min(2 * own.last + 1, candidates - 1);
+            doubled.ptr<DisparityInterval>(y)[x] = { (ushort)first, (ushort)last };
+        }
+}
+
 void intersectIntervals(const Mat& intervals, Mat& others)
 {
     for (int y = 0; y < others.rows; ++y)

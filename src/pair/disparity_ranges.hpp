@@ -37,6 +37,9 @@ or the nearest one, if these are none.
 CV_EXPORTS void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension,
                                const std::vector<int>& numDisparities, std::vector<Mat>& intervals);
 
+//! The intervals of a layer in candidates of the layer below, of which there are so many
+CV_EXPORTS void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled);
+
 //! What candidates both have of each pixel, or those of the first if they have none in common; to the second
 CV_EXPORTS void intersectIntervals(const Mat& intervals, Mat& others);
 

@@ -21,7 +21,7 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
     known.points.resize(counts.size());
     for (const LayerPlan& layer : plan.layers)
         if (layer.joinsPrior)
-            pointsOfLayer(inputs.prior, inputs.sigma, first, output.extension, layer.layer, layer.numDisparities,
+            pointsOfLayer(inputs.prior, inputs.sigma, first, output.extension, layer.layer, counts[layer.layer],
                           known.points[layer.layer]);
 }
 

@@ -30,7 +30,8 @@ HDP_TUNABLE(int, coarseLayer, 2, "layer",
 
 // Means over trees
 HDP_TUNABLE(double, meanGamma, 0.2, "gamma of the trees' sums",
-            "of means that scanlines get: these carry costs farther by themselves, and more blurs borders");
+            "of means that scanlines get, on the first two layers: these carry costs farther by themselves, "
+            "and more blurs borders; less on coarser layers, where each step goes farther");
 HDP_TUNABLE(double, meanP1, 0.5, "P1",
             "means are smoother than costs: more flattens slanted surfaces, less keeps noise");
 HDP_TUNABLE(double, meanP2, 1.3, "P2",
@@ -168,18 +169,19 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
         trees.beta = p.beta != M::AUTO ? p.beta : isLarge(size) ? 0.6 : 0.95;
     }
     trees.linksTrees = !p.usePrediction;
-    trees.gamma = layer.method == TREE_SCANLINES ? p.gamma * meanGamma : p.gamma;
+    trees.gamma = layer.method == TREE_SCANLINES ? p.gamma * meanGamma / std::max(layer.layer, 1) : p.gamma;
     trees.prefersPlanes = layer.method == TREE_SCANLINES && layer.isTop;
     if (p.useNonLocalRefinement && predictsIntervals(p))
         trees.refinementGamma = p.gamma * refinementGamma;
     return trees;
 }
 
-//! For means of trees, for costs with what the last frame predicts, which are as smooth, and for costs as they are
-VolumePenalties planVolume(const MatcherParameters& p)
+//! For means of trees, for costs with what the last frame predicts, which are as smooth, and for costs as they are;
+//! steps: candidates per pixel of disparity
+VolumePenalties planVolume(const MatcherParameters& p, int steps)
 {
     const int scale = CostVolume::scale, large = cvRound(scale * meanP2 * p.P2);
-    return { cvRound(scale * meanP1 * p.P1), std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
+    return { cvRound(scale * meanP1 * p.P1 / steps), std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
 }
 
 //! The direction from below costs half as much as the others together: at full size it waits for the second pass.
@@ -206,18 +208,18 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.maxDisparity = largestDisparity(p.numDisparities, layer);
     plan.cost = planCost(p);
     plan.method = methodOf(p, plan.isTop);
+    const bool hasVolume = plan.method == TREE_SCANLINES || plan.method == COST_SCANLINES;
+    plan.seesBelow = hasVolume && plan.isTop && !plan.isFinest;
+    if (plan.seesBelow)
+        plan.numDisparities = layerDisparities(p.numDisparities, layer - 1, false);
     if (plan.method == WINDOW_SCANLINES)
         plan.passes = planPasses(p, plan);
     else
         plan.smoothsGuide = p.useMedianPrefilter;
     if (plan.method == TREE_SUMS || plan.method == TREE_SCANLINES)
         plan.trees = planTrees(p, plan, size);
-    if (plan.method == TREE_SCANLINES || plan.method == COST_SCANLINES)
-    {
-        // Trees on all layers search the finer ones for themselves.
-        plan.seesBelow = !plan.isFinest && aggregationOf(p) == M::AGGREGATION_SCANLINES;
-        plan.volumePenalties = planVolume(p);
-    }
+    if (hasVolume)
+        plan.volumePenalties = planVolume(p, plan.steps());
     plan.fillsOcclusions = p.fillOcclusions;
     // As in the authors' program; the paper says that nothing is refined.
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;

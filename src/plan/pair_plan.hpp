@@ -75,11 +75,11 @@ struct LayerPlan
     int layer = 0; // 0 is the image
     bool isTop = false, isFinest = false;
     ImageFrame frame;       // of its images, in its pixels
-    int numDisparities = 0; // candidates
+    int numDisparities = 0; // candidates; those of the layer below if the plan sees it
     int maxDisparity = 0;   // of a map of the layer
     bool hasFractions = false;
     CostPlan cost;
-    bool seesBelow = false;    // whether the costs of a volume are those of the layer below, too
+    bool seesBelow = false;    // whether a volume has the candidates of the layer below, see TwoLayerCost
     bool smoothsGuide = false; // a median before the edges are weighed
     LayerMethod method = TREE_SUMS;
     TreePlan trees;
@@ -93,6 +93,9 @@ struct LayerPlan
     bool joinsLastFrame = false;
     int medianSize = 0, medianPasses = 1; // of the median over the winners; size 0: none
     bool restoresThinStructures = false;
+
+    //! Candidates per pixel of disparity
+    int steps() const { return seesBelow ? 2 : 1; }
 };
 
 //! What is done for a pair
