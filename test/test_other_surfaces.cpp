@@ -32,11 +32,10 @@ struct Layer
     }
 };
 
-//! The lowest cost of a run over 4 x 4 pixels
+//! The lowest cost of a run over the 4 x 4 pixels of a group
 int costOf(const Layer& layer, const oracle::CensusCost& census, int y, int x, int surface)
 {
-    const int row = std::min(std::max(2 * y - 1, 0), layer.left.rows - 4);
-    const int column = std::min(std::max(2 * x - 1, 0), layer.left.cols - 4);
+    const int row = std::min(y / 2 * 4, layer.left.rows - 4), column = std::min(x / 2 * 4, layer.left.cols - 4);
     const int nearest = cvFloor(surface / (double)scale + 0.5);
     const int first = std::max(std::min(nearest - 3, layer.numDisparities + 1 - 8), -1);
     int lowest = 255;
@@ -87,10 +86,13 @@ int otherSurface(const Prediction& prediction, const Layer& layer, const oracle:
     if (std::min(layer.left.rows, layer.left.cols) < 4 || usual == own)
         return usual;
     std::vector<int> others;
+    int same = usual; // the listed one that it is
     for (int surface : surfacesAround(prediction, y, x))
         if (std::abs(surface - own) >= apart && std::abs(surface - usual) >= apart)
             others.push_back(surface);
-    int result = usual, lowest = others.empty() ? 0 : costOf(layer, census, y, x, usual) - 16;
+        else if (same == usual && std::abs(surface - usual) < apart)
+            same = surface;
+    int result = usual, lowest = others.empty() ? 0 : costOf(layer, census, y, x, same) - 16;
     for (int surface : others)
     {
         const int cost = costOf(layer, census, y, x, surface);

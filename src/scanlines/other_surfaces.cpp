@@ -18,7 +18,7 @@ HDP_TUNABLE(int, neighborhood, 3, "pixels of the upper layer",
 HDP_TUNABLE(int, margin, 16, "bits over the window",
             "by which another surface is better: more misses surfaces, less takes noise for them");
 HDP_TUNABLE(int, maxStripes, 16, "stripes", "for as many threads: more filter the rows between them twice");
-HDP_TUNABLE(int, minStripeHeight, 16, "rows of the upper layer", "for the same reason");
+HDP_TUNABLE(int, minStripeHeight, 4, "rows of blocks", "for the same reason");
 
 const int distance = OtherSurface::distance * subpixelScale, side = OtherSurface::block, window = OtherSurface::window;
 
@@ -41,45 +41,41 @@ struct SurfaceList
         if (count < OtherSurface::listed)
             surfaces[count++] = surface;
     }
-    void addBlock(const SurfaceBuffers& buffers, int row, int column)
-    {
-        for (int map = 0; map < 2; ++map)
-        {
-            add(2 * buffers.blockMin[map].at<ushort>(row, column));
-            add(2 * buffers.blockMax[map].at<ushort>(row, column));
-        }
-    }
 };
 
-SurfaceList listSurfaces(const SurfaceBuffers& buffers, int row, int column)
+SurfaceList listSurfaces(const Mat& blocks, int row, int column)
 {
-    const int lastRow = buffers.blockMin[0].rows - 1, lastColumn = buffers.blockMin[0].cols - 1;
     SurfaceList list;
-    list.addBlock(buffers, row, column);
-    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, lastRow); ++y)
-        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, lastColumn); ++x)
-            list.addBlock(buffers, y, x);
+    const auto addBlock = [&](const Vec4w& extremes) {
+        for (int i = 0; i < 4; ++i)
+            list.add(2 * extremes[i]);
+    };
+    addBlock(blocks.ptr<Vec4w>(row)[column]);
+    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, blocks.rows - 1); ++y)
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, blocks.cols - 1); ++x)
+            addBlock(blocks.ptr<Vec4w>(y)[x]);
     return list;
 }
 
-//! The match in the square of each pixel of a row of the layer above
-void spreadMatches(const Mat& matches, int upperRow, std::vector<ushort>& row)
+//! The match in the square of each pixel of a row of the layer above; row: its squares
+void spreadMatches(const ushort* matches, int squares, std::vector<ushort>& row)
 {
-    const int spacing = SparseMatches::spacing / 2;
-    const ushort* match = matches.ptr<ushort>(std::min(upperRow / spacing, matches.rows - 1));
-    for (int x = 0; x < (int)row.size(); ++x)
-        row[x] = match[std::min(x / spacing, matches.cols - 1)];
+    const int spacing = SparseMatches::spacing / 2, width = (int)row.size();
+    for (int x = 0; x < width; x += spacing)
+        std::fill(row.begin() + x, row.begin() + std::min(x + spacing, width),
+                  matches[std::min(x / spacing, squares - 1)]);
 }
 
-//! The costs of surfaces in the window of a pixel of the layer above
+//! The costs of surfaces in the window of a group of 2 x 2 pixels of the layer above
 class WindowCosts
 {
 public:
+    //! y, x: of the group's first pixel
     WindowCosts(const CensusCost& cost, int numDisparities, int y, int x)
         : planes_(cost.data()), numDisparities_(numDisparities)
     {
-        const int row = std::min(std::max(2 * y - 1, 0), cost.size().height - window);
-        const int column = std::min(std::max(2 * x - 1, 0), cost.size().width - window);
+        const int row = std::min(2 * y, cost.size().height - window);
+        const int column = std::min(2 * x, cost.size().width - window);
         left_ = cost.leftPixels(row) + 4 * column;
         right_ = cost.rightPlane(0, row) + cost.size().width - 1 - column;
     }
@@ -100,25 +96,13 @@ private:
     const uchar *left_, *right_;
 };
 
-//! The other surface of a pixel; others: those that may be in place of the usual one
-int chooseSurface(const WindowCosts& costs, int usual, const SurfaceList& others)
+//! The listed surfaces that may be in place of a pixel's usual one, a bit for each
+unsigned rivalsOf(int here, int usual, const SurfaceList& list)
 {
-    int chosen = usual, pair[2];
-    costs.evaluate(usual, others.surfaces[0], pair);
-    int lowest = pair[0] - margin;
-    const auto compare = [&](int surface, int cost) {
-        chosen = cost < lowest ? surface : chosen;
-        lowest = std::min(lowest, cost);
-    };
-    compare(others.surfaces[0], pair[1]);
-    for (int i = 1; i < others.count; i += 2)
-    {
-        const int second = std::min(i + 1, others.count - 1);
-        costs.evaluate(others.surfaces[i], others.surfaces[second], pair);
-        compare(others.surfaces[i], pair[0]);
-        compare(others.surfaces[second], pair[1]);
-    }
-    return chosen;
+    unsigned rivals = 0;
+    for (int i = 0; usual != here && i < list.count; ++i)
+        rivals |= (unsigned)(areApart(list.surfaces[i], here) && areApart(list.surfaces[i], usual)) << i;
+    return rivals;
 }
 
 //! findOtherSurfaces() for some rows of the layer above
@@ -129,7 +113,7 @@ public:
                 Mat& others)
         : prediction_(prediction), maps_{ prediction.upper, prediction.unfiltered }, cost_(cost),
           numDisparities_(numDisparities), buffers_(buffers), others_(others), width_(prediction.upper.cols),
-          hasWindows_(std::min(cost.size().width, cost.size().height) >= window)
+          height_(prediction.upper.rows), hasWindows_(std::min(cost.size().width, cost.size().height) >= window)
     {
     }
 
@@ -140,13 +124,13 @@ public:
             {
                 const int rows = std::min(side, maps_[map].rows - i * side);
                 dispatched::findBlockExtremes(maps_[map].ptr<ushort>(i * side), maps_[map].step1(), rows, width_,
-                                              buffers_.blockMin[map].ptr<ushort>(i),
-                                              buffers_.blockMax[map].ptr<ushort>(i));
+                                              buffers_.blocks.ptr<ushort>(i) + 2 * map);
             }
     }
 
-    void find(const Range& rows)
+    void find(const Range& blockRows)
     {
+        const Range rows(blockRows.start * side, std::min(blockRows.end * side, height_));
         const Mat kernel = Mat::ones(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U);
         for (int map = 0; map < 2; ++map)
         {
@@ -156,22 +140,19 @@ public:
         }
         std::vector<ushort> matches(width_);
         std::vector<int> blocks; // with several surfaces around
-        std::vector<SurfaceList> lists;
-        for (int y = rows.start; y < rows.end; ++y)
+        for (int i = blockRows.start; i < blockRows.end; ++i)
         {
-            spreadMatches(prediction_.matches, y, matches);
-            dispatched::findUsualSurfaces(rowOf(0, y), rowOf(1, y), matches.data(), width_, others_.ptr<ushort>(y));
-            if (!hasWindows_)
-                continue;
-            if (y == rows.start || y % side == 0)
+            for (int y = i * side; y < std::min((i + 1) * side, height_); ++y)
             {
-                findSteps(y / side, blocks);
-                lists.clear();
-                for (int block : blocks)
-                    lists.push_back(listSurfaces(buffers_, y / side, block));
+                const Mat& sparse = prediction_.matches;
+                const int squareRow = std::min(y / (SparseMatches::spacing / 2), sparse.rows - 1);
+                spreadMatches(sparse.ptr<ushort>(squareRow), sparse.cols, matches);
+                dispatched::findUsualSurfaces(rowOf(0, y), rowOf(1, y), matches.data(), width_, others_.ptr<ushort>(y));
             }
-            for (size_t i = 0; i < blocks.size(); ++i)
-                chooseInBlock(y, blocks[i] * side, lists[i]);
+            if (hasWindows_)
+                findSteps(i, blocks);
+            for (int block : blocks)
+                chooseInBlock(i, block);
         }
     }
 
@@ -184,20 +165,18 @@ private:
     //! The blocks of a row around which disparities differ by those of two surfaces
     void findSteps(int row, std::vector<int>& blocks) const
     {
-        const Range around(std::max(row - 1, 0), std::min(row + 2, buffers_.blockMin[0].rows));
-        const int count = buffers_.blockMin[0].cols;
+        const Range around(std::max(row - 1, 0), std::min(row + 2, buffers_.blocks.rows));
+        const int count = buffers_.blocks.cols;
         std::vector<ushort> lowest(count + 2, USHRT_MAX), highest(count + 2, 0); // with a block more at both ends
-        for (int map = 0; map < 2; ++map)
-            for (int y = around.start; y < around.end; ++y)
+        for (int y = around.start; y < around.end; ++y)
+        {
+            const Vec4w* extremes = buffers_.blocks.ptr<Vec4w>(y);
+            for (int i = 0; i < count; ++i)
             {
-                const ushort* min = buffers_.blockMin[map].ptr<ushort>(y);
-                const ushort* max = buffers_.blockMax[map].ptr<ushort>(y);
-                for (int i = 0; i < count; ++i)
-                {
-                    lowest[i + 1] = std::min(lowest[i + 1], min[i]);
-                    highest[i + 1] = std::max(highest[i + 1], max[i]);
-                }
+                lowest[i + 1] = std::min(lowest[i + 1], std::min(extremes[i][0], extremes[i][2]));
+                highest[i + 1] = std::max(highest[i + 1], std::max(extremes[i][1], extremes[i][3]));
             }
+        }
         blocks.clear();
         for (int i = 0; i < count; ++i)
         {
@@ -208,24 +187,52 @@ private:
         }
     }
 
-    //! A row of a block from column x on
-    void chooseInBlock(int y, int x, const SurfaceList& listed)
+    void chooseInBlock(int row, int column)
     {
-        const ushort* own = prediction_.upper.ptr<ushort>(y);
-        ushort* others = others_.ptr<ushort>(y);
-        for (const int end = std::min(x + side, width_); x < end; ++x)
-        {
-            const int here = 2 * own[x], usual = others[x];
-            if (usual == here)
-                continue;
-            SurfaceList list;
-            for (int i = 0; i < listed.count; ++i)
-                if (areApart(listed.surfaces[i], here) && areApart(listed.surfaces[i], usual))
-                    list.surfaces[list.count++] = listed.surfaces[i];
-            if (list.count > 0)
-                others[x] = (ushort)chooseSurface(WindowCosts(cost_, numDisparities_, y, x), usual, list);
-        }
+        const SurfaceList list = listSurfaces(buffers_.blocks, row, column);
+        for (int y = row * side; y < std::min((row + 1) * side, height_); y += 2)
+            for (int x = column * side; x < std::min((column + 1) * side, width_); x += 2)
+                chooseInGroup(y, x, list);
     }
+
+    //! In 2 x 2 pixels
+    void chooseInGroup(int y, int x, const SurfaceList& list)
+    {
+        unsigned rivals[4], all = 0;
+        const int count = 2 * std::min(height_ - y, 2), columns = std::min(width_ - x, 2); // of pixels
+        for (int i = 0; i < count; ++i)
+            all |= rivals[i] =
+                i % 2 < columns ? rivalsOf(here(y + i / 2, x + i % 2), other(y + i / 2, x + i % 2), list) : 0;
+        if (!all)
+            return;
+        const WindowCosts ofSurfaces(cost_, numDisparities_, y, x);
+        int costs[OtherSurface::listed];
+        for (int i = 0; i < list.count; i += 2)
+            ofSurfaces.evaluate(list.surfaces[i], list.surfaces[std::min(i + 1, list.count - 1)], costs + i);
+        for (int i = 0; i < count; ++i)
+            if (rivals[i])
+                choose(other(y + i / 2, x + i % 2), rivals[i], list, costs, ofSurfaces);
+    }
+
+    //! The best rival in place of the usual surface, if it is clearly better
+    static void choose(ushort& usual, unsigned rivals, const SurfaceList& list, const int* costs,
+                       const WindowCosts& ofSurfaces)
+    {
+        int best = -1, same = -1; // the listed surface that the usual one is
+        for (int i = list.count - 1; i >= 0; --i)
+            if (!(rivals >> i & 1))
+                same = areApart(list.surfaces[i], usual) ? same : i;
+            else if (best < 0 || costs[i] <= costs[best])
+                best = i;
+        int pair[2] = { same < 0 ? 0 : costs[same], 0 };
+        if (same < 0)
+            ofSurfaces.evaluate(usual, usual, pair);
+        if (costs[best] < pair[0] - margin)
+            usual = (ushort)list.surfaces[best];
+    }
+
+    int here(int y, int x) const { return 2 * prediction_.upper.ptr<ushort>(y)[x]; }
+    ushort& other(int y, int x) const { return others_.ptr<ushort>(y)[x]; }
 
     const WindowPrediction& prediction_;
     const Mat maps_[2];
@@ -233,7 +240,7 @@ private:
     const int numDisparities_;
     SurfaceBuffers& buffers_;
     Mat& others_;
-    const int width_;
+    const int width_, height_;
     const bool hasWindows_;
 };
 
@@ -247,16 +254,15 @@ void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost& cos
     {
         buffers.min[map].create(size, CV_16U);
         buffers.max[map].create(size, CV_16U);
-        buffers.blockMin[map].create(blocks, CV_16U);
-        buffers.blockMax[map].create(blocks, CV_16U);
     }
+    buffers.blocks.create(blocks, CV_16UC4);
     others.create(size, CV_16U);
     SurfaceRows all(prediction, cost, numDisparities, buffers, others);
     parallel_for_(Range(0, blocks.height), [&](const Range& blockRows) { all.findExtremes(blockRows); });
-    const int stripes = std::max(1, std::min<int>(maxStripes, size.height / minStripeHeight));
+    const int stripes = std::max(1, std::min<int>(maxStripes, blocks.height / minStripeHeight));
     parallel_for_(Range(0, stripes), [&](const Range& range) {
         for (int i = range.start; i < range.end; ++i)
-            all.find(Range(size.height * i / stripes, size.height * (i + 1) / stripes));
+            all.find(Range(blocks.height * i / stripes, blocks.height * (i + 1) / stripes));
     });
 }
 

@@ -28,10 +28,11 @@ struct OtherSurface
     };
 };
 
-//! Memory of findOtherSurfaces(): minimum and maximum disparities around each pixel and of each block, filtered or not
+//! Memory of findOtherSurfaces()
 struct SurfaceBuffers
 {
-    Mat min[2], max[2], blockMin[2], blockMax[2];
+    Mat min[2], max[2]; // disparities around each pixel, filtered or not
+    Mat blocks;         // CV_16UC4: minimum and maximum disparity of each block, then those before the median
 };
 
 //! A row of disparities of the layer above, and the minimum and maximum around each
@@ -52,9 +53,10 @@ neighbours in the order of an image, the minimum and maximum disparity, then tho
 a surface apart from those before in the list, up to OtherSurface::listed of them.
 
 Another one takes the place of the usual one if it is apart from this, too, and if the layer's census is clearly for it:
-if its cost is less by more than a bit per pixel. The cost of a surface is the lowest one of the eight candidates around
-it, summed over the 4 x 4 pixels of the layer in the middle of which the pixel is, or the nearest ones in the image, at
-most 255. The first one of the lowest cost wins. Layers smaller than the window have the usual ones.
+if its cost is less by more than a bit per pixel. The usual one costs what the first listed surface does that it is not
+apart from, if there is one. The cost of a surface is the lowest one of the eight candidates around it, summed over the
+4 x 4 pixels of the layer that the pixel's group of 2 x 2 stands for, or the nearest ones in the image, at most 255. The
+first one of the lowest cost wins. Layers smaller than the window have the usual ones.
 @param prediction What to find them in.
 @param cost The layer's census cost.
 @param numDisparities Of the layer.

@@ -23,8 +23,9 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 void findUsualSurfaces(const DisparityRow& filtered, const DisparityRow& unfiltered, const ushort* matches, int width,
                        ushort* others);
 
-//! The minimum and maximum of each block of a row of them; rows: of the map, step elements apart
-void findBlockExtremes(const ushort* disparity, size_t step, int rows, int width, ushort* min, ushort* max);
+//! The minimum and maximum of each block of a row of them, as SurfaceBuffers::blocks has them; rows: of the map, step
+//! elements apart
+void findBlockExtremes(const ushort* disparity, size_t step, int rows, int width, ushort* extremes);
 
 /** The costs of two surfaces.
 @param left The first pixel of the window, see CensusCost::leftPixels().
@@ -61,7 +62,7 @@ void findUsualSurfaces(const DisparityRow& filtered, const DisparityRow& unfilte
     }
 }
 
-void findBlockExtremes(const ushort* disparity, size_t step, int rows, int width, ushort* min, ushort* max)
+void findBlockExtremes(const ushort* disparity, size_t step, int rows, int width, ushort* extremes)
 {
     const int side = OtherSurface::block, columns = 64;
     ushort lowest[columns], highest[columns];
@@ -88,8 +89,9 @@ void findBlockExtremes(const ushort* disparity, size_t step, int rows, int width
                 least = std::min(least, lowest[u]);
                 most = std::max(most, highest[u]);
             }
-            *min++ = least;
-            *max++ = most;
+            extremes[0] = least;
+            extremes[1] = most;
+            extremes += 4;
         }
     }
 }
