@@ -42,7 +42,7 @@ HDP_TUNABLE(double, refinementGamma, 0.25, "gamma of the trees' sums",
             "of the non-local refinement: with the same one it blurs slanted surfaces");
 
 HDP_TUNABLE(
-    double, rangeBeta, 0.5, "share of the hull",
+    double, rangeBeta, 0.9, "share of the hull",
     "by which ranges of the caller overlap in a tree: more makes small trees, less searches what none may have");
 
 // Scanlines over windows
