@@ -2,7 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// A libFuzzer target: images, parameters, strategies, models and files made of the fuzzer's bytes. scripts/fuzz.sh builds
+// A libFuzzer target: images, parameters, strategies, models, files and what is known of a pair beforehand, made of the
+// fuzzer's bytes. scripts/fuzz.sh builds
 // it with AddressSanitizer and UndefinedBehaviorSanitizer and runs it.
 //
 // Besides what these find, it stops if
@@ -16,7 +17,9 @@
 #include "input.hpp"
 
 #include <atomic>
+#include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 
 using namespace cv;
@@ -436,7 +439,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
             params.maxTopDisparities = upTo(100);
             break;
         case 35:
-            params.topAggregation = 2 * upTo(1);
+            params.topAggregation = upTo(2);
             break;
         case 36:
             return m.setMaxRowOffset(upTo(100));
@@ -452,6 +455,158 @@ void setParameter(Input& input, HDPTreeMatcher& m)
         }
         m.setParams(params);
     });
+}
+
+//////////////////////////////////////////////// what is known beforehand /////////////////////////////////////////////////
+
+//! Arguments of setters, valid or not
+struct Known
+{
+    Mat leftMask, rightMask, smallest, largest, prior, sigma;
+    PairModel model;
+
+    bool hasInvalid() const { return !leftMask.empty() || !smallest.empty(); }
+};
+
+//! A number for a map of disparities; what is none, too
+float anyDisparity(Input& input)
+{
+    const float special[] = { NAN, INFINITY, -INFINITY, 1e30f, -1e30f, 32767.9f, 0.5f };
+    return input.ConsumeIntegralInRange(0, 5) == 0 ? pick(input, special)
+                                                   : input.ConsumeIntegralInRange(-1200, 1200) / 16.f;
+}
+
+//! Few values in rectangles
+Mat disparityMap(Input& input, Size size, int type, float otherwise)
+{
+    Mat map(size, type, Scalar(otherwise));
+    for (int i = input.ConsumeIntegralInRange(0, 5); i > 0; --i)
+    {
+        const int x = input.ConsumeIntegralInRange(0, size.width - 1),
+                  y = input.ConsumeIntegralInRange(0, size.height - 1);
+        const Rect part(x, y, input.ConsumeIntegralInRange(1, size.width - x),
+                        input.ConsumeIntegralInRange(1, size.height - y));
+        map(part).setTo(Scalar(anyDisparity(input)));
+    }
+    return map;
+}
+
+Mat anyMask(Input& input, Size size)
+{
+    Mat mask(size, CV_8UC1);
+    if (input.ConsumeBool())
+        return Mat();
+    fill(input, mask);
+    return mask;
+}
+
+//! As that of the last pair, with one field changed
+PairModel anyModel(Input& input, const PairModel& last)
+{
+    PairModel model = last;
+    switch (input.ConsumeIntegralInRange(0, 9))
+    {
+    case 0:
+        model.minDisparity = input.ConsumeIntegralInRange(-100, 100);
+        break;
+    case 1:
+        model.numDisparities = input.ConsumeIntegralInRange(-1, 100);
+        break;
+    case 2:
+        model.x = anyInt(input);
+        break;
+    case 3:
+        model.width = anyInt(input);
+        break;
+    case 4:
+        model.rows[input.ConsumeIntegralInRange(0, 4)] = anyDisparity(input);
+        model.areRowsMoved = true;
+        break;
+    case 5:
+        model.light[input.ConsumeIntegralInRange(0, 9)] = anyDisparity(input);
+        model.isLightChanged = true;
+        break;
+    case 6:
+        model.bits = input.ConsumeIntegralInRange(7, 17);
+        break;
+    case 7:
+        model.brightness = input.ConsumeIntegralInRange(0, 5);
+        break;
+    case 8:
+        model.leftBlockStep = model.rightBlockStep = anyDisparity(input);
+        model.leftBlockStart = input.ConsumeIntegralInRange(-1, 8);
+        break;
+    default:
+        model.noise = anyDisparity(input);
+        model.noiseLayer = input.ConsumeIntegralInRange(-1, 16);
+    }
+    return model;
+}
+
+Known anyKnown(Input& input, Size size, const PairModel& last)
+{
+    Known known;
+    const auto sizeOf = [&] {
+        return input.ConsumeIntegralInRange(0, 20) > 0
+                   ? size
+                   : Size(input.ConsumeIntegralInRange(1, 40), input.ConsumeIntegralInRange(1, 40));
+    };
+    if (size.empty())
+        return known;
+    if (input.ConsumeBool())
+    {
+        known.leftMask = anyMask(input, sizeOf());
+        known.rightMask = anyMask(input, sizeOf());
+    }
+    if (input.ConsumeBool())
+    {
+        const Size coarse(input.ConsumeIntegralInRange(1, size.width), input.ConsumeIntegralInRange(1, size.height));
+        const int type = input.ConsumeBool() ? CV_16SC1 : CV_32FC1;
+        known.smallest = disparityMap(input, coarse, type, anyDisparity(input));
+        known.largest = disparityMap(input, coarse, type, anyDisparity(input));
+        if (input.ConsumeIntegralInRange(0, 9) > 0)
+            known.largest = max(known.smallest, known.largest);
+    }
+    if (input.ConsumeBool())
+    {
+        const Size whole = sizeOf();
+        known.prior = disparityMap(input, whole, CV_32FC1, input.ConsumeBool() ? NAN : anyDisparity(input));
+        if (input.ConsumeBool())
+            known.sigma = abs(disparityMap(input, whole, CV_32FC1, 1));
+        else
+            known.sigma = Mat(1, 1, CV_64F, Scalar(input.ConsumeIntegralInRange(-1, 40) / 8.));
+    }
+    if (!last.empty() && input.ConsumeBool())
+        known.model = anyModel(input, last);
+    return known;
+}
+
+//! What is refused is left out, in all matchers that get it.
+void setKnown(Known& known, HDPTreeMatcher& matcher)
+{
+    const auto accepts = [&](const std::function<void()>& set) {
+        try
+        {
+            set();
+            return true;
+        }
+        catch (const cv::Exception&)
+        {
+            return false;
+        }
+    };
+    if (!accepts([&] { matcher.setMasks(known.leftMask, known.rightMask); }))
+        known.leftMask = known.rightMask = Mat();
+    if (!accepts([&] { matcher.setDisparityRange(known.smallest, known.largest); }))
+        known.smallest = known.largest = Mat();
+    if (!accepts([&] { matcher.setPriorDisparity(known.prior, known.sigma); }))
+        known.prior = known.sigma = Mat();
+    if (!accepts([&] { matcher.setPairModel(known.model); }))
+        known.model = PairModel();
+    matcher.setMasks(known.leftMask, known.rightMask);
+    matcher.setDisparityRange(known.smallest, known.largest);
+    matcher.setPriorDisparity(known.prior, known.sigma);
+    matcher.setPairModel(known.model);
 }
 
 //! compute() of this matcher; false if it refuses.
@@ -473,12 +628,16 @@ bool tryCompute(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, Mat&
     return false;
 }
 
-void checkOutput(const HDPTreeMatcher& matcher, Size size, const Mat& disparity)
+void checkOutput(const HDPTreeMatcher& matcher, const Known& known, Size size, const Mat& disparity)
 {
     require(disparity.size() == size && disparity.type() == matcher.getDisparityDepth(),
             "compute() gave another size or type");
-    const double first = matcher.getMinDisparity(), last = first + matcher.getNumDisparities() - 1;
-    const bool hasInvalid = matcher.getDisp12MaxDiff() > 0 || matcher.getSpeckleWindowSize() > 0;
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    const double first = findings.minDisparity, last = first + findings.numDisparities - 1;
+    require(matcher.getNumDisparities() == 0 ||
+                (first == matcher.getMinDisparity() && findings.numDisparities == matcher.getNumDisparities()),
+            "another range than that which was set");
+    const bool hasInvalid = matcher.getDisp12MaxDiff() > 0 || matcher.getSpeckleWindowSize() > 0 || known.hasInvalid();
     Mat pixels;
     disparity.convertTo(pixels, CV_64F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
     for (int y = 0; y < pixels.rows; ++y)
@@ -496,8 +655,9 @@ void query(const HDPTreeMatcher& matcher, Size size, bool hasPair)
     matcher.getConfidence(confidence);
     require(confidence.size() == (hasPair ? size : Size()), "confidence of another size");
     matcher.getForest(trees, intervals);
-    require(trees.size() == intervals.size() && (!hasPair || !trees.empty() || matcher.getUseTemporalPrediction()),
-            "no forest");
+    const bool mayHaveNone = !hasPair || matcher.getUseTemporalPrediction() ||
+                             matcher.getParams().topAggregation == HDPTreeMatcher::AGGREGATION_SCANLINES;
+    require(trees.size() == intervals.size() && (mayHaveNone || !trees.empty()), "no forest");
     std::vector<double> values;
     for (int layer = 0; layer < 17; ++layer)
     {
@@ -532,17 +692,14 @@ Ptr<HDPTreeMatcher> freshCopy(const HDPTreeMatcher& matcher)
 } // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***);
-extern "C" int LLVMFuzzerInitialize(int*, char***)
-{
-    return silenceErrors();
-}
+extern "C" int LLVMFuzzerInitialize(int*, char***) { return silenceErrors(); }
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
     Input input(data, size);
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(
-        0, input.ConsumeIntegralInRange(1, 70), input.ConsumeIntegralInRange(0, (int)HDPTreeMatcher::PRESET_TREE));
+        0, input.ConsumeIntegralInRange(0, 70), input.ConsumeIntegralInRange(0, (int)HDPTreeMatcher::PRESET_TREE));
     for (int round = input.ConsumeIntegralInRange(1, 3); round > 0; --round)
     {
         for (int changes = input.ConsumeIntegralInRange(0, 8); changes > 0; --changes)
@@ -559,16 +716,22 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 
         Mat left, right, disparity, again;
         makePair(input, matcher->getNumDisparities(), left, right);
+        const PairModel last = matcher->getPairModel();
+        Known known;
+        if (input.ConsumeIntegralInRange(0, 2) == 0)
+            known = anyKnown(input, left.size(), last);
+        setKnown(known, *matcher);
         const bool hasPair = tryCompute(*matcher, left, right, disparity);
         query(*matcher, left.size(), hasPair);
         if (!hasPair)
             continue;
-        checkOutput(*matcher, left.size(), disparity);
+        checkOutput(*matcher, known, left.size(), disparity);
         const Ptr<DisparityPredictionModel> model = matcher->getParams().predictionModel;
         if (model && model->empty())
             continue; // it cannot be told from none in a file
         setNumThreads(input.ConsumeIntegralInRange(1, 3));
         const Ptr<HDPTreeMatcher> fresh = freshCopy(*matcher);
+        setKnown(known, *fresh);
         if (matcher->getUseTemporalPrediction())
         {
             matcher->clear();
@@ -586,7 +749,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
             require(tryCompute(*fresh, left, right, again) == isMatched, "only one of two matchers refuses a frame");
             if (!isMatched)
                 continue;
-            checkOutput(*matcher, left.size(), disparity);
+            checkOutput(*matcher, known, left.size(), disparity);
             require(areEqual(disparity, again), "a video's map depends on more than its frames");
         }
     }

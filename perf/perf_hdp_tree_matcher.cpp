@@ -8,8 +8,7 @@
 // The 24 megapixels, which take minutes and 2 GB, are left out unless asked for:
 //   opencv_perf_hdpstereo --gtest_param_filter='*6000x4000*' --test_tag_enable=verylong
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace perf;
 using namespace testing;
@@ -130,6 +129,26 @@ PERF_TEST_P(Perf_HDPTreeMatcher_Preset, compute, Combine(ValuesIn(allSizes), Pre
     SANITY_CHECK_NOTHING();
 }
 
+//! Each pixel may have half of the disparities, about those of its own map.
+PERF_TEST_P(Perf_HDPTreeMatcher_Preset, half_of_the_disparities, Combine(ValuesIn(sizes), Preset::all()))
+{
+    const Size size = get<0>(GetParam());
+    const int numDisparities = numDisparitiesFor(size);
+
+    Mat left, right, disparity(size, CV_16SC1), smallest;
+    makePair(size, numDisparities, left, right);
+    Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities, get<1>(GetParam()));
+    matcher->compute(left, right, disparity);
+    disparity.convertTo(smallest, CV_16S, 1. / StereoMatcher::DISP_SCALE, -numDisparities / 4);
+    smallest = min(max(smallest, 0), numDisparities / 2);
+    matcher->setDisparityRange(smallest, smallest + (numDisparities / 2 - 1));
+
+    declare.in(left, right).out(disparity);
+    TEST_CYCLE() matcher->compute(left, right, disparity);
+
+    SANITY_CHECK_NOTHING();
+}
+
 typedef tuple<Size, Tree, bool> HDPTreeMatcherParams; // size, tree, prediction
 typedef TestBaseWithParam<HDPTreeMatcherParams> Perf_HDPTreeMatcher;
 
@@ -198,5 +217,4 @@ PERF_TEST_P(Perf_StereoBM, compute, ValuesIn(allSizes))
     SANITY_CHECK_NOTHING();
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

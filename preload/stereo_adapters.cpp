@@ -40,6 +40,8 @@ protected:
     void configure()
     {
         matcher_->setMinDisparity(kept_->getMinDisparity());
+        if (kept_->getNumDisparities() <= 0) // which it does not take, either
+            CV_Error(Error::StsOutOfRange, "numDisparities must be > 0");
         matcher_->setNumDisparities(kept_->getNumDisparities());
         matcher_->setSpeckleWindowSize(kept_->getSpeckleWindowSize());
     }

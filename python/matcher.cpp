@@ -136,7 +136,7 @@ cv::Mat computeFloat(Matcher& self, const cv::Mat& left, const cv::Mat& right)
     cv::Mat_<float> disparity; // an array of fixed type has the type of the result
     self.run([&](HDPTreeMatcher& m) {
         m.compute(left, right, disparity);
-        disparity.setTo(std::numeric_limits<float>::quiet_NaN(), disparity < m.getMinDisparity());
+        disparity.setTo(std::numeric_limits<float>::quiet_NaN(), disparity < m.getFindings().minDisparity);
     });
     return disparity;
 }
@@ -244,7 +244,7 @@ disparity: an array for the result, if given: int16 or float32, of the images' s
 as_float: whether disparities are float32 in pixels, and NaN where there is no data or a filter rejects one.
 
 Returns the disparities of the left image: int16, times 16, or float32 in pixels, see setDisparityDepth(). What a filter
-rejects is (minDisparity - 1) * 16, or minDisparity - 1. Raises ValueError if images or parameters do not fit.)doc");
+rejects is (minDisparity - 1) * 16, or minDisparity - 1, with the minDisparity of getFindings() if numDisparities is 0. Raises ValueError if images or parameters do not fit.)doc");
     matcher.def(
         "clear", [](Matcher& self) { self.run([](HDPTreeMatcher& m) { m.clear(); }); },
         "Forgets the pairs before, see setUseTemporalPrediction(): the next compute() begins a video.");

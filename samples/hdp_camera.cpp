@@ -209,7 +209,8 @@ static Mat colorsOf(const Mat& image)
 static Mat drawPicture(const Mat& left, const Mat& disparity, const HDPTreeMatcher& matcher,
                        const std::vector<String>& lines)
 {
-    const int smallest = matcher.getMinDisparity(), range = matcher.getNumDisparities();
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    const int smallest = findings.minDisparity, range = findings.numDisparities;
     Mat levels, colors, picture;
     disparity.convertTo(levels, CV_8U, 150. / range, 20 - 150. / range * smallest);
     applyColorMap(levels, colors, COLORMAP_TURBO);
@@ -371,8 +372,9 @@ public:
         if (!rig_)
             return;
         Mat metres, millimetres;
-        rig_->computeDepth(disparity, metres, CV_32F, matcher.getMinDisparity());
-        rig_->computeDepth(disparity, millimetres, CV_16U, matcher.getMinDisparity());
+        const int smallest = matcher.getFindings().minDisparity;
+        rig_->computeDepth(disparity, metres, CV_32F, smallest);
+        rig_->computeDepth(disparity, millimetres, CV_16U, smallest);
         writeImage(base + "depth.pfm", metres);
         writeImage(base + "depth.png", millimetres);
         writePoints(base + "points.ply", disparity, metres, colorsOf(left), Q_);

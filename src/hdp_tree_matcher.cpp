@@ -8,6 +8,7 @@
 #include "map/disparity_reasons.hpp"
 #include "map/disparity_sigma.hpp"
 #include "pair/missing_pixels.hpp"
+#include "range_search.hpp"
 #include "video/temporal_prior.hpp"
 
 #include <limits>
@@ -46,7 +47,10 @@ public:
         checkPair(left, right);
         checkInputs(inputs_, left.size());
         const int depth = outputDepth(disparityArray);
-        const PairPlan pairPlan = plan(p_, left.size(), left.type(), pairModel_, inputs_);
+        const auto makePlan = [&](const MatcherParameters& parameters) {
+            return plan(parameters, left.size(), left.type(), pairModel_, inputs_);
+        };
+        PairPlan pairPlan = makePlan(p_);
         clock_.restart();
 
         known_ = KnownDisparities();
@@ -56,6 +60,12 @@ public:
             clock_.run("missing pixels", complete);
         else
             complete(); // nothing is to be done
+        if (pairPlan.looksForRange)
+            clock_.run("disparity range", [&] {
+                const bool isFrame = pairPlan.followsVideo;
+                const Range found = rangeSearch_.find(pair_.left, pair_.right, pair_.masks, isFrame);
+                pairPlan = makePlan(withRange(p_, found.start, found.size()));
+            });
         if (inputs_.hasRanges() || inputs_.hasPrior())
             clock_.run("known disparities", [&] { takeKnown(inputs_, pairPlan, known_); });
         if (matchPair(pair_, pairPlan) == CONTRADICTED)
@@ -138,9 +148,11 @@ public:
         findings.areRowsMoved = r.findings.hasRows;
         findings.light.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
         findings.isLightChanged = r.findings.hasLight;
-        findings.noise = 0;
+        findings.noise = findings.minDisparity = findings.numDisparities = 0;
         if (!r.isMatched)
             return findings;
+        findings.minDisparity = r.plan.output.minDisparity;
+        findings.numDisparities = r.plan.alignment.numDisparities;
         findings.noise = r.findings.noise.ofLayer(r.plan.finest().layer) / r.brightness;
         findings.searchRatios.assign(r.plan.top().layer + 1, 0);
         for (const LayerPlan& layer : r.plan.layers)
@@ -152,20 +164,9 @@ public:
 
     void getForest(OutputArray treesArray, OutputArray intervalsArray) const CV_OVERRIDE
     {
-        const DisparityForest& forest = shared_.forest;
-        const Size size = result_.isMatched ? forest.links.size() : Size();
-        Mat trees(size, CV_32S), intervals(size, CV_16UC2);
-        TreeWalk walk;
-        for (size_t t = 0; result_.isMatched && t < forest.trees.size(); ++t)
-        {
-            const DisparityTree& tree = forest.trees[t];
-            walkTree(forest, tree, walk);
-            for (int i = 0; i < tree.size; ++i)
-            {
-                trees.ptr<int>()[walk.pixels[i]] = (int)t;
-                intervals.ptr<DisparityInterval>()[walk.pixels[i]] = tree.interval;
-            }
-        }
+        Mat trees, intervals;
+        if (result_.isMatched)
+            drawForest(shared_.forest, trees, intervals);
         copyLayer(trees, shared_.forestLayer, treesArray);
         copyLayer(intervals, shared_.forestLayer, intervalsArray);
     }
@@ -233,7 +234,11 @@ public:
     }
 
     // cv::Algorithm
-    void clear() CV_OVERRIDE { lastFrame_.clear(); }
+    void clear() CV_OVERRIDE
+    {
+        lastFrame_.clear();
+        rangeSearch_.forgetFrames();
+    }
 
     //! The key that save() gives the matcher: XML has no dots in it.
     String getDefaultName() const CV_OVERRIDE { return "hdpstereo_HDPTreeMatcher"; }
@@ -250,7 +255,7 @@ public:
         if (name != nameInFiles && name != getDefaultName()) // which is that of version 1.0
             CV_Error(Error::StsParseError, String("name must be ") + nameInFiles);
         p_ = readParameters(fn, p_.treeStrategy);
-        lastFrame_.clear();
+        clear();
     }
 
 private:
@@ -301,7 +306,7 @@ private:
             });
         VideoFindings video = { FIRST, false };
         if (pairPlan.followsVideo)
-            clock_.run("temporal prediction", [&] { video = predict(images[finest].left, finest); });
+            clock_.run("temporal prediction", [&] { video = predict(images[finest].left, pairPlan); });
         if (video.verdict == FIRST && pyramids_.isDimmed)
             return CONTRADICTED; // it is not the next frame after all
 
@@ -333,11 +338,11 @@ private:
     }
 
     //! What a frame is to the one before
-    VideoFindings predict(const Mat& left, int finestLayer)
+    VideoFindings predict(const Mat& left, const PairPlan& plan)
     {
-        const int scale = 1 << finestLayer;
-        const FrameKey key = { scale, p_.minDisparity / (double)scale, largestDisparity(p_.numDisparities, finestLayer),
-                               pyramids_.levels.brightening };
+        const int finest = plan.finest().layer, scale = 1 << finest;
+        const FrameKey key = { scale, plan.pyramids.minDisparity / (double)scale,
+                               largestDisparity(plan.alignment.numDisparities, finest), pyramids_.levels.brightening };
         predictFrame(left, key, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, hasPrior(lastFrame_, prediction_) };
     }
@@ -399,6 +404,7 @@ private:
     StageClock clock_;
 
     // Memory that is kept between calls
+    RangeSearch rangeSearch_;
     CompletePair pair_;
     KnownDisparities known_;
     PairPyramids pyramids_;
@@ -426,6 +432,8 @@ Ptr<HDPTreeMatcher> HDPTreeMatcher::createLike(const Ptr<StereoSGBM>& sgbm, int 
 {
     if (!sgbm)
         CV_Error(Error::StsNullPtr, "sgbm must not be empty");
+    if (sgbm->getNumDisparities() <= 0)
+        CV_Error(Error::StsOutOfRange, format("numDisparities must be > 0, not %d", sgbm->getNumDisparities()));
     const Ptr<HDPTreeMatcher> matcher = create(sgbm->getMinDisparity(), sgbm->getNumDisparities(), preset);
     matcher->setDisp12MaxDiff(sgbm->getDisp12MaxDiff());
     matcher->setSpeckleWindowSize(sgbm->getSpeckleWindowSize());

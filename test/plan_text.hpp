@@ -27,8 +27,9 @@ inline std::string textOf(const hdp::LayerPlan& p)
         text << " [" << pass.penalties.small << " " << pass.penalties.large << " slope " << pass.penalties.edgeSlope
              << " prior " << pass.penalties.prior << " from below " << pass.hasFromBelow << "]";
     text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
-         << p.fillsOcclusions << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " x "
-         << p.medianPasses << " thin structures " << p.restoresThinStructures << "\n";
+         << p.fillsOcclusions << " intervals " << p.hasIntervals << " joins prior " << p.joinsPrior
+         << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " x " << p.medianPasses
+         << " thin structures " << p.restoresThinStructures << "\n";
     return text.str();
 }
 
@@ -39,10 +40,10 @@ inline std::string textOf(const hdp::PairPlan& p)
          << " " << p.pyramids.isCensus << " " << p.pyramids.smoothsBlocks << "\nalignment "
          << p.alignment.numDisparities << " " << p.alignment.maxRowOffset << " " << p.alignment.findsLight << " "
          << p.alignment.noiseThreshold << " " << p.alignment.finestLayer << " follows video " << p.followsVideo
-         << "\nstrategy " << (void*)p.treeStrategy.get() << " model " << (p.model ? p.model->getNumLayers() : 0)
-         << "\noutput " << p.output.minDisparity << " " << p.output.extension << " " << p.output.finestLayer << " "
-         << p.output.isWhole << " " << p.output.disp12MaxDiff << " " << p.output.speckleWindowSize << " "
-         << p.output.speckleRange << "\n";
+         << " looks for range " << p.looksForRange << "\nstrategy " << (void*)p.treeStrategy.get() << " model "
+         << (p.model ? p.model->getNumLayers() : 0) << "\noutput " << p.output.minDisparity << " " << p.output.extension
+         << " " << p.output.finestLayer << " " << p.output.isWhole << " " << p.output.disp12MaxDiff << " "
+         << p.output.speckleWindowSize << " " << p.output.speckleRange << "\n";
     const hdp::ImageFrame& frame = p.given.alignment.frame;
     text << "given " << p.given.isGiven << " frame " << frame.whole << " " << frame.origin << "\n";
     for (const hdp::LayerPlan& layer : p.layers)

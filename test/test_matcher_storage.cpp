@@ -235,7 +235,7 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
     {
         const char *key, *values[8];
     } hostile[] = {
-        { "numDisparities", { "0", "-1", "-2147483648", "1.5", 0 } },
+        { "numDisparities", { "-1", "-2147483648", "1.5", 0 } },
         { "blockSize", { "3.5", 0 } },
         { "speckleWindowSize", { "1.5", 0 } },
         { "speckleRange", { "-1", "0.5", 0 } },

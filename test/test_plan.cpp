@@ -1,6 +1,7 @@
 // This file is part of OpenCV project.
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
+#include "helpers.hpp"
 #include "plan_text.hpp"
 
 namespace opencv_test { namespace {
@@ -171,6 +172,66 @@ TEST(HDPStereo_Plan, every_parameter_has_an_effect)
             row.change(p);
             EXPECT_NE(before, planText(p));
         }
+}
+
+TEST(HDPStereo_Plan, a_range_that_is_not_set)
+{
+    PairModel model;
+    model.width = model.tileWidth = imageSize.width;
+    model.height = model.tileHeight = imageSize.height;
+    model.minDisparity = -9;
+    model.numDisparities = 77;
+    for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
+    {
+        MatcherParameters unset = parametersOf(preset), set = unset;
+        unset.minDisparity = INT_MAX; // has no meaning
+        unset.numDisparities = 0;
+        set.minDisparity = model.minDisparity;
+        set.numDisparities = model.numDisparities;
+        EXPECT_TRUE(hdp::plan(unset, imageSize, CV_8UC3).looksForRange) << preset;
+        EXPECT_FALSE(hdp::plan(set, imageSize, CV_8UC3).looksForRange) << preset;
+        const PairPlan ofModel = hdp::plan(unset, imageSize, CV_8UC3, model);
+        EXPECT_FALSE(ofModel.looksForRange) << preset;
+        EXPECT_EQ(textOf(hdp::plan(set, imageSize, CV_8UC3, model)), textOf(ofModel)) << preset;
+    }
+}
+
+//! What is known of a pair is used on all layers, or nowhere.
+TEST(HDPStereo_Plan, inputs)
+{
+    hdp::PairInputs ranges, prior, masks;
+    ranges.smallest = ranges.largest = Mat(1, 1, CV_16S, Scalar(3));
+    prior.prior = prior.sigma = Mat(imageSize, CV_32F, Scalar(3));
+    masks.leftMask = Mat(imageSize, CV_8U, Scalar(0));
+    for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
+    {
+        SCOPED_TRACE(preset);
+        MatcherParameters p = parametersOf(preset);
+        const std::string without = planText(p);
+        EXPECT_EQ(without, textOf(hdp::plan(p, imageSize, CV_8UC3, PairModel(), masks))) << "masks are no decision";
+        const PairPlan withRanges = hdp::plan(p, imageSize, CV_8UC3, PairModel(), ranges);
+        for (const LayerPlan& layer : withRanges.layers)
+        {
+            EXPECT_TRUE(layer.hasIntervals);
+            EXPECT_FALSE(layer.joinsPrior);
+        }
+        EXPECT_NE(without, textOf(withRanges));
+        if (p.matchingCost != M::COST_CENSUS)
+        {
+            expectRejected([&] { hdp::plan(p, imageSize, CV_8UC3, PairModel(), prior); }, "setPriorDisparity()");
+            p.matchingCost = M::COST_CENSUS;
+        }
+        const PairPlan withPrior = hdp::plan(p, imageSize, CV_8UC3, PairModel(), prior);
+        for (const LayerPlan& layer : withPrior.layers)
+        {
+            EXPECT_TRUE(layer.joinsPrior);
+            EXPECT_FALSE(layer.hasIntervals);
+        }
+        PairPlan plain = withPrior;
+        for (LayerPlan& layer : plain.layers)
+            layer.joinsPrior = false;
+        EXPECT_EQ(planText(p), textOf(plain)) << "nothing else";
+    }
 }
 
 //! Without prediction there are no layers, and the plain tree algorithm matches the image.

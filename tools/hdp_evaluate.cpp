@@ -13,6 +13,7 @@
 
 #include "evaluation/calibration.hpp"
 #include "evaluation/command_line.hpp"
+#include "evaluation/found_ranges.hpp"
 #include "evaluation/progress.hpp"
 #include "evaluation/result_tables.hpp"
 #include "evaluation/tunables.hpp"
@@ -29,7 +30,9 @@ static const char* const KEYS =
     "{changes         |     | all figures are means over changes that must not matter, the list of hdp_stability or "
     "one's "
     "own; maps and pictures are of the pairs as they are }"
-    "{num-disparities |     | number of disparities; by default that of the dataset }"
+    "{num-disparities |     | number of disparities; by default that of the dataset. 0: only prints how the ranges "
+    "that "
+    "are found in the pairs differ from the true ones, by sets }"
     "{model           |     | prediction model of the paper's HDP systems: a file of hdp_train }"
     "{report          |     | folder for index.html, with the tables, pictures of all maps, and how they came about }"
     "{csv             |     | FILE.csv for the tables, and one of every pair }"
@@ -55,7 +58,7 @@ static EvaluationSettings readSettings(const CommandLineParser& parser)
                                                     : Ptr<DisparityPredictionModel>();
     EvaluationSettings settings;
     settings.methods = selectMethods("methods", parser.get<String>("methods"), model);
-    settings.numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, 2048) : 0;
+    settings.numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 0, 2048) : 0;
     settings.runs = getInteger(parser, "runs", 1, 1000);
     settings.jobs = getInteger(parser, "jobs", 1, 256);
     settings.maps = parser.get<String>("maps");
@@ -83,6 +86,12 @@ static int run(const CommandLineParser& parser)
     const int threads = getNumThreads();
     const EvaluationSettings settings = readSettings(parser);
 
+    if (parser.has("num-disparities") && settings.numDisparities == 0)
+    {
+        for (const Method& method : settings.methods)
+            std::cout << toMarkdown(foundRangesTable(method, selectScenes(parser))) << std::endl;
+        return 0;
+    }
     if (parser.has("calibration"))
     {
         for (const Method& method : settings.methods)

@@ -5,7 +5,9 @@
 // Makes the pictures of the README and the tutorial, from a rectified pair with truth: what the stages of HDPTreeMatcher
 // give, and StereoSGBM beside them.
 
+#include <functional>
 #include <iostream>
+#include <limits>
 
 #include "opencv2/imgproc.hpp"
 
@@ -44,6 +46,85 @@ static Mat withErrors(const Mat& disparity, const Pair& pair, const Vec2f& range
     return picture;
 }
 
+typedef std::function<void(const String& name, const std::vector<Mat>& pictures, int interpolation)> Save;
+
+static Mat match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right)
+{
+    Mat disparity;
+    matcher.compute(left, right, disparity);
+    return toPixels(disparity, matcher.getMinDisparity());
+}
+
+//! Levels from 0 to a value that is white
+static Mat greyPicture(const Mat& values, double white)
+{
+    Mat picture;
+    values.convertTo(picture, CV_8U, 255 / white);
+    cvtColor(picture, picture, COLOR_GRAY2BGR);
+    return picture;
+}
+
+//! A bonnet before both cameras, which reflects something else in each: with it, without and with masks
+static void saveMasked(const Pair& pair, const Vec2f& range, const Save& save)
+{
+    Mat images[] = { pair.left.clone(), pair.right.clone() }, mask(pair.left.size(), CV_8U, Scalar(255));
+    toColors(images[0], images[1]);
+    const Point centre(mask.cols / 2, mask.rows);
+    ellipse(mask, centre, Size(mask.cols * 9 / 20, mask.rows / 4), 0, 0, 360, Scalar(0), FILLED, LINE_8);
+    RNG rng(1);
+    for (Mat& image : images)
+    {
+        Mat reflections(9, 13, CV_8UC3);
+        rng.fill(reflections, RNG::UNIFORM, 20, 130);
+        resize(reflections, reflections, image.size(), 0, 0, INTER_CUBIC);
+        reflections.copyTo(image, mask == 0);
+    }
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(pair.disparities.start, pair.disparities.size());
+    const Mat without = match(*matcher, images[0], images[1]);
+    matcher->setMasks(mask, mask);
+    save("masked.jpg",
+         { images[0], colorPicture(without, range), colorPicture(match(*matcher, images[0], images[1]), range) },
+         INTER_AREA);
+}
+
+//! Points of the truth, as of a lidar, and what they mend
+static void savePrior(const Pair& pair, const Vec2f& range, const Save& save)
+{
+    const int count = 2000;
+    Mat points(pair.left.size(), CV_32F, Scalar(std::numeric_limits<float>::quiet_NaN())), picture, other = pair.right;
+    picture = pair.left.clone();
+    toColors(picture, other);
+    picture *= 0.5;
+    const Mat colors = colorPicture(pair.truth, range);
+    RNG rng(1);
+    for (int i = 0; i < count; i++)
+    {
+        const Point place(rng.uniform(0, points.cols), rng.uniform(0, points.rows));
+        if (pair.judged.at<uchar>(place) == 0)
+            continue;
+        points.at<float>(place) = pair.truth.at<float>(place);
+        circle(picture, place, std::max(points.cols / 300, 1), Scalar(colors.at<Vec3b>(place)), FILLED);
+    }
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(pair.disparities.start, pair.disparities.size());
+    const Mat without = withErrors(match(*matcher, pair.left, pair.right), pair, range);
+    matcher->setPriorDisparity(points, 0.5);
+    save("prior.jpg", { picture, without, withErrors(match(*matcher, pair.left, pair.right), pair, range) },
+         INTER_AREA);
+}
+
+//! What getDisparitySigma() says, and the errors
+static void saveSigma(const Pair& pair, const Vec2f& range, const Save& save)
+{
+    const double white = 3; // pixels
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(pair.disparities.start, pair.disparities.size());
+    const Mat disparity = match(*matcher, pair.left, pair.right);
+    Mat sigma, errors = abs(disparity - pair.truth);
+    matcher->getDisparitySigma(sigma);
+    errors.setTo(0, ~pair.judged);
+    save("sigma.jpg", { colorPicture(disparity, range), greyPicture(sigma, white), greyPicture(errors, white) },
+         INTER_AREA);
+}
+
 static int run(const CommandLineParser& parser)
 {
     const Pair pair = readPair(parser);
@@ -57,12 +138,8 @@ static int run(const CommandLineParser& parser)
     const auto create = [&](int preset) {
         return HDPTreeMatcher::create(pair.disparities.start, pair.disparities.size(), preset);
     };
-    const auto match = [&](HDPTreeMatcher& matcher) {
-        Mat disparity;
-        matcher.compute(pair.left, pair.right, disparity);
-        return toPixels(disparity, pair.disparities.start);
-    };
-    const auto save = [&](const String& name, const std::vector<Mat>& pictures, int interpolation) {
+    const auto match = [&](HDPTreeMatcher& matcher) { return ::match(matcher, pair.left, pair.right); };
+    const Save save = [&](const String& name, const std::vector<Mat>& pictures, int interpolation) {
         const String path = parser.get<String>("output") + "/hdpstereo_" + name;
         writeImage(path, sideBySide(pictures, width, interpolation));
         std::cout << "written    " << path << std::endl;
@@ -137,6 +214,10 @@ static int run(const CommandLineParser& parser)
     for (const int preset : { HDPTreeMatcher::PRESET_PAPER, HDPTreeMatcher::PRESET_TREE, HDPTreeMatcher::PRESET_FAST })
         errors.push_back(withErrors(match(*create(preset)), pair, range));
     save("errors.jpg", errors, INTER_AREA);
+
+    saveMasked(pair, range, save);
+    savePrior(pair, range, save);
+    saveSigma(pair, range, save);
     return 0;
 }
 
@@ -144,6 +225,6 @@ int main(int argc, char** argv)
 {
     return runProgram(argc, argv, KEYS,
                       "The pictures of the README and the tutorial: StereoSGBM beside PRESET_FAST, pair, maps of the "
-                      "layers, disparity forest, confidence, errors.\n",
+                      "layers, disparity forest, confidence, errors; masks, a prior and sigma.\n",
                       {}, 2, run);
 }

@@ -28,7 +28,8 @@ static const char* const usage =
     "usage: hdpstereo-mgm [OPTION VALUE]... LEFT RIGHT OUT [COST [BACKFLOW]]\n"
     "LEFT, RIGHT: a rectified pair, 8 or 16 bit or float, NaN = no data. OUT: float TIFF, NaN = no disparity.\n"
     "A left pixel (x, y) is (x + d, y) in the right image: the sign is the opposite of OpenCV's.\n"
-    "  -r MIN -R MAX    smallest and largest disparity (-30, 30)\n"
+    "  -r MIN -R MAX    smallest and largest disparity; without both, or if both are nan, they are found in the pair;\n"
+    "                   else, or if too few points match, -30 and 30\n"
     "  -m FILE -M FILE  the same for each pixel; where not finite, as -r and -R. What is outside has no disparity\n"
     "  -s none          whole disparities; with anything else they have fractions (none)\n"
     "  -Rd FILE         disparities of the right image\n"
@@ -172,6 +173,7 @@ static void makeAlike(Mat& left, Mat& right)
 struct DisparityRange
 {
     int min, max;
+    bool isUnknown;
     Mat mins, maxs; // per pixel of the left image, if given
 };
 
@@ -191,10 +193,19 @@ static Mat readLimits(const String& path, Size size, double limit, bool isMax)
     return limits;
 }
 
+//! -r or -R, if it is there and not nan
+static String limitOf(const Call& call, const char* name)
+{
+    const String text = call.value(name);
+    return text == "nan" || text == "NaN" ? String() : text;
+}
+
 static DisparityRange readRange(const Call& call, Size size)
 {
-    DisparityRange range = { cvFloor(toNumber("-r", call.value("r", "-30"))),
-                             cvCeil(toNumber("-R", call.value("R", "30"))), Mat(), Mat() };
+    const String least = limitOf(call, "r"), most = limitOf(call, "R");
+    DisparityRange range = { least.empty() ? -30 : cvFloor(toNumber("-r", least)),
+                             most.empty() ? 30 : cvCeil(toNumber("-R", most)),
+                             least.empty() && most.empty() && call.value("m").empty(), Mat(), Mat() };
     if (range.max < range.min)
         fail(format("-R must be at least -r, %d, not %d", range.min, range.max));
     if (call.value("m").empty() != call.value("M").empty())
@@ -224,10 +235,10 @@ static int presetOf(const String& name)
     return preset->second;
 }
 
-static Ptr<HDPTreeMatcher> createMatcher(const Call& call, const DisparityRange& range)
+static Ptr<HDPTreeMatcher> createMatcher(const Call& call)
 {
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(-range.max, range.max - range.min + 1,
-                                                               presetOf(environment("HDPSTEREO_PRESET", "quality")));
+    const Ptr<HDPTreeMatcher> matcher =
+        HDPTreeMatcher::create(0, 64, presetOf(environment("HDPSTEREO_PRESET", "quality")));
     HDPTreeMatcher::Params params = matcher->getParams();
     params.useSubpixel = call.value("s", "none") != "none";
     params.disparityDepth = CV_32F;
@@ -245,8 +256,30 @@ static void match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, Ma
     disparity.release();
     matcher.compute(left, right, disparity);
     matcher.getConfidence(confidence);
-    disparity.setTo(none, disparity < matcher.getMinDisparity());
+    disparity.setTo(none, disparity < matcher.getFindings().minDisparity);
     confidence.convertTo(confidence, CV_32F, 1. / 255);
+}
+
+//! -r and -R, or what is found in the pair
+static void takeRange(const DisparityRange& range, const Mat& left, const Mat& right, HDPTreeMatcher& matcher)
+{
+    matcher.setMinDisparity(-range.max);
+    matcher.setNumDisparities(range.max - range.min + 1);
+    if (!range.isUnknown)
+        return;
+    const Ptr<HDPTreeMatcher> coarse = HDPTreeMatcher::create(0, 0, HDPTreeMatcher::PRESET_ULTRAFAST);
+    Mat disparity;
+    try
+    {
+        coarse->compute(left, right, disparity);
+    }
+    catch (const cv::Exception&)
+    {
+        return; // too few points match, as on water: the caller expects a map nevertheless
+    }
+    const HDPTreeMatcher::Findings found = coarse->getFindings();
+    matcher.setMinDisparity(found.minDisparity);
+    matcher.setNumDisparities(found.numDisparities);
 }
 
 static void run(const Call& call)
@@ -255,7 +288,8 @@ static void run(const Call& call)
     const Rect leftImage(Point(), left.size()), rightImage(Point(), right.size());
     const DisparityRange range = readRange(call, left.size());
     makeAlike(left, right);
-    const Ptr<HDPTreeMatcher> matcher = createMatcher(call, range);
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(call);
+    takeRange(range, left, right, *matcher);
     Mat disparity, confidence;
     match(*matcher, left, right, disparity, confidence);
     disparity = -disparity(leftImage);

@@ -86,7 +86,7 @@ _create.__doc__ = _init.__doc__ = '''\
 Creates a matcher.
 
 minDisparity: smallest disparity in pixels, of any sign.
-numDisparities: number of candidates, > 0.
+numDisparities: number of candidates, >= 0; 0: both are found in each pair, see getFindings().
 preset: HDPTreeMatcher.PRESET_FAST, PRESET_ULTRAFAST, PRESET_QUALITY, PRESET_TREE or PRESET_PAPER, or its name: 'fast'.
 parameters: all others by name, as Params and the setters have them. Names may be in snake case, too:
     HDPTreeMatcher.create(num_disparities=128, preset='quality', disp12_max_diff=1, fill_occlusions=False)'''

@@ -391,7 +391,7 @@ class Parameters(Test):
         matcher = HDPTreeMatcher()
         before = parameters(matcher)
         for text, function, *arguments in (
-                ('numDisparities must be > 0, not 0', matcher.setNumDisparities, 0),
+                ('numDisparities must be >= 0, not -1', matcher.setNumDisparities, -1),
                 ('gamma must be finite and > 0, not nan', lambda: change(matcher, gamma=float('nan'))),
                 ('delta0 must be in [0, 1) or AUTO, not 1', lambda: change(matcher, delta0=1)),
                 ('matchingCost must be COST_COLOR_GRADIENT or COST_CENSUS, not 2',
@@ -400,7 +400,7 @@ class Parameters(Test):
                 ('treeStrategy must not be empty', matcher.setTreeStrategy, None),
                 ('layer must be >= 0, not -1', matcher.getLayerPrior, -1),
                 ('preset must be one of HDPTreeMatcher::PRESET_*, not 9', HDPTreeMatcher, 0, 16, 9),
-                ('numDisparities must be > 0, not -16', HDPTreeMatcher.create, 0, -16),
+                ('numDisparities must be >= 0, not -16', HDPTreeMatcher.create, 0, -16),
                 ('k must be finite and >= 0', hdpstereo.createSegmentTree, -1),
                 ('seed must be >= 0', hdpstereo.createRandomTree, -1),
                 ('which must be PUBLISHED_LARGE or PUBLISHED_SMALL', DisparityPredictionModel.createPublished, 9),

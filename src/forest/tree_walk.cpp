@@ -65,4 +65,21 @@ void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk
     walk.weights[0] = 0;
 }
 
+void drawForest(const DisparityForest& forest, Mat& trees, Mat& intervals)
+{
+    trees.create(forest.links.size(), CV_32S);
+    intervals.create(forest.links.size(), CV_16UC2);
+    TreeWalk walk;
+    for (size_t t = 0; t < forest.trees.size(); ++t)
+    {
+        const DisparityTree& tree = forest.trees[t];
+        walkTree(forest, tree, walk);
+        for (int i = 0; i < tree.size; ++i)
+        {
+            trees.ptr<int>()[walk.pixels[i]] = (int)t;
+            intervals.ptr<DisparityInterval>()[walk.pixels[i]] = tree.interval;
+        }
+    }
+}
+
 }}} // namespace cv::stereo::hdp

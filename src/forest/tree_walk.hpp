@@ -27,6 +27,9 @@ struct TreeWalk
 //! Walks a tree of the forest. The vectors of the walk only ever grow; entries from tree.size on mean nothing.
 CV_EXPORTS void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk& walk);
 
+//! The number of each pixel's tree, CV_32SC1, and its interval, CV_16UC2
+void drawForest(const DisparityForest& forest, Mat& trees, Mat& intervals);
+
 }}} // namespace cv::stereo::hdp
 
 #endif

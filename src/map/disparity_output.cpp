@@ -7,6 +7,7 @@
 #include "left_right_check.hpp"
 #include "upsampling.hpp"
 #include "../base/disparity_units.hpp"
+#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -42,13 +43,19 @@ void convert(const Mat& map, int depth, double scale, double shift, Mat& convert
 //! The nearest disparity that a pixel may have
 void keepRanges(const PixelRanges& ranges, short invalid, Mat& disparity)
 {
-    for (int y = 0; y < disparity.rows; ++y)
-    {
-        const short *smallest = ranges.smallest.ptr<short>(y), *largest = ranges.largest.ptr<short>(y);
-        short* const row = disparity.ptr<short>(y);
-        for (int x = 0; x < disparity.cols; ++x)
-            row[x] = smallest[x] <= largest[x] ? std::min(std::max(row[x], smallest[x]), largest[x]) : invalid;
-    }
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const short *smallest = ranges.smallest.ptr<short>(y), *largest = ranges.largest.ptr<short>(y);
+            short* const row = disparity.ptr<short>(y);
+            HDP_VECTORIZED for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int first = smallest[x], last = largest[x], above = row[x] > first ? row[x] : first;
+                const int inside = above < last ? above : last;
+                row[x] = (short)(first <= last ? inside : invalid);
+            }
+        }
+    });
 }
 
 void removeSpeckles(Mat& disparity, const OutputPlan& plan, short invalid, Mat& speckles)

@@ -17,7 +17,6 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 // Corners
-HDP_TUNABLE(int, maxCorners, 500, "corners", "one per cell of a grid: more cost time, fewer leave gaps in models");
 HDP_TUNABLE(int, minSpacing, 10, "pixels of the image", "side of a cell: windows of nearer corners see the same");
 HDP_TUNABLE(int, minCoarseSpacing, 4, "pixels of the coarse layer", "the same there, however small the image is");
 HDP_TUNABLE(int, cornerStep, 2, "pixels", "from one that is looked at to the next: neighbours are about as good");
@@ -57,11 +56,11 @@ Mat windowsWithData(const Mat& mask)
 }
 
 //! The best corner of every cell, by the smaller eigenvalue of the structure tensor. has: see windowsWithData()
-void findCorners(const Mat& image, const Mat& has, int spacing, std::vector<CornerMatch>& matches)
+void findCorners(const Mat& image, const Mat& has, const CornerSearch& search, std::vector<CornerMatch>& matches)
 {
     const int margin = CornerMatching::searchSide / 2 + CornerMatching::searchRadius;
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
-    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / maxCorners)), spacing);
+    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / search.maxCorners)), search.spacing);
     const Size grid(inside.width / cell, inside.height / cell);
     const int count = grid.width * cell, radius = CornerMatching::tensorSide / 2;
     const auto scoreRow = [&](int y, const std::vector<int>& columns, double* scores) {
@@ -111,14 +110,18 @@ bool isUnique(const std::vector<float>& values, int columns, int best)
     return rivals == 0;
 }
 
-void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, int numDisparities,
+void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, const Range& disparities,
                std::vector<float>& correlations, CornerMatch& match)
 {
     match.isValid = false;
     const int side = CornerMatching::searchSide, pixels = side * side, rows = 2 * CornerMatching::searchRadius + 1;
     const Point first = match.left - Point(side / 2, side / 2);
-    const int minColumns = SearchArea::minColumns;
-    const int x0 = std::max(first.x + 1 - std::max(numDisparities, minColumns), 0), count = first.x + 1 - x0;
+    const int minColumns = SearchArea::minColumns, width = windows.sums.cols;
+    const int end = std::min(first.x + 1 - disparities.start, width);
+    const int most = std::max(disparities.end, disparities.start + minColumns);
+    const int x0 = std::min(std::max(first.x + 1 - most, 0), width - minColumns), count = end - x0;
+    if (count <= 0)
+        return;
     const int y0 = first.y - CornerMatching::searchRadius, columns = std::max(count, minColumns);
     const ushort* const window = left.ptr<ushort>(first.y) + first.x;
     int memory[2 * CornerMatching::searchSide], sum;
@@ -135,8 +138,8 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
                               columns };
     correlations.resize(rows * columns);
     dispatched::correlate(window, sum, scale, area, correlations.data());
-    for (int end = columns; end <= rows * columns; end += columns) // negative disparities
-        std::fill(correlations.begin() + end - (columns - count), correlations.begin() + end, -1.f);
+    for (int row = columns; row <= rows * columns; row += columns) // disparities before the first one
+        std::fill(correlations.begin() + row - (columns - count), correlations.begin() + row, -1.f);
     const int best = (int)(std::max_element(correlations.begin(), correlations.end()) - correlations.begin());
     if (correlations[best] < minCorrelation || !isUnique(correlations, columns, best))
         return;
@@ -224,20 +227,44 @@ int coarseLayer(Size size)
 
 } // namespace
 
-void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, int numDisparities, int spacing,
+void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const CornerSearch& search,
                        SearchWindows& windows, std::vector<CornerMatch>& matches)
 {
     const Mat rightHas = windowsWithData(masks.right);
-    findCorners(left, windowsWithData(masks.left), spacing, matches);
+    findCorners(left, windowsWithData(masks.left), search, matches);
     measureWindows(right, windows);
     parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
         std::vector<float> correlations; // of a corner, by rows, then by columns
         for (int i = range.start; i < range.end; ++i)
         {
             CornerMatch& match = matches[i];
-            findMatch(left, right, windows, numDisparities, correlations, match);
+            findMatch(left, right, windows, search.disparities, correlations, match);
             if (match.isValid && !rightHas.empty())
                 match.isValid = rightHas.ptr((int)match.y)[(int)match.x] != 0;
+        }
+    });
+}
+
+void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows, std::vector<CornerMatch>& matches)
+{
+    measureWindows(left, windows);
+    const int margin = CornerMatching::searchSide / 2, rowMargin = margin + CornerMatching::searchRadius;
+    const Rect inside(margin, rowMargin, right.cols - 2 * margin, right.rows - 2 * rowMargin);
+    const Range all(-left.cols, left.cols);
+    parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
+        std::vector<float> correlations;
+        for (int i = range.start; i < range.end; ++i)
+        {
+            CornerMatch &match = matches[i], back;
+            if (!match.isValid)
+                continue;
+            back.left = Point(cvRound(match.x), cvRound(match.y));
+            match.isValid = inside.contains(back.left);
+            if (!match.isValid)
+                continue;
+            findMatch(right, left, windows, all, correlations, back);
+            match.isValid =
+                back.isValid && std::abs(back.x - match.left.x) <= 1 && std::abs(back.y - match.left.y) <= 1;
         }
     });
 }
@@ -252,7 +279,7 @@ void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMat
 }
 
 void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
-                   int numDisparities, CoarseMatches& coarse)
+                   const Range& disparities, int maxCorners, CoarseMatches& coarse)
 {
     coarse.matches.clear();
     coarse.layer = coarseLayer(left[0].size());
@@ -261,15 +288,17 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
     const Mat &coarseLeft = coarse.left[coarse.layer], &coarseRight = coarse.right[coarse.layer];
     if (std::min(coarseLeft.rows, coarseLeft.cols) < 2 * (CornerMatching::searchSide + CornerMatching::searchRadius))
         return;
-    const int cell = std::max<int>(minSpacing >> coarse.layer, minCoarseSpacing);
     std::vector<Mat> leftMasks(1), rightMasks(1);
     if (!masks.isEmpty())
     {
         buildPyramid({ masks.left }, coarse.layer + 1, leftMasks);
         buildPyramid({ masks.right }, coarse.layer + 1, rightMasks);
     }
-    findCornerMatches(coarseLeft, coarseRight, { leftMasks.back(), rightMasks.back() },
-                      layerDisparities(numDisparities, coarse.layer, true), cell, coarse.windows, coarse.matches);
+    const CornerSearch search = { Range(disparities.start >> coarse.layer,
+                                        layerDisparities(disparities.end, coarse.layer, true)),
+                                  maxCorners, std::max<int>(minSpacing >> coarse.layer, minCoarseSpacing) };
+    findCornerMatches(coarseLeft, coarseRight, { leftMasks.back(), rightMasks.back() }, search, coarse.windows,
+                      coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
 }
 

@@ -54,16 +54,31 @@ struct SearchArea
     };
 };
 
+//! What findCornerMatches() looks for
+struct CornerSearch
+{
+    Range disparities; // of the layer
+    int maxCorners;    // one per cell of a grid
+    int spacing;       // side of a cell, at least
+};
+
 /** Matches the corners of a coarse layer over all disparities and some rows by normalised cross-correlation.
 @param left CV_16UC1, values up to 1023.
 @param right Of the same size and type.
 @param masks Of this layer; what is matched has data.
-@param numDisparities Of the layer.
-@param spacing Side of a cell of the grid, at least.
+@param search What to look for.
 @param windows Memory to work in.
 @param matches Receives one match per corner, to whole pixels. */
-CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, int numDisparities,
-                                  int spacing, SearchWindows& windows, std::vector<CornerMatch>& matches);
+CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const CornerSearch& search,
+                                  SearchWindows& windows, std::vector<CornerMatch>& matches);
+
+/** Makes those matches invalid that are others from the right image to the left one, over its whole width.
+@param left See findCornerMatches().
+@param right The same.
+@param windows Memory to work in.
+@param matches Those of findCornerMatches(), tracked or not. */
+CV_EXPORTS void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows,
+                                  std::vector<CornerMatch>& matches);
 
 /** Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.
 @param left CV_16UC1, values up to 1023.
@@ -80,14 +95,15 @@ struct CoarseMatches
     std::vector<CornerMatch> matches; // tracked on this layer; empty if it is too small
 };
 
-/** The matches that row and light alignment have in common.
+/** The matches that row and light alignment, and the search for the range of disparities, begin with.
 @param left The left pyramid, CV_16UC1, values up to 1023; its layers may end anywhere.
 @param right The right one.
 @param masks Of the images.
-@param numDisparities Of the images.
+@param disparities Of the images, that may be.
+@param maxCorners One per cell of a grid.
 @param coarse Receives the result. */
 CV_EXPORTS void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
-                              int numDisparities, CoarseMatches& coarse);
+                              const Range& disparities, int maxCorners, CoarseMatches& coarse);
 
 }}} // namespace cv::stereo::hdp
 

@@ -12,6 +12,10 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
+// Of values, not references as those of the standard: see CONTRIBUTING.md on SIMD
+int lesser(int a, int b) { return a < b ? a : b; }
+int greater(int a, int b) { return a > b ? a : b; }
+
 //! A limit in 1 / subpixelScale pixel, whole pixels if isWhole; the limit of all if it is no number
 int toUnits(float limit, bool isWhole, bool isLargest, int limitOfAll)
 {
@@ -22,22 +26,45 @@ int toUnits(float limit, bool isWhole, bool isLargest, int limitOfAll)
     return (isLargest ? cvFloor(steps) : cvCeil(steps)) * (isWhole ? subpixelScale : 1);
 }
 
+//! Limits of one kind, in 1 / subpixelScale pixel; none is beyond the limit of all.
+Mat limitsInUnits(const Mat& given, int limitOfAll, bool isWhole, bool isLargest)
+{
+    Mat limits;
+    if (given.depth() == CV_16S)
+        given.convertTo(limits, CV_16S, subpixelScale);
+    else
+    {
+        limits.create(given.size(), CV_16S);
+        for (int y = 0; y < limits.rows; ++y)
+            for (int x = 0; x < limits.cols; ++x)
+                limits.ptr<short>(y)[x] =
+                    saturate_cast<short>(toUnits(given.ptr<float>(y)[x], isWhole, isLargest, limitOfAll));
+    }
+    if (isLargest)
+        min(limits, limitOfAll, limits);
+    else
+        max(limits, limitOfAll, limits);
+    return limits;
+}
+
 //! Hulls of 2 x 2 intervals
 void halveIntervals(const Mat& intervals, Mat& half)
 {
     half.create(intervals.rows / 2, intervals.cols / 2, CV_16UC2);
-    for (int y = 0; y < half.rows; ++y)
-        for (int x = 0; x < half.cols; ++x)
+    parallel_for_(Range(0, half.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
         {
-            DisparityInterval hull = { USHRT_MAX, 0 };
-            for (int i = 0; i < 4; ++i)
+            const ushort *const a = intervals.ptr<ushort>(2 * y), *const b = intervals.ptr<ushort>(2 * y + 1);
+            ushort* const hull = half.ptr<ushort>(y);
+            HDP_VECTORIZED for (int x = 0; x < half.cols; ++x)
             {
-                const DisparityInterval& own = intervals.ptr<DisparityInterval>(2 * y + i / 2)[2 * x + i % 2];
-                hull.first = std::min(hull.first, own.first);
-                hull.last = std::max(hull.last, own.last);
+                const int firstA = lesser(a[4 * x], a[4 * x + 2]), firstB = lesser(b[4 * x], b[4 * x + 2]);
+                const int lastA = greater(a[4 * x + 1], a[4 * x + 3]), lastB = greater(b[4 * x + 1], b[4 * x + 3]);
+                hull[2 * x] = (ushort)lesser(firstA, firstB);
+                hull[2 * x + 1] = (ushort)greater(lastA, lastB);
             }
-            half.ptr<DisparityInterval>(y)[x] = hull;
         }
+    });
 }
 
 void resizeNearest(const Mat& map, Size size, Mat& resized)
@@ -68,24 +95,9 @@ void expandRanges(const Mat& smallest, const Mat& largest, Size size, Range disp
     ranges = PixelRanges();
     if (smallest.empty())
         return;
-    Mat given[2];
-    smallest.convertTo(given[0], CV_32F);
-    largest.convertTo(given[1], CV_32F);
     Mat expanded[2];
-    for (int i = 0; i < 2; ++i)
-    {
-        Mat coarse(given[i].size(), CV_16S);
-        for (int y = 0; y < coarse.rows; ++y)
-            for (int x = 0; x < coarse.cols; ++x)
-            {
-                const int limit = toUnits(given[i].ptr<float>(y)[x], isWhole, i > 0,
-                                          (i > 0 ? disparities.end : disparities.start) * subpixelScale);
-                coarse.ptr<short>(y)[x] =
-                    saturate_cast<short>(i > 0 ? std::min(limit, disparities.end * subpixelScale)
-                                               : std::max(limit, disparities.start * subpixelScale));
-            }
-        resizeNearest(coarse, size, expanded[i]);
-    }
+    resizeNearest(limitsInUnits(smallest, disparities.start * subpixelScale, isWhole, false), size, expanded[0]);
+    resizeNearest(limitsInUnits(largest, disparities.end * subpixelScale, isWhole, true), size, expanded[1]);
     ranges.smallest = expanded[0];
     ranges.largest = expanded[1];
 }
@@ -98,19 +110,22 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
         return;
     // In units of the image first, so that layers know fractions
     const int largest = (numDisparities[0] - 1) * subpixelScale, offset = minDisparity * subpixelScale;
-    const Size size(ranges.smallest.cols + extension, ranges.smallest.rows);
+    const int columns = ranges.smallest.cols;
+    const Size size(columns + extension, ranges.smallest.rows);
     Mat units(size, CV_16UC2), half;
     parallel_for_(Range(0, size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
             const short *lowest = ranges.smallest.ptr<short>(y), *highest = ranges.largest.ptr<short>(y);
             ushort* const row = units.ptr<ushort>(y);
-            for (int x = 0; x < size.width; ++x)
+            ushort* const own = row + 2 * extension;
+            HDP_VECTORIZED for (int x = 0; x < columns; ++x)
             {
-                const int column = std::max(x - extension, 0);
-                row[2 * x] = (ushort)clamped(lowest[column] - offset, 0, largest);
-                row[2 * x + 1] = (ushort)clamped(highest[column] - offset, 0, largest);
+                own[2 * x] = (ushort)lesser(greater(lowest[x] - offset, 0), largest);
+                own[2 * x + 1] = (ushort)lesser(greater(highest[x] - offset, 0), largest);
             }
+            for (int x = 0; x < 2 * extension; ++x)
+                row[x] = own[x % 2];
         }
     });
     for (size_t layer = 0; layer < numDisparities.size(); ++layer)
@@ -126,9 +141,10 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
                 ushort* const interval = ofLayer.ptr<ushort>(y);
                 HDP_VECTORIZED for (int x = 0; x < units.cols; ++x)
                 {
-                    const int first = std::min(own[2 * x] >> shift, last);
+                    const int first = lesser(own[2 * x] >> shift, last);
+                    const int end = (own[2 * x + 1] + (1 << shift) - 1) >> shift;
                     interval[2 * x] = (ushort)first;
-                    interval[2 * x + 1] = (ushort)clamped((own[2 * x + 1] + (1 << shift) - 1) >> shift, first, last);
+                    interval[2 * x + 1] = (ushort)lesser(greater(end, first), last);
                 }
             }
         });
@@ -154,14 +170,20 @@ void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled)
 
 void intersectIntervals(const Mat& intervals, Mat& others)
 {
-    for (int y = 0; y < others.rows; ++y)
-        for (int x = 0; x < others.cols; ++x)
+    parallel_for_(Range(0, others.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
         {
-            const DisparityInterval& own = intervals.ptr<DisparityInterval>(y)[x];
-            DisparityInterval& other = others.ptr<DisparityInterval>(y)[x];
-            const DisparityInterval both = { std::max(own.first, other.first), std::min(own.last, other.last) };
-            other = both.empty() ? own : both;
+            const ushort* const own = intervals.ptr<ushort>(y);
+            ushort* const other = others.ptr<ushort>(y);
+            HDP_VECTORIZED for (int x = 0; x < others.cols; ++x)
+            {
+                const int first = greater(own[2 * x], other[2 * x]), last = lesser(own[2 * x + 1], other[2 * x + 1]);
+                const bool isEmpty = last < first;
+                other[2 * x] = (ushort)(isEmpty ? own[2 * x] : first);
+                other[2 * x + 1] = (ushort)(isEmpty ? own[2 * x + 1] : last);
+            }
         }
+    });
 }
 
 void moveIntoIntervals(const Mat& intervals, Mat& disparity)
@@ -169,10 +191,13 @@ void moveIntoIntervals(const Mat& intervals, Mat& disparity)
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
-            const DisparityInterval* const own = intervals.ptr<DisparityInterval>(y);
+            const ushort* const own = intervals.ptr<ushort>(y);
             ushort* const row = disparity.ptr<ushort>(y);
-            for (int x = 0; x < disparity.cols; ++x)
-                row[x] = (ushort)clamped((int)row[x], own[x].first * subpixelScale, own[x].last * subpixelScale);
+            HDP_VECTORIZED for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int first = own[2 * x] * subpixelScale, last = own[2 * x + 1] * subpixelScale;
+                row[x] = (ushort)lesser(greater(row[x], first), last);
+            }
         }
     });
 }

@@ -16,6 +16,7 @@ namespace {
 
 HDP_TUNABLE(double, smoothingDeviation, 0.5, "pixels",
             "of a noisy pair's Gaussian: more loses texture, less keeps noise");
+HDP_TUNABLE(int, maxCorners, 500, "corners", "one per cell of a grid: more cost time, fewer leave gaps in models");
 
 //! Both images by a small Gaussian
 void smooth(LayerImages& images, LayerImages& smoothed)
@@ -57,7 +58,7 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
         left.push_back(buffers.leftLevels);
         right.push_back(buffers.rightLevels);
     }
-    matchCoarsely(left, right, images[0].masks, plan.numDisparities, buffers.coarse);
+    matchCoarsely(left, right, images[0].masks, Range(0, plan.numDisparities), maxCorners, buffers.coarse);
     findings.hasRows = estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings.rows, findings.noise);
     if (plan.findsLight && isGrey(images))
         findings.hasLight = estimateLight(buffers.coarse, findings.light);

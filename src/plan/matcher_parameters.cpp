@@ -29,7 +29,7 @@ bool isNotNegative(double value) { return std::isfinite(value) && value >= 0; }
 template <typename Parameters, typename Visitor> void visitRange(Parameters& p, const Visitor& visit)
 {
     visit("minDisparity", p.minDisparity);
-    visit("numDisparities", p.numDisparities, p.numDisparities > 0, "> 0");
+    visit("numDisparities", p.numDisparities, p.numDisparities >= 0, ">= 0");
     visit("speckleWindowSize", p.speckleWindowSize);
     visit("speckleRange", p.speckleRange, p.speckleRange >= 0, ">= 0");
     visit("disp12MaxDiff", p.disp12MaxDiff);

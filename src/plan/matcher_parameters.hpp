@@ -14,11 +14,19 @@ struct MatcherParameters : HDPTreeMatcher::Params
     explicit MatcherParameters(int preset = HDPTreeMatcher::PRESET_PAPER) : Params(preset) {}
 
     int minDisparity = 0;
-    int numDisparities = 64;
+    int numDisparities = 64; // 0: both are found in the pair
     int speckleWindowSize = 0;
     int speckleRange = 0;
     int disp12MaxDiff = -1;
 };
+
+//! The same with a range of disparities
+inline MatcherParameters withRange(MatcherParameters parameters, int minDisparity, int numDisparities)
+{
+    parameters.minDisparity = minDisparity;
+    parameters.numDisparities = numDisparities;
+    return parameters;
+}
 
 //! Throws if a value is not valid by itself. What depends on several parameters or on the images is checked by
 //! plan().

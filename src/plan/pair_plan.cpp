@@ -42,7 +42,7 @@ HDP_TUNABLE(double, refinementGamma, 0.25, "gamma of the trees' sums",
             "of the non-local refinement: with the same one it blurs slanted surfaces");
 
 HDP_TUNABLE(
-    double, rangeBeta, 0.5, "share of the hull",
+    double, rangeBeta, 0.9, "share of the hull",
     "by which ranges of the caller overlap in a tree: more makes small trees, less searches what none may have");
 
 // Scanlines over windows
@@ -116,6 +116,14 @@ int countLayers(const MatcherParameters& p, Size size, const Ptr<DisparityPredic
         CV_Error(Error::StsOutOfRange, format("predictionModel must have numLayers - 1 = %d layers, not %d", layers - 1,
                                               model->getNumLayers()));
     return layers;
+}
+
+//! With a range if there is none: that of the model, or of a single disparity if it is empty
+MatcherParameters completed(const MatcherParameters& p, const PairModel& model)
+{
+    return p.numDisparities > 0 ? p
+           : model.empty()      ? withRange(p, 0, 1)
+                                : withRange(p, model.minDisparity, model.numDisparities);
 }
 
 //! Columns that are added on the left of the images, for the first ones to have their matches at negative disparities
@@ -254,10 +262,13 @@ int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int m
     return layers;
 }
 
-PairPlan plan(const MatcherParameters& p, Size size, int type, const PairModel& model, const PairInputs& inputs)
+PairPlan plan(const MatcherParameters& parameters, Size size, int type, const PairModel& model,
+              const PairInputs& inputs)
 {
+    const MatcherParameters p = completed(parameters, model);
     checkCombinations(p, size, inputs.hasPrior());
     PairPlan plan;
+    plan.looksForRange = parameters.numDisparities == 0 && model.empty();
     plan.size = size;
     plan.treeStrategy = p.treeStrategy;
     const Size whole = wholeSize(model, size); // a tile is matched as the image that it is a part of

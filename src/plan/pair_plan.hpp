@@ -104,7 +104,8 @@ struct PairPlan
     Size size; // of the images
     PyramidPlan pyramids;
     AlignmentPlan alignment;
-    GivenPair given; // what is not looked for in the pair, but known
+    GivenPair given;            // what is not looked for in the pair, but known
+    bool looksForRange = false; // of disparities, which is not known: what depends on it is for a single disparity
     bool followsVideo = false;
     std::vector<LayerPlan> layers; // that are matched, the top one first
     Ptr<TreeStrategy> treeStrategy;
@@ -116,7 +117,8 @@ struct PairPlan
 };
 
 /** What is done for a pair, as far as it depends on nothing but this:
-@param parameters The parameters; each is valid by itself.
+@param parameters The parameters; each is valid by itself. If numDisparities is 0, the range is that of
+the model.
 @param size Of the images.
 @param type Of the images, as checkPair() accepts it.
 @param model What is known of the images beforehand; valid by itself.

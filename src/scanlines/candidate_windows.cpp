@@ -13,6 +13,33 @@ namespace {
 
 HDP_DISPATCH(predictRow)
 
+//! upper and lower: the intervals of two rows, of so many columns, that the windows' pixels stand for
+void restrictRow(const DisparityInterval* upper, const DisparityInterval* lower, int columns, int numDisparities,
+                 int width, CandidateWindow* windows)
+{
+    const int length = CandidateWindow::runLength;
+    for (int x = 0; x < width; ++x)
+    {
+        CandidateWindow& window = windows[x];
+        const int left = std::min(2 * x, columns - 1), right = std::min(2 * x + 1, columns - 1);
+        const int first =
+            std::min(std::min(upper[left].first, upper[right].first), std::min(lower[left].first, lower[right].first));
+        const int last =
+            std::max(std::max(upper[left].last, upper[right].last), std::max(lower[left].last, lower[right].last));
+        const auto isUsed = [&](int run) { return window.first[run] <= last && window.first[run] + length > first; };
+        const bool used[] = { isUsed(0), isUsed(1) };
+        if (used[0] && used[1])
+            continue;
+        const int run = used[1] ? 1 : 0;
+        const int centre = std::min(std::max(wholeDisparity(window.predicted[run]), first), last);
+        const int begin = firstCandidate(centre, CandidateWindow::candidates, numDisparities);
+        window.first[0] = (short)begin;
+        window.first[1] = (short)(begin + length);
+        window.predicted[0] = window.predicted[1] =
+            (ushort)(used[run] ? window.predicted[run] : centre * subpixelScale);
+    }
+}
+
 } // namespace
 
 void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat& windows)
@@ -27,34 +54,12 @@ void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat
 
 void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows)
 {
-    const int length = CandidateWindow::runLength;
-    for (int y = 0; y < windows.rows; ++y)
-        for (int x = 0; x < windows.cols; ++x)
-        {
-            CandidateWindow& window = windows.ptr<CandidateWindow>(y)[x];
-            int first = INT_MAX, last = 0; // of the pixels below
-            for (int i = 0; i < 4; ++i)
-            {
-                const int row = std::min(2 * y + i / 2, intervals.rows - 1),
-                          column = std::min(2 * x + i % 2, intervals.cols - 1);
-                const DisparityInterval& own = intervals.ptr<DisparityInterval>(row)[column];
-                first = std::min(first, (int)own.first);
-                last = std::max(last, (int)own.last);
-            }
-            const auto isUsed = [&](int run) {
-                return window.first[run] <= last && window.first[run] + length > first;
-            };
-            const bool used[] = { isUsed(0), isUsed(1) };
-            if (used[0] && used[1])
-                continue;
-            const int run = used[1] ? 1 : 0;
-            const int centre = std::min(std::max(wholeDisparity(window.predicted[run]), first), last);
-            const int begin = firstCandidate(centre, CandidateWindow::candidates, numDisparities);
-            window.first[0] = (short)begin;
-            window.first[1] = (short)(begin + length);
-            window.predicted[0] = window.predicted[1] =
-                (ushort)(used[run] ? window.predicted[run] : centre * subpixelScale);
-        }
+    parallel_for_(Range(0, windows.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            restrictRow(intervals.ptr<DisparityInterval>(std::min(2 * y, intervals.rows - 1)),
+                        intervals.ptr<DisparityInterval>(std::min(2 * y + 1, intervals.rows - 1)), intervals.cols,
+                        numDisparities, windows.cols, windows.ptr<CandidateWindow>(y));
+    });
 }
 
 void halveDisparity(const Mat& disparity, Mat& upper)

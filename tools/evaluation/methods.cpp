@@ -211,7 +211,9 @@ Mat matchDensely(const Method& method, cv::StereoMatcher& matcher, const Mat& le
     }
     if (seconds)
         *seconds = shortest;
-    return toPixels(disparity16.colRange(before, before + left.cols), minDisparity);
+    const HDPTreeMatcher* const hdp = dynamic_cast<const HDPTreeMatcher*>(&matcher); // may find its range
+    return toPixels(disparity16.colRange(before, before + left.cols),
+                    hdp ? hdp->getFindings().minDisparity : minDisparity);
 }
 
 } // namespace hdp_tools

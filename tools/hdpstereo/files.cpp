@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <limits>
 
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
@@ -43,6 +44,22 @@ Mat readImage(const String& path, int flags)
     if (image.empty())
         CV_Error(Error::StsError, "cannot read the image '" + path + "'");
     return image;
+}
+
+Mat readDisparity(const String& path)
+{
+    const float none = std::numeric_limits<float>::quiet_NaN();
+    const Mat image = readImage(path, IMREAD_UNCHANGED);
+    if (image.type() != CV_16UC1 && image.type() != CV_32FC1)
+        CV_Error(Error::StsUnsupportedFormat, "'" + path + "' must have disparities of 16 bit, times 256, or floats");
+    Mat disparity;
+    image.convertTo(disparity, CV_32F, image.depth() == CV_16U ? 1. / 256 : 1);
+    if (image.depth() == CV_16U)
+        disparity.setTo(none, image == 0);
+    else
+        disparity.setTo(none, (disparity == std::numeric_limits<float>::infinity()) |
+                                  (disparity == -std::numeric_limits<float>::infinity()));
+    return disparity;
 }
 
 Mat readPicture(const String& path)

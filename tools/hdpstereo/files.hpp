@@ -23,6 +23,9 @@ void writeWholeFile(const cv::String& path, const std::vector<uchar>& bytes);
 
 cv::Mat readImage(const cv::String& path, int flags);
 
+//! A map as encodeDisparity() writes it: CV_32F in pixels, NaN where there is none
+cv::Mat readDisparity(const cv::String& path);
+
 //! Colours in 8 bit, or grey levels in 16 bit or floats of a picture that has them
 cv::Mat readPicture(const cv::String& path);
 

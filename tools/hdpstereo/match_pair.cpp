@@ -37,7 +37,8 @@ static Mat computeLikeSGBM(const HDPTreeMatcher& matcher, const Mat& left, const
 {
     if (left.depth() != CV_8U)
         CV_Error(Error::StsUnsupportedFormat, "--compare needs images of 8 bit: cv::StereoSGBM takes no others");
-    const int minDisparity = matcher.getMinDisparity(), numDisparities = (matcher.getNumDisparities() + 15) / 16 * 16;
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    const int minDisparity = findings.minDisparity, numDisparities = (findings.numDisparities + 15) / 16 * 16;
     const int added = std::max(minDisparity + numDisparities, 0);
     const Ptr<StereoSGBM> sgbm =
         StereoSGBM::create(minDisparity, numDisparities, 3, 8 * 27, 32 * 27, 0, 0, 0, 0, 0, StereoSGBM::MODE_SGBM_3WAY);
@@ -50,6 +51,15 @@ static Mat computeLikeSGBM(const HDPTreeMatcher& matcher, const Mat& left, const
     clock.stop();
     milliseconds = clock.getTimeMilli();
     return inPixels(disparity16.colRange(added, disparity16.cols), minDisparity);
+}
+
+//! If it was found
+static void printRange(const HDPTreeMatcher& matcher)
+{
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    if (matcher.getNumDisparities() == 0)
+        std::cout << format("%-11sdisparities %d..%d\n", "found", findings.minDisparity,
+                            findings.minDisparity + findings.numDisparities - 1);
 }
 
 static void printTimes(const HDPTreeMatcher& matcher)
@@ -240,6 +250,7 @@ void matchPair(const CommandLineParser& parser)
     const Mat truth = parser.has("truth") ? readTruth(parser.get<String>("truth"), left.size()) : Mat();
     const Mat disparity = computeDisparity(*matcher, left, right);
 
+    printRange(*matcher);
     printTimes(*matcher);
     warnOfPair(*matcher);
     const Mat sgbm = parser.has("compare") ? compareWithSGBM(*matcher, left, right) : Mat();
@@ -259,7 +270,7 @@ void matchPair(const CommandLineParser& parser)
     if (parser.has("picture"))
         writePicture(parser.get<String>("picture"), left, sgbm, disparity);
     if (parser.has("depth"))
-        writeDepth(parser.get<String>("depth"), *rectifier.rig(), disparity, matcher->getMinDisparity());
+        writeDepth(parser.get<String>("depth"), *rectifier.rig(), disparity, matcher->getFindings().minDisparity);
     if (parser.has("point-cloud"))
         writeAndTell(parser.get<String>("point-cloud"),
                      pointCloud(disparity, disparity < std::numeric_limits<float>::infinity(), colorsOf(left), Q));

@@ -93,10 +93,16 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
         cv::stereo::PairModel::load(parser.get<String>("findings")).write(options);
         options << "}";
     }
-    if (parser.has("left-mask"))
-        options << "leftMask" << parser.get<String>("left-mask");
-    if (parser.has("right-mask"))
-        options << "rightMask" << parser.get<String>("right-mask");
+    const std::pair<const char*, const char*> inputs[] = { { "left-mask", "leftMask" },
+                                                           { "right-mask", "rightMask" },
+                                                           { "smallest", "smallest" },
+                                                           { "largest", "largest" },
+                                                           { "prior", "prior" } };
+    for (const auto& input : inputs)
+        if (parser.has(input.first))
+            options << input.second << parser.get<String>(input.first);
+    if (parser.has("prior"))
+        options << "priorSigma" << parser.get<String>("prior-sigma");
     rectifier.write(options);
     options << "matcher"
             << "{";

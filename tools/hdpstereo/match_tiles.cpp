@@ -125,15 +125,44 @@ Ptr<HDPTreeMatcher> matchAlone(const CommandLineParser& parser, int width, const
     return matcher;
 }
 
+//! How often images are halved to be seen at once
+int timesHalved(Size size, double pixels)
+{
+    int times = 0;
+    while ((double)(size.width >> times) * (size.height >> times) > std::min(overviewPixels, pixels))
+        ++times;
+    return times;
+}
+
+//! --num-disparities=0: that of --findings, or of the reduced pair
+void takeRange(const CommandLineParser& parser, const WindowedPair& pair, double pixels, HDPTreeMatcher& matcher)
+{
+    int times = 0, first, count;
+    if (parser.has("findings"))
+    {
+        const PairModel model = PairModel::load(parser.get<String>("findings"));
+        first = model.minDisparity;
+        count = model.numDisparities;
+    }
+    else
+    {
+        times = timesHalved(pair.size(), pixels);
+        const Mat left = reduced(*pair.left, times), right = reduced(*pair.right, times);
+        const HDPTreeMatcher::Findings found = matchAlone(parser, pair.size().width, left, right, 0, 0)->getFindings();
+        first = found.minDisparity;
+        count = found.numDisparities;
+    }
+    matcher.setMinDisparity(first * (1 << times));
+    matcher.setNumDisparities(count * (1 << times));
+}
+
 //! What all tiles are matched with: --findings, or rows and light of the reduced pair and the rest of a part in the
 //! middle. layers: receives the number of layers.
 PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, const HDPTreeMatcher& matcher,
                     double pixels, int& layers)
 {
     const Size size = pair.size();
-    int times = 0;
-    while ((double)(size.width >> times) * (size.height >> times) > std::min(overviewPixels, pixels))
-        ++times;
+    const int times = timesHalved(size, pixels);
     const int min = matcher.getMinDisparity(), count = matcher.getNumDisparities();
     const int side = (int)std::sqrt(std::min(overviewPixels, pixels));
     const Rect all(Point(), size), middle = Rect((size.width - side) / 2, (size.height - side) / 2, side, side) & all;
@@ -165,7 +194,7 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
 
 void checkTileOptions(const CommandLineParser& parser)
 {
-    for (const char* option : { "picture", "truth", "point-cloud", "compare", "batch" })
+    for (const char* option : { "picture", "truth", "point-cloud", "compare", "batch", "smallest", "largest", "prior" })
         if (parser.has(option))
             CV_Error(Error::StsBadArg, format("--%s does not go with --tiles", option));
     if (!parser.has("@left") || !parser.has("@right") || parser.has("@out") == parser.has("output"))
@@ -188,6 +217,8 @@ void matchTiles(const CommandLineParser& parser)
     const bool writesTiles = isWrittenByTiles(output);
     const double area = (double)size.width * size.height;
     const double pixels = affordedPixels(parser, area * (2. * pair.left->bytesInMemory() + (writesTiles ? 0 : 4)));
+    if (matcher->getNumDisparities() == 0)
+        takeRange(parser, pair, pixels, *matcher);
     int layers = 0;
     const PairModel model = findModel(parser, pair, *matcher, pixels, layers);
     if (parser.has("save-findings"))

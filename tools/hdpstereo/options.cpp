@@ -7,6 +7,7 @@
 #include <climits>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
 
 #include "opencv2/imgcodecs.hpp"
@@ -38,6 +39,20 @@ int numDisparitiesOf(const CommandLineParser& parser, int width)
                                          : std::max((width / 5 + 15) / 16 * 16, 16);
 }
 
+//! --smallest and --largest, one of which may be missing; --prior and --prior-sigma
+static void setKnownDisparities(const CommandLineParser& parser, HDPTreeMatcher& matcher)
+{
+    const auto mapOf = [&](const char* option) {
+        return parser.has(option) ? readDisparity(parser.get<String>(option)) : Mat();
+    };
+    Mat smallest = mapOf("smallest"), largest = mapOf("largest");
+    const Mat prior = mapOf("prior"),
+              unlimited(std::max(smallest.rows, largest.rows), std::max(smallest.cols, largest.cols), CV_32F,
+                        Scalar(std::numeric_limits<float>::quiet_NaN()));
+    matcher.setDisparityRange(smallest.empty() ? unlimited : smallest, largest.empty() ? unlimited : largest);
+    matcher.setPriorDisparity(prior, Mat(1, 1, CV_64F, Scalar(numberOf(parser, "prior-sigma"))));
+}
+
 Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
 {
     const std::map<String, int> presets = { { "ultrafast", HDPTreeMatcher::PRESET_ULTRAFAST },
@@ -48,14 +63,17 @@ Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
     const auto preset = presets.find(parser.get<String>("preset"));
     if (preset == presets.end())
         CV_Error(Error::StsBadArg, "--preset=" + parser.get<String>("preset") + " is unknown, see --help");
-    const Ptr<HDPTreeMatcher> matcher =
-        HDPTreeMatcher::create(integerOf(parser, "min-disparity"), numDisparitiesOf(parser, width), preset->second);
+    const int minDisparity = integerOf(parser, "min-disparity"), numDisparities = numDisparitiesOf(parser, width);
+    if (numDisparities == 0 && minDisparity != 0)
+        CV_Error(Error::StsBadArg, "--min-disparity does not go with --num-disparities=0, which finds it, too");
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, numDisparities, preset->second);
     if (parser.has("findings"))
         matcher->setPairModel(cv::stereo::PairModel::load(parser.get<String>("findings")));
     const auto maskOf = [&](const char* option) {
         return parser.has(option) ? readImage(parser.get<String>(option), IMREAD_GRAYSCALE) : Mat();
     };
     matcher->setMasks(maskOf("left-mask"), maskOf("right-mask"));
+    setKnownDisparities(parser, *matcher);
     return matcher;
 }
 
@@ -71,5 +89,5 @@ Mat computeDisparity(HDPTreeMatcher& matcher, const Mat& left, const Mat& right)
 {
     Mat disparity16;
     matcher.compute(left, right, disparity16);
-    return inPixels(disparity16, matcher.getMinDisparity());
+    return inPixels(disparity16, matcher.getFindings().minDisparity);
 }

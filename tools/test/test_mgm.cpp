@@ -154,6 +154,19 @@ TEST(HDPStereo_Mgm, signs_and_sizes)
     EXPECT_GT(agree, 0.9 * known);
 }
 
+TEST(HDPStereo_Mgm, unknown_range)
+{
+    MgmTest test;
+    // Beyond mgm's own range of 30
+    Mat moved;
+    cv::copyMakeBorder(test.right, moved, 0, 0, 60, 0, BORDER_REPLICATE);
+    test.save(test.left, moved);
+    for (const String options : { "-s vfit", "-r nan -R nan -s vfit" })
+        EXPECT_LT(test.wrong(-test.match(options), -60), 0.15) << options;
+    test.save(Mat(160, 240, CV_8U, Scalar(90)), Mat(160, 240, CV_8U, Scalar(90)));
+    EXPECT_EQ(Size(240, 160), test.match("").size()) << "nothing to be found";
+}
+
 TEST(HDPStereo_Mgm, ranges_of_pixels)
 {
     MgmTest test;

@@ -9,6 +9,7 @@
 #include "synthetic_video.hpp"
 
 #ifdef __unix__
+#include <cstdio>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -338,7 +339,7 @@ TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
 
     for (const char* wrong :
          { " --preset=FAST", " --min-disparity=near", " --reprojection=/no/such.yml --point-cloud=x.ply",
-           " --focal=0 --baseline=1 --point-cloud=x.ply", " --num-disparities=0", " --output=/no/such/folder/map.png",
+           " --focal=0 --baseline=1 --point-cloud=x.ply", " --num-disparities=-1", " --output=/no/such/folder/map.png",
            " --output=map.unknown", " --point-cloud=x.ply", " --truth=/no/such/file.png" })
         EXPECT_EQ(1, run(folder, program + wrong).status) << wrong;
 }
@@ -434,7 +435,8 @@ TEST(HDPStereo_Programs, rectifies_raw_pairs)
     const Execution done = run(folder, calibrated + " --depth=" + folder.path("depth.png") +
                                            " --point-cloud=" + folder.path("points.ply"));
     EXPECT_EQ(0, done.status) << done.errors;
-    const Mat depth = cv::imread(folder.path("depth.png"), IMREAD_ANYDEPTH), disparity = cv::imread(map, IMREAD_ANYDEPTH);
+    const Mat depth = cv::imread(folder.path("depth.png"), IMREAD_ANYDEPTH),
+              disparity = cv::imread(map, IMREAD_ANYDEPTH);
     ASSERT_EQ(CV_16UC1, depth.type());
     EXPECT_NEAR(1000 * 200 * 0.2 / disparity.at<float>(60, 100), depth.at<ushort>(60, 100), 1);
     EXPECT_EQ(0, run(folder, calibrated + " --depth=" + folder.path("depth.pfm")).status);
@@ -517,7 +519,7 @@ TEST(HDPStereo_Programs, batch_of_folders)
     const String other = " " + folder.path("lefts") + " " + folder.path("rights") + " " + folder.path("other");
     for (const String& wrong : { String("--batch"), "--batch " + lefts + " " + rights, "--batch --preset=none" + other,
                                  "--batch --format=jpg" + other, "--batch --output=x.png" + other,
-                                 "--batch --num-disparities=0" + other, "--batch " + folder.path("empty/") + ". x y" })
+                                 "--batch --num-disparities=-1" + other, "--batch " + folder.path("empty/") + ". x y" })
     {
         const Execution result = run(folder, "hdpstereo " + wrong);
         EXPECT_EQ(1, result.status) << wrong;
@@ -555,6 +557,98 @@ TEST(HDPStereo_Programs, stereo_match_takes_masks)
         EXPECT_EQ(1, bad.status);
         EXPECT_EQ(firstLine(bad.errors) + "\n", bad.errors);
     }
+}
+
+TEST(HDPStereo_Programs, stereo_match_takes_ranges_and_a_prior)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String pfm = folder.path("map.pfm"), program = "hdpstereo" + pairOf(folder) + " --output=" + pfm;
+    const auto match = [&](const String& options) {
+        const Execution result = run(folder, program + options);
+        EXPECT_EQ(0, result.status) << options << result.errors;
+        return cv::imread(pfm, IMREAD_UNCHANGED).clone();
+    };
+    const Mat plain = match("");
+    const float none = std::numeric_limits<float>::quiet_NaN();
+    Mat least(60, 80, CV_32F, Scalar(none)), most(60, 80, CV_16U, Scalar(0)); // coarser than the images
+    least.rowRange(0, 30).setTo(9);
+    most.rowRange(20, 60).setTo(12 * 256);
+    folder.write("least.pfm", least);
+    folder.write("most.png", most);
+    const String smallest = " --smallest=" + folder.path("least.pfm"),
+                 largest = " --largest=" + folder.path("most.png");
+    const auto within = [](const Mat& map, int first, int last, double from, double to) {
+        const Mat rows = map.rowRange(first, last);
+        return cv::countNonZero((rows < from) | (rows > to)) == 0;
+    };
+    const Mat above = match(smallest), below = match(largest), both = match(smallest + largest);
+    EXPECT_FALSE(within(plain, 0, 60, 9, 31));
+    EXPECT_FALSE(within(plain, 40, 120, 0, 12));
+    EXPECT_TRUE(within(above, 0, 60, 9, 31));
+    EXPECT_FALSE(within(above, 60, 120, 9, 31));
+    EXPECT_TRUE(within(below, 40, 120, 0, 12));
+    EXPECT_FALSE(within(below, 0, 40, 0, 12));
+    EXPECT_TRUE(within(both, 40, 60, 9, 12));
+
+    // The pair's own map as a prior changes nothing much; another one that is dense and sure, more.
+    folder.write("prior.pfm", plain);
+    const String prior = " --prior=" + folder.path("prior.pfm");
+    EXPECT_LT(cv::countNonZero(abs(match(prior) - plain) > 1), 0.01 * plain.total());
+    EXPECT_EQ(0, run(folder, program + prior + " --prior-sigma=2").status);
+    folder.write("small.pfm", plain.colRange(0, 100));
+    folder.write("large.pfm", Mat(300, 300, CV_32F, Scalar(3)));
+    folder.write("bytes.png", Mat(120, 160, CV_8U, Scalar(3)));
+    folder.write("high.pfm", Mat(60, 80, CV_32F, Scalar(20)));
+    const std::pair<String, String> wrong[] = {
+        { " --prior=" + folder.path("small.pfm"), "the disparity of the prior must have the size of the images" },
+        { prior + " --prior-sigma=-1", "sigma must be finite and >= 0" },
+        { prior + " --prior-sigma=much", "--prior-sigma=much is not a number" },
+        { prior + " --preset=paper", "matchingCost must be COST_CENSUS for setPriorDisparity()" },
+        { " --prior=" + folder.path("none.pfm"), "cannot read the image" },
+        { " --smallest=" + folder.path("bytes.png"), "must have disparities of 16 bit, times 256, or floats" },
+        { " --smallest=" + folder.path("large.pfm"), "smallest and largest must have at most the size of the images" },
+        { " --smallest=" + folder.path("high.pfm") + largest, "largest must not be less than smallest" },
+        { " --smallest=" + folder.path("large.pfm") + largest, "largest must have the size and type of smallest" },
+    };
+    for (const auto& options : wrong)
+    {
+        const Execution bad = run(folder, program + options.first);
+        EXPECT_EQ(1, bad.status) << options.first;
+        EXPECT_NE(String::npos, bad.errors.find(options.second)) << bad.errors;
+        EXPECT_EQ(firstLine(bad.errors) + "\n", bad.errors);
+    }
+    EXPECT_EQ(1, run(folder, "hdpstereo --tiles" + pairOf(folder) + " " + pfm + prior).status);
+}
+
+TEST(HDPStereo_Programs, stereo_match_finds_the_range)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String pair = " " + folder.path("dataset/a/left.png") + " " + folder.path("dataset/a/right.png"),
+                 map = folder.path("map.pfm"), again = folder.path("again.pfm"), model = folder.path("rig.yml");
+    const Execution found =
+        run(folder, "hdpstereo" + pair + " " + map + " --num-disparities=0 --save-findings=" + model);
+    EXPECT_EQ(0, found.status) << found.errors;
+    int first = 0, last = 0;
+    ASSERT_EQ(2, std::sscanf(found.output.c_str(), "found disparities %d..%d", &first, &last)) << found.output;
+    const String range = cv::format(" --min-disparity=%d --num-disparities=%d", first, last - first + 1);
+    EXPECT_EQ(0, run(folder, "hdpstereo" + pair + " " + again + range).status);
+    EXPECT_EQ(readText(map), readText(again));
+    EXPECT_EQ(0, run(folder, "hdpstereo" + pair + " " + again + " --num-disparities=0 --findings=" + model).status);
+    EXPECT_EQ(readText(map), readText(again));
+    const Execution tiles = run(folder, "hdpstereo --tiles" + pair + " " + again + " --num-disparities=0");
+    EXPECT_EQ(0, tiles.status) << tiles.errors;
+    EXPECT_EQ(readText(map), readText(again));
+
+    const Execution both = run(folder, "hdpstereo" + pair + " --num-disparities=0 --min-disparity=3");
+    EXPECT_EQ(1, both.status);
+    EXPECT_EQ("error: --min-disparity does not go with --num-disparities=0, which finds it, too\n", both.errors);
+    folder.write("blank.png", Mat(120, 160, CV_8U, Scalar(90)));
+    const String blank = " " + folder.path("blank.png");
+    const Execution none = run(folder, "hdpstereo" + blank + blank + " --num-disparities=0");
+    EXPECT_EQ(1, none.status);
+    EXPECT_EQ(0u, none.errors.find("error: numDisparities must be > 0 for this pair")) << none.errors;
 }
 
 TEST(HDPStereo_Programs, batch_of_a_list)
@@ -662,8 +756,9 @@ TEST(HDPStereo_Programs, camera)
     out << "R" << Mat::eye(3, 3, CV_64F) << "T" << (Mat_<double>(3, 1) << -2, 0, 0);
     in.release();
     out.release();
-    const String program = "example_hdpstereo_hdp_camera ", options = " --no-gui --num-disparities=32 -c=" + intrinsics +
-                           " --calibration2=" + extrinsics + " --unit=0.1";
+    const String program = "example_hdpstereo_hdp_camera ",
+                 options = " --no-gui --num-disparities=32 -c=" + intrinsics + " --calibration2=" + extrinsics +
+                           " --unit=0.1";
     const String command = program + folder.path("left%02d.png") + " " + folder.path("right%02d.png") + options;
     const Execution all = run(folder, command + " --output=" + folder.path("shown%02d.png") + " --watch");
     EXPECT_EQ(0, all.status) << all.errors;
@@ -677,8 +772,9 @@ TEST(HDPStereo_Programs, camera)
 
     // Folders; and one picture with both images
     const String results = folder.path("results");
-    EXPECT_EQ(0u, run(folder, program + folder.path("lefts") + " " + folder.path("rights") + options + " --results=" +
-                                  results).output.find("3 frames, "));
+    EXPECT_EQ(0u, run(folder,
+                      program + folder.path("lefts") + " " + folder.path("rights") + options + " --results=" + results)
+                      .output.find("3 frames, "));
     const Mat depth = cv::imread(results + "/000002_depth.png", IMREAD_ANYDEPTH);
     const Mat disparity = cv::imread(results + "/000002_disparity.pfm", IMREAD_ANYDEPTH);
     ASSERT_EQ(CV_16UC1, depth.type());
@@ -691,8 +787,8 @@ TEST(HDPStereo_Programs, camera)
     cv::hconcat(pair.left, pair.right, both);
     folder.write("both.png", both);
     EXPECT_EQ(0u, run(folder, program + folder.path("both.png") + options).output.find("1 frames, "));
-    EXPECT_NE(String::npos, run(folder, program + folder.path("both.png") + " --no-gui -c=" + intrinsics).errors.find(
-                                "intrinsics.yml': T/data is missing"));
+    EXPECT_NE(String::npos, run(folder, program + folder.path("both.png") + " --no-gui -c=" + intrinsics)
+                                .errors.find("intrinsics.yml': T/data is missing"));
 
     for (int type : { CV_8UC1, CV_16UC1, CV_8UC4 })
     {

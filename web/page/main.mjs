@@ -40,7 +40,7 @@ async function match() {
     try {
         const answer = await client.match(settings);
         if (run !== runs) return;
-        view.show(answer, settings, left);
+        view.show(answer, left);
         showStatus(
             `${describe(answer, settings)}: ${answer.milliseconds.toFixed(0)} ms` +
                 (run === 1 ? ' (the first run also compiles the matcher)' : ''),
@@ -134,7 +134,7 @@ const video = new Video({
             { settings } = video;
         if (!isWanted()) return;
         view.showLeft(answer.left);
-        view.show(answer, settings, answer.left, true);
+        view.show(answer, answer.left, true);
         showStatus(`${describe(answer, settings)}: ${answer.milliseconds.toFixed(0)} ms per frame`);
         document.body.dataset.frames = Number(document.body.dataset.frames ?? 0) + 1;
     },

@@ -45,9 +45,9 @@ export class ResultView {
         drawImage(get('left'), image);
     }
 
-    // What the matcher answers with these settings, for this left image
-    show(answer, settings, left, isVideo = false) {
-        const invalid = (settings.minDisparity - 1) * scale;
+    // What the matcher answers for this left image
+    show(answer, left, isVideo = false) {
+        const invalid = (answer.minDisparity - 1) * scale;
         const range = colorRange(answer, invalid);
         if (isVideo && this.result?.isVideo)
             // colours that do not flicker

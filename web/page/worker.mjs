@@ -79,6 +79,7 @@ function resultOf(matcher, disparity, start) {
         width: disparity.width,
         height: disparity.height,
         disparity: disparity.data,
+        minDisparity: matcher.getFindings().minDisparity,
         confidence: confidence.data,
         milliseconds: disparity.milliseconds,
         elapsed: performance.now() - start,

@@ -69,7 +69,7 @@ test('setters take what getters return, and refuse what is out of range', () => 
     }
     assert.throws(() => matcher.setParams({ P1: 101 }), /P1 must be in 0..100, not 101/);
     assert.throws(() => matcher.setTreeStrategy('oak'), /treeStrategy must be MST, ST or RT/);
-    assert.throws(() => hdp.HDPTreeMatcher.create(0, 0, hdp.PRESET_FAST), /numDisparities must be > 0/);
+    assert.throws(() => hdp.HDPTreeMatcher.create(0, -1, hdp.PRESET_FAST), /numDisparities must be >= 0/);
     const { left } = pairs[0].images;
     assert.throws(() => matcher.compute(left, pairs[2].images.right), /size/);
     assert.throws(() => matcher.compute({ ...left, width: 0 }, left), /left/);

@@ -46,7 +46,10 @@ column. getConfidence() tells how reliable each disparity is, getFindings() what
 **What to set.** The parameters that matter, the most important first:
 - minDisparity, numDisparities: the range of disparities in pixels, minDisparity to minDisparity + numDisparities - 1.
   minDisparity has any sign; a negative one adds up to numDisparities columns on the left of the images. numDisparities
-  is > 0, and not necessarily a multiple of 16.
+  is > 0, and not necessarily a multiple of 16, or 0: both are found in the pair, see Findings::numDisparities, and the
+  parameter minDisparity has no meaning. This takes 10 to 30 ms, and a range that is some 40 % larger than necessary.
+  A pair in which fewer than 10 corners have matches, as in images without texture, is an error. The frames of a video
+  keep the range of the first one while it has all disparities that are found, and is not twice as large.
 - the preset, see HDPTreeMatcher::Preset: what to spend on accuracy.
 - Params::useTemporalPrediction: on for videos.
 - Params::maxRowOffset, Params::useLightAlignment, Params::noiseThreshold: what is done about pairs that are not quite
@@ -71,6 +74,7 @@ on several parameters or on the images is checked by compute(), before any work.
 - 16 times the disparities, and 16 times (minDisparity - 1), do not fit into CV_16S;
 - the cost is not COST_CENSUS with scanlines, Params::fillOcclusions, Params::useTemporalPrediction or a prior;
 - Params::predictionModel has too few layers;
+- numDisparities is 0, and the pair has too few corners to find the range: found by some work, before matching;
 - the images are not those of the PairModel that is set;
 - the output array has a fixed type other than CV_16SC1 and CV_32FC1;
 - a mask or a prior has not the size of the images, or the maps of setDisparityRange() are larger;
@@ -452,6 +456,16 @@ public:
         the parameters of the alignment are all 0. */
         CV_PROP double noise;
 
+        //! First disparity of the range that was searched, in pixels: minDisparity, or what was found, see numDisparities.
+        CV_PROP int minDisparity;
+
+        /** @brief Number of disparities of the range that was searched.
+
+        That of the parameter, if it is > 0. If it is 0, both this and minDisparity were found in the pair, or are those
+        of the PairModel that is set; a pixel without data, or that a filter rejected, then has this minDisparity - 1.
+        */
+        CV_PROP int numDisparities;
+
         /** @brief Share of the disparity range that each layer searched, the image first: \f$R_l\f$ of the paper's
         Table 1, in [0, 1]. 0 for one finer than Params::finestLayer. */
         CV_PROP std::vector<double> searchRatios;
@@ -619,7 +633,7 @@ public:
 
     /** @brief Creates a matcher.
     @param minDisparity First disparity in pixels, of any sign.
-    @param numDisparities Number of candidates, > 0.
+    @param numDisparities Number of candidates, >= 0; 0: both are found in each pair.
     @param preset One of HDPTreeMatcher::PRESET_FAST, PRESET_ULTRAFAST, PRESET_QUALITY, PRESET_TREE and PRESET_PAPER.
     @throws cv::Exception if numDisparities or preset is out of range.
      */

@@ -603,7 +603,7 @@ class hdpstereo_test(TestCase):
         storage.release()
         with open(filename) as f:
             text = f.read()
-        for old, new, message in (('numDisparities: 40', 'numDisparities: 0', 'numDisparities must be > 0, not 0'),
+        for old, new, message in (('numDisparities: 40', 'numDisparities: -1', 'numDisparities must be >= 0, not -1'),
                                   ('blockSize: 7', 'blockSize: 4.5', 'blockSize must be a number'),
                                   ('minDisparity: -3', 'minDisparity: none', 'minDisparity must be a number')):
             self.assertIn(old, text)
@@ -622,7 +622,7 @@ class hdpstereo_test(TestCase):
         matcher = cv.stereo.HDPTreeMatcher.create(-3, 40)
         before = parameters(matcher)
         for setter, value, message in (
-                ('NumDisparities', 0, 'numDisparities must be > 0, not 0'),
+                ('NumDisparities', -1, 'numDisparities must be >= 0, not -1'),
                 ('SpeckleRange', -1, 'speckleRange must be >= 0, not -1'),
                 ('NumLayers', 17, 'numLayers must be in 1..16, not 17'),
                 ('MaxTopDisparities', -1, 'maxTopDisparities must be >= 0, not -1'),
@@ -648,7 +648,7 @@ class hdpstereo_test(TestCase):
                 ('DisparityDepth', cv.CV_8U, 'disparityDepth must be CV_16S or CV_32F, not 0'),
                 ('TreeStrategy', None, 'treeStrategy must not be empty')):
             self.assertRejected(message, set_, matcher, setter, value)
-        self.assertRejected('numDisparities must be > 0, not -16', cv.stereo.HDPTreeMatcher.create, 0, -16)
+        self.assertRejected('numDisparities must be >= 0, not -16', cv.stereo.HDPTreeMatcher.create, 0, -16)
         self.assertRejected('preset must be one of HDPTreeMatcher::PRESET_*, not 9',
                             cv.stereo.HDPTreeMatcher.create, 0, 16, 9)
         self.assertRejected('k must be finite and >= 0', cv.stereo.createSegmentTree, -1)

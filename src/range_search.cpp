@@ -1,0 +1,180 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "precomp.hpp"
+#include "range_search.hpp"
+
+#include "base/tunable.hpp"
+#include "pair/image_levels.hpp"
+#include "pair/image_pyramid.hpp"
+
+#include <cmath>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+// Corners
+HDP_TUNABLE(int, maxCorners, 500, "corners", "more cost time, fewer miss what is small");
+HDP_TUNABLE(int, neighbourReach, 24, "pixels of the coarse layer", "in which a corner is to have neighbours");
+HDP_TUNABLE(int, minNeighbours, 3, "corners", "of the same surface: fewer believe a pattern that repeats itself");
+HDP_TUNABLE(double, neighbourShare, 0.3, "share of the neighbours", "of the same surface: the same");
+HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the coarse layer", "by which neighbours differ");
+HDP_TUNABLE(double, neighbourSlope, 0.1, "disparities per pixel", "that surfaces have: more lets wrong corners in");
+HDP_TUNABLE(int, minSupport, 10, "corners", "fewer are no evidence of a range");
+
+// All pixels
+HDP_TUNABLE(double, farReach, 1.5, "share of the corners' range",
+            "that is searched before it: more cost time and errors");
+HDP_TUNABLE(double, nearReach, 1.5, "share of the corners' range", "that is searched behind it");
+HDP_TUNABLE(double, leastReach, 0.1, "share of the width", "that is searched behind it at least");
+HDP_TUNABLE(double, minConfidence, 20, "confidence", "of disparities that count: less believes errors");
+HDP_TUNABLE(int, speckleSize, 50, "pixels", "of regions that do not count: fewer believe errors");
+HDP_TUNABLE(double, leftOut, 0.0005, "share of the disparities", "at each end that may be wrong");
+
+// The range
+HDP_TUNABLE(double, farMargin, 0.125, "share of the range", "before its first disparity: more costs time");
+HDP_TUNABLE(double, nearMargin, 0.35, "share of the range", "behind its last one: near things are small and missed");
+HDP_TUNABLE(double, zeroReach, 1, "share of the range",
+            "before it, in which it is made to begin with 0: what is far may "
+            "have no texture");
+HDP_TUNABLE(double, leastMargin, 4, "pixels of the image", "at both ends, at least");
+HDP_TUNABLE(double, keptExcess, 2, "times the range", "that the range of a video may be larger than that of a frame");
+
+const int largestDisparity = SHRT_MAX / StereoMatcher::DISP_SCALE - 2;
+
+//! Without what no pixel of images of this width can have, or CV_16S
+Range limited(double first, double last, int width)
+{
+    const int limit = std::min(width - 1, largestDisparity);
+    const int start = std::min(std::max(cvFloor(first), -limit), limit);
+    return Range(start, std::max(std::min(cvCeil(last), limit), start) + 1);
+}
+
+Mat ofLayer(const Mat& mask, int layer)
+{
+    if (mask.empty())
+        return Mat();
+    std::vector<Mat> pyramid;
+    buildPyramid({ mask }, layer + 1, pyramid);
+    return pixelsWithData(pyramid.back());
+}
+
+} // namespace
+
+Range supportedDisparities(const std::vector<CornerMatch>& matches, int& support)
+{
+    double first = 0, last = 0;
+    support = 0;
+    for (const CornerMatch& match : matches)
+    {
+        if (!match.isValid)
+            continue;
+        const double disparity = match.left.x - match.x;
+        int near = 0, alike = 0;
+        for (const CornerMatch& other : matches)
+        {
+            const Point offset = other.left - match.left;
+            const int square = offset.dot(offset);
+            if (!other.isValid || square == 0 || square > neighbourReach * neighbourReach)
+                continue;
+            const double tolerance = neighbourStep + neighbourSlope * std::sqrt((double)square);
+            ++near;
+            alike += std::abs(other.left.x - other.x - disparity) <= tolerance;
+        }
+        if (alike < minNeighbours || alike < neighbourShare * near)
+            continue;
+        first = support == 0 ? disparity : std::min(first, disparity);
+        last = support == 0 ? disparity : std::max(last, disparity);
+        ++support;
+    }
+    return support == 0 ? Range() : Range(cvFloor(first), cvCeil(last) + 1);
+}
+
+//! Returns how many there are; range: theirs
+int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, Range& range)
+{
+    const int bits = countBits(left, right); // what has no data has the levels of what has
+    greyLevels(left, bits, leftLevels_);
+    greyLevels(right, bits, rightLevels_);
+    const int width = left.cols;
+    matchCoarsely({ leftLevels_ }, { rightLevels_ }, masks, Range(-width, width), maxCorners, coarse_);
+    if (!coarse_.matches.empty())
+        keepMutualMatches(coarse_.left[coarse_.layer], coarse_.right[coarse_.layer], coarse_.windows, coarse_.matches);
+    int support;
+    range = supportedDisparities(coarse_.matches, support);
+    return support;
+}
+
+//! Of the layer below that of the corners, with more than their disparities. found: in pixels of the image
+bool RangeSearch::matchPixels(const PairMasks& masks, const Range& corners, Range& found)
+{
+    const int layer = std::max(coarse_.layer - 1, 0), scale = 1 << layer;
+    const double size = corners.size(), width = coarse_.left[coarse_.layer].cols;
+    const double first = corners.start - farReach * size;
+    const double last = corners.end + std::max(nearReach * size, leastReach * width);
+    const double unit = 1 << (coarse_.layer - layer);
+    const int columns = coarse_.left[layer].cols;
+    const Range searched = limited(first * unit, last * unit, columns);
+    if (!matcher_)
+    {
+        matcher_ = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_FAST);
+        matcher_->setDisparityDepth(CV_32F);
+        matcher_->setDisp12MaxDiff(1);
+        matcher_->setSpeckleRange(1);
+    }
+    matcher_->setSpeckleWindowSize(speckleSize);
+    matcher_->setMinDisparity(searched.start);
+    matcher_->setNumDisparities(searched.size());
+    matcher_->setMasks(ofLayer(masks.left, layer), ofLayer(masks.right, layer));
+    coarse_.left[layer].convertTo(left_, CV_16U, 64); // of 10 bits
+    coarse_.right[layer].convertTo(right_, CV_16U, 64);
+    matcher_->compute(left_, right_, disparity_);
+    matcher_->getConfidence(confidence_);
+    disparities_.clear();
+    for (int y = 0; y < disparity_.rows; ++y)
+        for (int x = 0; x < columns; ++x)
+        {
+            const float disparity = disparity_.at<float>(y, x);
+            if (disparity >= searched.start && confidence_.at<uchar>(y, x) >= minConfidence)
+                disparities_.push_back(disparity);
+        }
+    if (disparities_.empty())
+        return false;
+    const size_t end = disparities_.size() - 1, skipped = (size_t)(leftOut * end);
+    std::sort(disparities_.begin(), disparities_.end());
+    found.start = cvFloor(disparities_[skipped] * scale);
+    found.end = cvCeil(disparities_[end - skipped] * scale) + 1;
+    return true;
+}
+
+Range RangeSearch::find(const Mat& left, const Mat& right, const PairMasks& masks, bool isFrame)
+{
+    const Range last = isFrame && left.size() == lastSize_ ? last_ : Range();
+    last_ = Range();
+    Range corners, found;
+    const int support = matchCorners(left, right, masks, corners);
+    const bool isFound = support >= minSupport && matchPixels(masks, corners, found);
+    if (!isFound && last.empty())
+        CV_Error(Error::StsBadArg, "numDisparities must be > 0 for this pair: too few corners match to find its range");
+    Range range = last;
+    if (isFound)
+    {
+        const double size = found.size(), least = leastMargin;
+        const bool isNearZero = found.start > 0 && found.start <= zeroReach * size;
+        const double first = found.start - std::max(farMargin * size, least);
+        range = limited(isNearZero ? std::min(first, 0.) : first, found.end - 1 + std::max(nearMargin * size, least),
+                        left.cols);
+        const bool isEnough = last.start <= found.start && last.end >= found.end;
+        if (!last.empty() && isEnough && last.size() <= keptExcess * range.size())
+            range = last;
+    }
+    if (isFrame)
+    {
+        last_ = range;
+        lastSize_ = left.size();
+    }
+    return range;
+}
+
+}}} // namespace cv::stereo::hdp

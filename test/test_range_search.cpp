@@ -1,0 +1,257 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "test_precomp.hpp"
+#include "helpers.hpp"
+#include "synthetic_pair.hpp"
+#include "../src/range_search.hpp"
+
+namespace opencv_test { namespace {
+
+using hdp::CornerMatch;
+
+const int truthEnd = 64; // disparities of the pair are below
+
+const SyntheticPair& scene()
+{
+    static const SyntheticPair pair = makeSyntheticPair(Size(480, 320), truthEnd, 3);
+    return pair;
+}
+
+CornerMatch matchAt(Point left, double disparity)
+{
+    CornerMatch match;
+    match.left = left;
+    match.x = left.x - disparity;
+    match.y = left.y;
+    match.variance = match.residual = 0;
+    match.isValid = true;
+    return match;
+}
+
+Range foundRange(const HDPTreeMatcher& matcher)
+{
+    const HDPTreeMatcher::Findings findings = matcher.getFindings();
+    return Range(findings.minDisparity, findings.minDisparity + findings.numDisparities);
+}
+
+//! The range has all true disparities, which are moved by some, and is not three times as large.
+void expectCovers(const Range& found, int moved)
+{
+    double first, last;
+    cv::minMaxLoc(scene().truth, &first, &last);
+    EXPECT_LE(found.start, first + moved);
+    EXPECT_GE(found.end - 1, last + moved);
+    EXPECT_LE(found.size(), 3 * (last - first));
+}
+
+TEST(HDPStereo_RangeSearch, any_sign_and_type)
+{
+    for (const int moved : { 0, -30, -80, 25 }) // columns of the left image that are cut off, or of the right one
+    {
+        const int columns = scene().left.cols - std::abs(moved);
+        const Mat left = scene().left.colRange(std::max(-moved, 0), std::max(-moved, 0) + columns);
+        const Mat right = scene().right.colRange(std::max(moved, 0), std::max(moved, 0) + columns);
+        for (const int type : { CV_8UC3, CV_8UC1, CV_16UC1, CV_32FC1 })
+        {
+            SCOPED_TRACE(format("moved by %d, type %d", moved, type));
+            Mat images[] = { left.clone(), right.clone() };
+            for (Mat& image : images)
+            {
+                if (type != CV_8UC3)
+                    cv::cvtColor(image, image, COLOR_BGR2GRAY);
+                if (type == CV_16UC1)
+                    image.convertTo(image, type, 16, 100);
+                if (type == CV_32FC1)
+                    image.convertTo(image, type, 1 / 255.);
+            }
+            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(7, 0);
+            const Mat disparity = match(*matcher, images[0], images[1]);
+            EXPECT_EQ(7, matcher->getMinDisparity()) << "parameters stay";
+            EXPECT_EQ(0, matcher->getNumDisparities());
+            const Range found = foundRange(*matcher);
+            expectCovers(found, moved);
+            const Ptr<HDPTreeMatcher> told = HDPTreeMatcher::create(found.start, found.size());
+            expectIdentical(match(*told, images[0], images[1]), disparity);
+        }
+    }
+}
+
+TEST(HDPStereo_RangeSearch, all_presets_and_threads)
+{
+    Range first;
+    for (int preset = HDPTreeMatcher::PRESET_PAPER; preset <= HDPTreeMatcher::PRESET_TREE; ++preset)
+        for (const int threads : { 1, 3 })
+        {
+            const ScopedThreads scoped(threads);
+            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0, preset);
+            match(*matcher, scene().left, scene().right);
+            if (first.empty())
+                first = foundRange(*matcher);
+            EXPECT_EQ(first, foundRange(*matcher)) << preset << ", " << threads;
+        }
+    expectCovers(first, 0);
+}
+
+TEST(HDPStereo_RangeSearch, nothing_to_find)
+{
+    const Size size(320, 240);
+    RNG rng(5);
+    const Mat pairs[][2] = {
+        { Mat(size, CV_8U, Scalar(90)), Mat(size, CV_8U, Scalar(90)) },
+        { randomImage(rng, size, CV_8U), randomImage(rng, size, CV_8U) },
+        { patchyImage(rng, size, CV_8U), patchyImage(rng, size, CV_8U) },
+        { Mat(1, 1, CV_8U, Scalar(3)), Mat(1, 1, CV_8U, Scalar(3)) },
+        { randomImage(rng, Size(5, 300), CV_16U), randomImage(rng, Size(5, 300), CV_16U) },
+    };
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+    for (const auto& pair : pairs)
+    {
+        Mat disparity(2, 2, CV_8U, Scalar(7));
+        const Mat before = disparity.clone();
+        expectRejected([&] { matcher->compute(pair[0], pair[1], disparity); }, "numDisparities must be > 0");
+        expectIdentical(before, disparity);
+        EXPECT_EQ(Range(), foundRange(*matcher));
+    }
+    match(*matcher, scene().left, scene().right);
+    expectCovers(foundRange(*matcher), 0);
+
+    // What does not depend on the range is an error before any work.
+    matcher->setMasks(Mat::ones(3, 3, CV_8U), noArray());
+    expectRejected([&] { match(*matcher, scene().left, scene().right); }, "leftMask");
+}
+
+TEST(HDPStereo_RangeSearch, what_is_masked_has_no_influence)
+{
+    Mat left = scene().left.clone(), right = scene().right.clone();
+    Mat leftMask(left.size(), CV_8U, Scalar(255)), rightMask = leftMask.clone();
+    leftMask.rowRange(0, 60).setTo(0);
+    rightMask.rowRange(0, 60).setTo(0);
+    RNG rng(9);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+    matcher->setMasks(leftMask, rightMask);
+    match(*matcher, left, right);
+    const Range found = foundRange(*matcher);
+    // The same texture there, 200 pixels apart
+    const Mat noise = patchyImage(rng, Size(left.cols, 60), CV_8UC3);
+    noise.copyTo(left.rowRange(0, 60));
+    noise.colRange(200, left.cols).copyTo(right.rowRange(0, 60).colRange(0, left.cols - 200));
+    match(*matcher, left, right);
+    EXPECT_EQ(found, foundRange(*matcher));
+    matcher->setMasks(noArray(), noArray());
+    match(*matcher, left, right);
+    EXPECT_GT(foundRange(*matcher).end, 200) << "it would have";
+}
+
+TEST(HDPStereo_RangeSearch, a_video_keeps_its_range)
+{
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+    matcher->setUseTemporalPrediction(true);
+    match(*matcher, scene().left, scene().right);
+    const Range first = foundRange(*matcher);
+    // The same with a little less noise, as the next frame is
+    Mat left, right;
+    cv::GaussianBlur(scene().left, left, Size(3, 3), 0.4);
+    cv::GaussianBlur(scene().right, right, Size(3, 3), 0.4);
+    match(*matcher, left, right);
+    EXPECT_EQ(first, foundRange(*matcher));
+    const Mat blank(left.size(), left.type(), Scalar::all(80));
+    match(*matcher, blank, blank);
+    EXPECT_EQ(first, foundRange(*matcher)) << "a frame in which nothing is found";
+    match(*matcher, left.colRange(100, left.cols), right.colRange(0, right.cols - 100));
+    EXPECT_LT(foundRange(*matcher).start, -50) << "another size";
+    matcher->clear();
+    expectRejected([&] { match(*matcher, blank, blank); }, "numDisparities");
+}
+
+TEST(HDPStereo_RangeSearch, belongs_to_the_pair_model)
+{
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+    const Mat expected = match(*matcher, scene().left, scene().right);
+    const Range found = foundRange(*matcher);
+    const PairModel model = matcher->getPairModel();
+    EXPECT_EQ(found, Range(model.minDisparity, model.minDisparity + model.numDisparities));
+
+    const Ptr<HDPTreeMatcher> other = HDPTreeMatcher::create(0, 0);
+    other->setPairModel(model);
+    expectIdentical(expected, match(*other, scene().left, scene().right));
+    const Mat blank(scene().left.size(), CV_8UC3, Scalar::all(80));
+    EXPECT_NO_THROW(match(*other, blank, blank)) << "nothing is looked for";
+    EXPECT_EQ(found, foundRange(*other));
+}
+
+//! Corners of a slanted surface
+std::vector<CornerMatch> surface()
+{
+    std::vector<CornerMatch> matches;
+    for (int y = 10; y < 100; y += 9)
+        for (int x = 40; x < 160; x += 9)
+            matches.push_back(matchAt(Point(x, y), 5 + 0.05 * x));
+    return matches;
+}
+
+TEST(HDPStereo_RangeSearch, single_corners_do_not_count)
+{
+    std::vector<CornerMatch> matches = surface();
+    int support, withOthers;
+    const Range range = hdp::supportedDisparities(matches, support);
+    EXPECT_EQ((int)matches.size(), support);
+    EXPECT_EQ(Range(7, 14), range);
+
+    RNG rng(4);
+    for (int i = 0; i < 12; ++i) // wrong ones, of all disparities
+        matches.push_back(matchAt(Point(rng.uniform(40, 160), rng.uniform(10, 100)), i * 11 - 60.));
+    EXPECT_EQ(range, hdp::supportedDisparities(matches, withOthers));
+    EXPECT_EQ(support, withOthers);
+    for (int i = 0; i < 4; ++i) // a thing in front
+        matches.push_back(matchAt(Point(200 + 5 * (i % 2), 30 + 5 * (i / 2)), 44));
+    EXPECT_EQ(Range(7, 45), hdp::supportedDisparities(matches, withOthers));
+    EXPECT_EQ(support + 4, withOthers);
+    for (CornerMatch& match : matches)
+        match.isValid = false;
+    EXPECT_EQ(Range(), hdp::supportedDisparities(matches, withOthers));
+    EXPECT_EQ(0, withOthers);
+}
+
+TEST(HDPStereo_RangeSearch, corners_of_any_sign_that_match_both_ways)
+{
+    RNG rng(8);
+    const Size size(200, 100);
+    Mat canvas = patchyImage(rng, Size(size.width + 40, size.height), CV_8U);
+    canvas.convertTo(canvas, CV_16U, 4);
+    const Mat left = canvas.colRange(20, 20 + size.width);
+    for (const int disparity : { -17, 0, 13 })
+    {
+        const Mat rightImage = canvas.colRange(20 + disparity, 20 + disparity + size.width);
+        hdp::SearchWindows windows;
+        std::vector<CornerMatch> matches;
+        const hdp::CornerSearch search = { Range(-size.width, size.width), 200, 4 };
+        hdp::findCornerMatches(left, rightImage, hdp::PairMasks(), search, windows, matches);
+        int valid = 0, right = 0;
+        for (const CornerMatch& match : matches)
+        {
+            valid += match.isValid;
+            right += match.isValid && match.left.x - match.x == disparity;
+        }
+        EXPECT_GT(valid, 0.5 * matches.size());
+        EXPECT_GT(right, 0.95 * valid);
+
+        // Wrong ones, which lead back to another place
+        std::vector<CornerMatch> mutual = matches;
+        for (size_t i = 0; i < mutual.size(); i += 2)
+            mutual[i].x = 20 + rng.uniform(0, size.width - 40);
+        hdp::keepMutualMatches(left, rightImage, windows, mutual);
+        int kept = 0;
+        for (size_t i = 0; i < mutual.size(); ++i)
+        {
+            const double error = std::abs(mutual[i].left.x - mutual[i].x - disparity);
+            if (error > 1)
+                EXPECT_FALSE(mutual[i].isValid) << i;
+            else
+                kept += mutual[i].isValid;
+        }
+        EXPECT_GT(kept, 0.4 * right) << "of one half";
+    }
+}
+
+}} // namespace opencv_test
