@@ -122,7 +122,7 @@ def write_point_cloud(filename, disparity, image, focal, baseline):
 def compute(matcher, left, right):
     '''Disparities in pixels, NaN where there is none.'''
     disparity = matcher.compute(left, right).astype(np.float32) / 16
-    disparity[disparity < matcher.getFindings().minDisparity] = np.nan
+    disparity[disparity < matcher.getMinDisparity()] = np.nan
     return disparity
 
 

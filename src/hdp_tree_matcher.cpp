@@ -53,7 +53,6 @@ public:
         PairPlan pairPlan = makePlan(p_);
         clock_.restart();
 
-        known_ = KnownDisparities();
         const bool mayMiss = inputs_.hasMasks() || left.depth() == CV_32F;
         const auto complete = [&] { completePair(left, right, inputs_.leftMask, inputs_.rightMask, pair_); };
         if (mayMiss)
@@ -68,6 +67,8 @@ public:
             });
         if (inputs_.hasRanges() || inputs_.hasPrior())
             clock_.run("known disparities", [&] { takeKnown(inputs_, pairPlan, known_); });
+        else
+            known_ = KnownDisparities();
         if (matchPair(pair_, pairPlan) == CONTRADICTED)
         {
             lastFrame_.clear();

@@ -144,8 +144,8 @@ TEST(HDPStereo_DisparityRanges, candidates_of_layers)
         rng.fill(largest, RNG::UNIFORM, 0, 20);
         largest += smallest;
         hdp::expandRanges(smallest, largest, size, Range(minDisparity, minDisparity + 32), round % 2 == 0, ranges);
-        std::vector<Mat> intervals;
-        hdp::buildIntervals(ranges, minDisparity, extension, counts, intervals);
+        std::vector<Mat> units, intervals;
+        hdp::buildIntervals(ranges, minDisparity, extension, counts, units, intervals);
         ASSERT_EQ(3u, intervals.size());
         for (int layer = 0; layer < 3; ++layer)
         {

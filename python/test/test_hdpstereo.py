@@ -317,6 +317,23 @@ class Parameters(Test):
                 matcher = HDPTreeMatcher.create(2, 33, preset, **options)
                 self.assertEqual(parameters(matcher), parameters(eval(repr(matcher))), repr(matcher))
 
+    def test_range_that_is_found(self):
+        left, right = np.ascontiguousarray(LEFT[:, 20:]), np.ascontiguousarray(RIGHT[:, :-20])
+        matcher = HDPTreeMatcher.create(num_disparities=0, disp12_max_diff=1)
+        self.assertEqual("HDPTreeMatcher(minDisparity=0, numDisparities=0, preset='fast', disp12MaxDiff=1)",
+                         repr(matcher))
+        disparity = matcher.compute(left, right, as_float=True)
+        found = matcher.getFindings()
+        self.assertLess(found.minDisparity, -10)
+        self.assertGreater(found.numDisparities, 10)
+        told = HDPTreeMatcher.create(found.minDisparity, found.numDisparities, disp12_max_diff=1)
+        np.testing.assert_array_equal(told.compute(left, right, as_float=True), disparity)
+        self.assertGreater(np.count_nonzero(np.isnan(disparity)), 0)
+        self.assertGreaterEqual(np.nanmin(disparity), found.minDisparity)
+        blank = np.full_like(left, 90)
+        self.assertRaisesText(ValueError, 'numDisparities must be > 0 for this pair: too few corners match to find its '
+                                          'range', lambda: matcher.compute(blank, blank))
+
     def test_threads(self):
         before = hdpstereo.getNumThreads()
         matcher = HDPTreeMatcher(0, 32)

@@ -26,27 +26,6 @@ int toUnits(float limit, bool isWhole, bool isLargest, int limitOfAll)
     return (isLargest ? cvFloor(steps) : cvCeil(steps)) * (isWhole ? subpixelScale : 1);
 }
 
-//! Limits of one kind, in 1 / subpixelScale pixel; none is beyond the limit of all.
-Mat limitsInUnits(const Mat& given, int limitOfAll, bool isWhole, bool isLargest)
-{
-    Mat limits;
-    if (given.depth() == CV_16S)
-        given.convertTo(limits, CV_16S, subpixelScale);
-    else
-    {
-        limits.create(given.size(), CV_16S);
-        for (int y = 0; y < limits.rows; ++y)
-            for (int x = 0; x < limits.cols; ++x)
-                limits.ptr<short>(y)[x] =
-                    saturate_cast<short>(toUnits(given.ptr<float>(y)[x], isWhole, isLargest, limitOfAll));
-    }
-    if (isLargest)
-        min(limits, limitOfAll, limits);
-    else
-        max(limits, limitOfAll, limits);
-    return limits;
-}
-
 //! Hulls of 2 x 2 intervals
 void halveIntervals(const Mat& intervals, Mat& half)
 {
@@ -69,11 +48,6 @@ void halveIntervals(const Mat& intervals, Mat& half)
 
 void resizeNearest(const Mat& map, Size size, Mat& resized)
 {
-    if (map.size() == size)
-    {
-        resized = map;
-        return;
-    }
     resized.create(size, CV_16S);
     for (int y = 0, rowBefore = -1; y < size.height; ++y)
     {
@@ -87,37 +61,60 @@ void resizeNearest(const Mat& map, Size size, Mat& resized)
     }
 }
 
+//! Limits of one kind for each pixel, in 1 / subpixelScale pixel; none is beyond the limit of all.
+void expandLimits(const Mat& given, int limitOfAll, bool isWhole, bool isLargest, Size size, Mat& expanded)
+{
+    Mat coarse;
+    Mat& limits = given.size() == size ? expanded : coarse;
+    if (given.depth() == CV_16S)
+        given.convertTo(limits, CV_16S, subpixelScale);
+    else
+    {
+        limits.create(given.size(), CV_16S);
+        for (int y = 0; y < limits.rows; ++y)
+            for (int x = 0; x < limits.cols; ++x)
+                limits.ptr<short>(y)[x] =
+                    saturate_cast<short>(toUnits(given.ptr<float>(y)[x], isWhole, isLargest, limitOfAll));
+    }
+    if (isLargest)
+        min(limits, limitOfAll, limits);
+    else
+        max(limits, limitOfAll, limits);
+    if (!coarse.empty())
+        resizeNearest(coarse, size, expanded);
+}
+
 } // namespace
 
 void expandRanges(const Mat& smallest, const Mat& largest, Size size, Range disparities, bool isWhole,
                   PixelRanges& ranges)
 {
-    ranges = PixelRanges();
     if (smallest.empty())
+    {
+        ranges = PixelRanges();
         return;
-    Mat expanded[2];
-    resizeNearest(limitsInUnits(smallest, disparities.start * subpixelScale, isWhole, false), size, expanded[0]);
-    resizeNearest(limitsInUnits(largest, disparities.end * subpixelScale, isWhole, true), size, expanded[1]);
-    ranges.smallest = expanded[0];
-    ranges.largest = expanded[1];
+    }
+    expandLimits(smallest, disparities.start * subpixelScale, isWhole, false, size, ranges.smallest);
+    expandLimits(largest, disparities.end * subpixelScale, isWhole, true, size, ranges.largest);
 }
 
 void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, const std::vector<int>& numDisparities,
-                    std::vector<Mat>& intervals)
+                    std::vector<Mat>& units, std::vector<Mat>& intervals)
 {
     intervals.resize(ranges.isEmpty() ? 0 : numDisparities.size());
+    units.resize(intervals.size());
     if (ranges.isEmpty())
         return;
     // In units of the image first, so that layers know fractions
     const int largest = (numDisparities[0] - 1) * subpixelScale, offset = minDisparity * subpixelScale;
     const int columns = ranges.smallest.cols;
     const Size size(columns + extension, ranges.smallest.rows);
-    Mat units(size, CV_16UC2), half;
+    units[0].create(size, CV_16UC2);
     parallel_for_(Range(0, size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
             const short *lowest = ranges.smallest.ptr<short>(y), *highest = ranges.largest.ptr<short>(y);
-            ushort* const row = units.ptr<ushort>(y);
+            ushort* const row = units[0].ptr<ushort>(y);
             ushort* const own = row + 2 * extension;
             HDP_VECTORIZED for (int x = 0; x < columns; ++x)
             {
@@ -132,14 +129,17 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
     {
         const int shift = 4 + (int)layer, last = numDisparities[layer] - 1;
         static_assert(subpixelScale == 1 << 4, "units of a candidate of layer 0");
+        if (layer > 0)
+            halveIntervals(units[layer - 1], units[layer]);
+        const Mat& exact = units[layer];
         Mat& ofLayer = intervals[layer];
-        ofLayer.create(units.size(), CV_16UC2);
-        parallel_for_(Range(0, units.rows), [&](const Range& rows) {
+        ofLayer.create(exact.size(), CV_16UC2);
+        parallel_for_(Range(0, exact.rows), [&](const Range& rows) {
             for (int y = rows.start; y < rows.end; ++y)
             {
-                const ushort* const own = units.ptr<ushort>(y);
+                const ushort* const own = exact.ptr<ushort>(y);
                 ushort* const interval = ofLayer.ptr<ushort>(y);
-                HDP_VECTORIZED for (int x = 0; x < units.cols; ++x)
+                HDP_VECTORIZED for (int x = 0; x < exact.cols; ++x)
                 {
                     const int first = lesser(own[2 * x] >> shift, last);
                     const int end = (own[2 * x + 1] + (1 << shift) - 1) >> shift;
@@ -148,10 +148,6 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
                 }
             }
         });
-        if (layer + 1 == numDisparities.size())
-            break;
-        halveIntervals(units, half);
-        swap(units, half);
     }
 }
 

@@ -33,9 +33,11 @@ or the nearest one, if these are none.
 @param minDisparity What candidate 0 stands for.
 @param extension Columns added on the left.
 @param numDisparities Of each layer.
+@param units Memory to work in.
 @param intervals Receives a DisparityInterval per pixel of each layer. */
 CV_EXPORTS void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension,
-                               const std::vector<int>& numDisparities, std::vector<Mat>& intervals);
+                               const std::vector<int>& numDisparities, std::vector<Mat>& units,
+                               std::vector<Mat>& intervals);
 
 //! The intervals of a layer in candidates of the layer below, of which there are so many
 CV_EXPORTS void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled);

@@ -17,7 +17,7 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
     for (int layer = 0; layer <= plan.top().layer; ++layer)
         counts.push_back(layerDisparities(numDisparities, layer, plan.top().hasFractions));
     expandRanges(inputs.smallest, inputs.largest, plan.size, disparities, output.isWhole, known.ranges);
-    buildIntervals(known.ranges, first, output.extension, counts, known.intervals);
+    buildIntervals(known.ranges, first, output.extension, counts, known.units, known.intervals);
     known.points.resize(counts.size());
     for (const LayerPlan& layer : plan.layers)
         if (layer.joinsPrior)

@@ -17,6 +17,7 @@ struct KnownDisparities
     PixelRanges ranges;
     std::vector<Mat> intervals;                  // of the layers, if there are ranges
     std::vector<std::vector<PriorPoint>> points; // of the layers
+    std::vector<Mat> units;                      // memory of buildIntervals(), kept from pair to pair
 };
 
 //! From the ranges and the prior of a caller to those of the layers
