@@ -180,6 +180,37 @@ TEST(HDPStereo_StereoCalibration, refusesRosFilesOfOtherOrder)
     expectRefused(files, Size(), "right.yaml", "exchange them");
 }
 
+//! ROS has the pose in the rectification: its projections have the baseline, its rotations are to be rotations.
+TEST(HDPStereo_StereoCalibration, refusesRosFilesOfImpossibleRigs)
+{
+    const auto expect = [](int file, const char* field, int index, double value, const std::string& text) {
+        Files files = inRosFiles(makeCalibration());
+        for (CalibrationField& f : files[file].fields)
+            if (f.path.find(field) == 0)
+            {
+                const size_t begin = f.text.find('[') + 1, end = f.text.find(']');
+                std::vector<std::string> numbers;
+                std::istringstream all(f.text.substr(begin, end - begin));
+                for (std::string number; std::getline(all, number, ',');)
+                    numbers.push_back(number);
+                numbers[index] = cv::format("%g", value);
+                std::string joined;
+                for (const std::string& number : numbers)
+                    joined += (joined.empty() ? "" : ", ") + number;
+                f.text.replace(begin, end - begin, joined);
+            }
+        SCOPED_TRACE(text);
+        expectRefused(files, Size(), files[file].name, text);
+    };
+    expect(1, "projection_matrix", 3, 0, "projection_matrix/data must be of a baseline");
+    expect(1, "projection_matrix", 0, 0, "projection_matrix/data must be of a focal length");
+    for (int i = 0; i < 2; ++i)
+    {
+        expect(i, "rectification_matrix", 4, -1, "rectification_matrix/data must be a rotation");
+        expect(i, "camera_matrix", 0, 0, cv::format("cameraMatrix%d must be of focal lengths", i + 1));
+    }
+}
+
 TEST(HDPStereo_StereoCalibration, wantsTheNumberOfFilesOfItsKind)
 {
     const StereoCalibration c = makeCalibration(4);

@@ -124,6 +124,9 @@ StereoCalibration readEuroc(const Texts& texts)
     return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * (T[0] - T[1]));
 }
 
+//! But for the few digits of files
+bool isRotation(const Matx33d& R) { return norm(R * R.t(), Matx33d::eye(), NORM_INF) <= 1e-2 && determinant(R) > 0; }
+
 StereoCalibration readRos(const Texts& texts)
 {
     Camera cameras[2];
@@ -141,12 +144,16 @@ StereoCalibration readRos(const Texts& texts)
         if (camera.distortion.empty()) // of images that are rectified
             camera.distortion.resize(4);
         R[i] = Matx33d(text.numbers("rectification_matrix/data", 9).data());
+        if (!isRotation(R[i]))
+            text.fail("rectification_matrix/data", "a rotation");
         const std::vector<double> P = text.numbers("projection_matrix/data", 12);
         if (!(P[0] > 0))
             text.fail("projection_matrix/data", "of a focal length above 0");
         offsets[i] = P[3] / P[0];
     }
     requireAlike(texts[1], cameras[0], cameras[1]);
+    if (std::abs(offsets[1] - offsets[0]) < 1 / largest) // of the rig, which has no field of its own
+        texts[1].fail("projection_matrix/data", "of a baseline above 0, times -fx as fourth number");
     return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * Vec3d(offsets[1] - offsets[0], 0, 0));
 }
 
@@ -369,7 +376,7 @@ void checkPose(const std::string& source, StereoCalibration& calibration)
     if (calibration.R.size() != Size(3, 3))
         failOf(source, "R", "3 x 3");
     const Matx33d R(calibration.R);
-    if (norm(R * R.t(), Matx33d::eye(), NORM_INF) > 1e-2 || determinant(R) < 0)
+    if (!isRotation(R))
         failOf(source, "R", "a rotation");
     Matx31d w;
     Matx33d u, vt;
