@@ -355,10 +355,7 @@ private:
         const ConfidenceMaps maps = { finest.disparity, finest.winners,
                                       plan.isTop ? Mat() : layers_[plan.layer + 1].disparity };
         Mat confidence;
-        if (plan.cost.isCensus)
-            disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].census, confidence);
-        else
-            disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].colorGradient, confidence);
+        disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].cost(plan.cost), confidence);
         return confidence;
     }
 

@@ -65,8 +65,7 @@ public:
     //! The same in bytes
     void evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const;
 
-    //! The cost of one candidate of each pixel, CV_8UC1. disparity: CV_16UC1, a disparity map.
-    void ofDisparities(const Mat& disparity, Mat& costs) const;
+    void ofDisparities(const Mat& disparity, Mat& costs) const CV_OVERRIDE;
 
     //! The size of the images
     Size size() const { return Size(planes_.width, left_.rows); }

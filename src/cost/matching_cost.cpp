@@ -4,6 +4,7 @@
 #include "../precomp.hpp"
 #include "matching_cost.hpp"
 
+#include "../base/disparity_units.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -42,6 +43,21 @@ void copyRows(const Mat& image, int channel, int first, int before, int after, b
 } // namespace
 
 MatchingCost::~MatchingCost() {}
+
+void MatchingCost::ofDisparities(const Mat& disparity, Mat& costs) const
+{
+    costs.create(disparity.size(), CV_32S);
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        float cost[4];
+        for (int y = rows.start; y < rows.end; ++y)
+            for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int pixel = y * disparity.cols + x;
+                evaluate(&pixel, 1, wholeDisparity(disparity.ptr<ushort>(y)[x]), 4, cost);
+                costs.ptr<int>(y)[x] = cvRound(512 * cost[0]);
+            }
+    });
+}
 
 void copyBordered(const Mat& image, int channel, int first, int before, int after, bool mirrored, Mat bordered)
 {

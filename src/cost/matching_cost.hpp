@@ -22,6 +22,10 @@ public:
     @param cost Receives M(pixels[i], first + k) at [i * lanes + k]. */
     virtual void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const = 0;
 
+    //! The cost of one candidate of each pixel, CV_32SC1, in 1/512; that of the census is CV_8UC1, in bits. disparity:
+    //! CV_16UC1, a disparity map.
+    virtual void ofDisparities(const Mat& disparity, Mat& costs) const;
+
     //! What pixels without data cost at most
     const CostLimits& limits() const { return limits_; }
 

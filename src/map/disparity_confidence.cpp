@@ -3,55 +3,116 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "disparity_confidence.hpp"
-#include "disparity_confidence.simd.hpp"
-#include "map/disparity_confidence.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
+
+#include "../base/disparity_units.hpp"
 #include "../base/tunable.hpp"
+#include "../base/vectorized.hpp"
 #include "left_right_check.hpp"
+
+#include "opencv2/core/hal/intrin.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-typedef DisparityConfidence Constants;
-
+HDP_TUNABLE(int, maxStep, 24, "1 / subpixelScale pixel",
+            "between neighbours of one surface: less takes slopes for steps, more leaves steps out");
+HDP_TUNABLE(int, farFromSteps, 64, "pixels", "from the nearest step: wrong patches are smaller");
+HDP_TUNABLE(int, costWindow, 21, "pixels",
+            "side of the square that costs are averaged over: a smaller one has noise, a larger one sees beyond wrong "
+            "patches");
+HDP_TUNABLE(int, alternative, 2, "pixels",
+            "from the winner to the candidates it is compared with: nearer ones cost the same by slopes, farther ones "
+            "may be other matches");
 HDP_TUNABLE(int, visibleMaxDiff, 1, "pixels",
             "in the left-right check: 0 fails by rounding, more passes what the right image does not show");
+HDP_TUNABLE(float, hiddenShare, 0.5f, "share",
+            "of the confidence that a pixel keeps which fails the left-right check: some of them are right");
+HDP_TUNABLE(int, upperWindow, 31, "cells",
+            "side of the square that P is averaged over: a smaller one misses the middle of wrong patches");
+HDP_TUNABLE(int, medianWindow, 7, "cells", "the same of M; smaller, as the median changes single pixels");
 HDP_TUNABLE(int, maxUpper, 8, "pixels",
             "that a difference from the layer above counts as: few pixels do not decide for a window");
 HDP_TUNABLE(int, maxMedian, 4, "pixels", "the same of differences from the map before the median");
-HDP_TUNABLE(int, costUnits, 512, "units",
-            "per cost of 1 that other costs than the census are rounded to: sums are of whole numbers");
-HDP_TUNABLE(int, stripeColumns, 64, "pixels", "of the distances in columns, for a thread: fewer share cache lines");
-HDP_TUNABLE(int, stripeRows, 128, "rows",
-            "of the rest, for a thread: fewer compute the rows between stripes more often");
+HDP_TUNABLE(float, halvingDifference, 0.25f, "pixels", "a mean difference by which the confidence is halved");
 
-int countStripes(int size, int stripe) { return (size + stripe - 1) / stripe; }
+// Pixels
+const int stripeRows = 128;   // for a thread: fewer compute the rows between stripes more often
+const int stripeColumns = 64; // the same of distances in columns: fewer share cache lines
+const int distanceBlock = 32; // of a row, whose distances are found together
 
-HDP_DISPATCH(distanceFromAbove)
-HDP_DISPATCH(distanceFromBelow)
-HDP_DISPATCH(squaredDistanceRow)
-HDP_DISPATCH(censusCostRow)
-HDP_DISPATCH(slideWindow)
-HDP_DISPATCH(differenceCells)
-HDP_DISPATCH(agreementRow)
-HDP_DISPATCH(confidenceRow)
-
-//! Distances to the nearest pixel at a step in the same column, at most farFromSteps, CV_8UC1.
-void distancesInColumns(const Mat& disparity, Mat& distance)
+//! Distances to the nearest pixel at a step in the same column, at most farFromSteps, CV_8UC1
+Mat distancesInColumns(const Mat& disparity)
 {
-    const int last = disparity.rows - 1;
-    const Mat none(1, disparity.cols, CV_8U, Scalar(Constants::farFromSteps));
-    distance.create(disparity.size(), CV_8U);
-    parallel_for_(Range(0, countStripes(disparity.cols, stripeColumns)), [&](const Range& stripes) {
-        const Range columns(stripes.start * stripeColumns, std::min(stripes.end * stripeColumns, disparity.cols));
-        for (int y = 0; y <= last; ++y)
-            dispatched::distanceFromAbove(disparity.ptr<ushort>(std::max(y - 1, 0)), disparity.ptr<ushort>(y),
-                                          disparity.ptr<ushort>(std::min(y + 1, last)), disparity.cols, columns,
-                                          y > 0 ? distance.ptr(y - 1) : none.ptr(), distance.ptr(y));
-        for (int y = last - 1; y >= 0; --y)
-            dispatched::distanceFromBelow(distance.ptr(y + 1), columns, distance.ptr(y));
+    Mat bordered, distances(disparity.size(), CV_8U);
+    copyMakeBorder(disparity, bordered, 1, 1, 1, 1, BORDER_REPLICATE);
+    const ushort noStep = (ushort)maxStep;
+    const uchar far = (uchar)farFromSteps;
+    parallel_for_(Range(0, (disparity.cols + stripeColumns - 1) / stripeColumns), [&](const Range& stripes) {
+        const int begin = stripes.start * stripeColumns, end = std::min(stripes.end * stripeColumns, disparity.cols);
+        const std::vector<uchar> none(disparity.cols, far);
+        for (int y = 0; y < disparity.rows; ++y)
+        {
+            const ushort *const upper = bordered.ptr<ushort>(y), *const own = bordered.ptr<ushort>(y + 1),
+                                *const lower = bordered.ptr<ushort>(y + 2);
+            const uchar* const above = y > 0 ? distances.ptr(y - 1) : none.data();
+            uchar* const row = distances.ptr(y);
+            HDP_VECTORIZED for (int x = begin; x < end; ++x)
+            {
+                const ushort d = own[x + 1], inRow = std::max(difference(d, own[x]), difference(d, own[x + 2])),
+                             inColumn = std::max(difference(d, upper[x + 1]), difference(d, lower[x + 1]));
+                const ushort farther = std::min((ushort)(above[x] + 1), (ushort)far);
+                row[x] = (uchar)(std::max(inRow, inColumn) > noStep ? 0 : farther);
+            }
+        }
+        for (int y = disparity.rows - 2; y >= 0; --y)
+        {
+            const uchar* const below = distances.ptr(y + 1);
+            uchar* const row = distances.ptr(y);
+            HDP_VECTORIZED for (int x = begin; x < end; ++x) row[x] = std::min(row[x], (uchar)(below[x] + 1));
+        }
     });
+    return distances;
+}
+
+//! Squared distances of a row to the nearest pixel at a step, at most those of farFromSteps, from those in columns.
+//! padded: memory of farFromSteps elements before the row and distanceBlock + farFromSteps behind it; squares: of
+//! distanceBlock behind it.
+void squareDistances(const uchar* inColumns, int width, short* padded, short* squares)
+{
+    const int far = farFromSteps;
+    std::fill_n(padded - far, far, (short)(far * far));
+    std::fill_n(padded + width, far + distanceBlock, (short)(far * far));
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) padded[x] = (short)(inColumns[x] * inColumns[x]);
+    for (int start = 0; start < width; start += distanceBlock)
+    {
+        const short* const own = padded + start;
+        short* const nearest = squares + start;
+        std::copy_n(own, +distanceBlock, nearest);
+        for (int dx = 1; dx < far; ++dx)
+        {
+            short max = 0;
+            for (int k = 0; k < distanceBlock; ++k)
+                max = std::max(max, nearest[k]);
+            const short square = (short)(dx * dx);
+            if (square >= max) // columns as far as these are not nearer
+                break;
+            HDP_VECTORIZED for (int k = 0; k < distanceBlock; ++k) nearest[k] =
+                std::min(nearest[k], (short)(std::min(own[k - dx], own[k + dx]) + square));
+        }
+    }
+}
+
+//! Sums over windows of side x side whole numbers, CV_32SC1, borders replicated
+Mat sumOverWindows(const Mat& values, int side)
+{
+    Mat sums(values.size(), CV_32S);
+    parallel_for_(Range(0, (values.rows + stripeRows - 1) / stripeRows), [&](const Range& stripes) {
+        const Range rows(stripes.start * stripeRows, std::min(stripes.end * stripeRows, values.rows));
+        Mat part = sums.rowRange(rows); // the filter finds the rows beside those of the values
+        boxFilter(values.rowRange(rows), part, CV_32S, Size(side, side), Point(-1, -1), false, BORDER_REPLICATE);
+    });
+    return sums;
 }
 
 /** Sums of the differences between two maps over windows of cells of 2 x 2 pixels, CV_32SC1, one per cell.
@@ -59,168 +120,125 @@ void distancesInColumns(const Mat& disparity, Mat& distance)
 @param other Another one of its size, or that of the layer above.
 @param isUpper Whether it is that.
 @param max What larger differences count as, in pixels.
-@param window Side of the windows, in cells.
-@param sums Receives the sums. */
-void sumDifferences(const Mat& map, const Mat& other, bool isUpper, int max, int window, Mat& sums)
+@param side Of the windows, in cells. */
+Mat sumDifferences(const Mat& map, const Mat& other, bool isUpper, int max, int side)
 {
-    const Size size((map.cols + 1) / 2, (map.rows + 1) / 2);
-    Mat cells(size, CV_16U);
-    parallel_for_(Range(0, size.height), [&](const Range& range) {
-        for (int y = range.start; y < range.end; ++y)
+    Mat cells((map.rows + 1) / 2, (map.cols + 1) / 2, CV_16U);
+    const int width = map.cols, lastUpper = other.cols - 1;
+    const ushort limit = (ushort)(max * subpixelScale);
+    parallel_for_(Range(0, cells.rows), [&](const Range& rows) {
+        std::vector<ushort> doubled(2 * cells.cols), sums(2 * cells.cols);
+        for (int y = rows.start; y < rows.end; ++y)
         {
-            const ushort *rows[2], *others[2];
-            for (int i = 0; i < 2; ++i)
+            for (int x = 0; x < cells.cols && isUpper; ++x)
+                doubled[2 * x] = doubled[2 * x + 1] =
+                    (ushort)(2 * other.ptr<ushort>(std::min(y, other.rows - 1))[std::min(x, lastUpper)]);
+            std::fill(sums.begin(), sums.end(), (ushort)0);
+            for (int row = 2 * y; row < 2 * y + 2; ++row)
             {
-                const int row = std::min(2 * y + i, map.rows - 1);
-                rows[i] = map.ptr<ushort>(row);
-                others[i] = other.ptr<ushort>(isUpper ? std::min(y, other.rows - 1) : row);
+                const int inside = std::min(row, map.rows - 1);
+                const ushort *const own = map.ptr<ushort>(inside), *const there = isUpper ? doubled.data()
+                                                                                          : other.ptr<ushort>(inside);
+                HDP_VECTORIZED for (int x = 0; x < width; ++x) sums[x] =
+                    (ushort)(sums[x] + std::min(difference(own[x], there[x]), limit));
             }
-            dispatched::differenceCells(rows, others, isUpper ? 2 : 1, map.cols, other.cols, max * subpixelScale,
-                                        cells.ptr<ushort>(y));
+            sums.back() = sums[width - 1]; // of an odd width, once more
+            for (int x = 0; x < cells.cols; ++x)
+                cells.ptr<ushort>(y)[x] = (ushort)(sums[2 * x] + sums[2 * x + 1]);
         }
     });
-    sums.create(size, CV_32S);
-    parallel_for_(Range(0, countStripes(size.height, stripeRows)), [&](const Range& stripes) {
-        const Range rows(stripes.start * stripeRows, std::min(stripes.end * stripeRows, size.height));
-        Mat part = sums.rowRange(rows); // the filter finds the rows beside those of the cells
-        boxFilter(cells.rowRange(rows), part, CV_32S, Size(window, window), Point(-1, -1), false, BORDER_REPLICATE);
-    });
+    return sumOverWindows(cells, side);
 }
 
-//! Twice the census costs of a row's disparities, and twice the means of those of their alternatives
-class CensusAlternatives
+/** Sums over windows, CV_32SC1: of the costs of the disparities, and of those of their alternatives, both of them or
+twice the only one that there is; of the disparity's own, if there is none. */
+void compareAlternatives(const Mat& disparity, int numDisparities, const MatchingCost& cost, Mat& own, Mat& others)
 {
-public:
-    typedef short Cost; // sums over a window are below 32768
-
-    CensusAlternatives(const CensusCost& cost, const Mat& disparity, int numDisparities)
-        : cost_(cost), disparity_(disparity), numDisparities_(numDisparities), scratch_(disparity.cols)
-    {
-    }
-
-    void evaluate(int y, Cost* own, Cost* others)
-    {
-        const int planes = cost_.planes();
-        const uchar* right[3];
-        for (int plane = 0; plane < 3; ++plane)
-            right[plane] = cost_.rightPlane(std::min(plane, planes - 1), y);
-        dispatched::censusCostRow(cost_.leftPixels(y), right, planes, disparity_.ptr<ushort>(y), numDisparities_,
-                                  disparity_.cols, scratch_, own, others);
-    }
-
-private:
-    const CensusCost& cost_;
-    const Mat& disparity_;
-    int numDisparities_;
-    CensusScratch scratch_;
-};
-
-//! The same of any cost, in 1 / costUnits
-class CostAlternatives
-{
-public:
-    typedef int Cost;
-
-    CostAlternatives(const MatchingCost& cost, const Mat& disparity, int numDisparities)
-        : cost_(cost), disparity_(disparity), numDisparities_(numDisparities), pixels_(disparity.cols),
-          costs_((size_t)disparity.cols * lanes)
-    {
-    }
-
-    void evaluate(int y, Cost* own, Cost* others)
-    {
-        const int width = disparity_.cols;
-        const ushort* disparity = disparity_.ptr<ushort>(y);
-        for (int x = 0; x < width; ++x)
-            pixels_[x] = y * width + x;
-        for (int start = 0, end; start < width; start = end) // pixels of one winner
+    Mat before(disparity.size(), CV_16U), after(disparity.size(), CV_16U), costs[2];
+    const ushort step = (ushort)(alternative * subpixelScale), last = (ushort)((numDisparities - 1) * subpixelScale);
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
         {
-            const int winner = wholeDisparity(disparity[start]), first = std::max(winner - Constants::alternative, 0);
-            for (end = start + 1; end < width && wholeDisparity(disparity[end]) == winner;)
-                ++end;
-            cost_.evaluate(&pixels_[start], end - start, first, lanes, costs_.data());
-            const Alternatives<int> alternatives(winner, numDisparities_ - 1);
-            for (int x = start; x < end; ++x)
+            const ushort* const row = disparity.ptr<ushort>(y);
+            ushort *const low = before.ptr<ushort>(y), *const high = after.ptr<ushort>(y);
+            HDP_VECTORIZED for (int x = 0; x < disparity.cols; ++x)
             {
-                const float* costs = &costs_[(size_t)(x - start) * lanes];
-                own[x] = 2 * units(costs[winner - first]);
-                others[x] = units(costs[alternatives.before - first]) + units(costs[alternatives.after - first]);
+                const int winner = wholeDisparity(row[x]) * subpixelScale;
+                const int above = winner + step <= last ? winner + step : winner;
+                const int below = winner >= step ? winner - step : above;
+                low[x] = (ushort)below;
+                high[x] = (ushort)(above > winner ? above : below);
             }
-        }
-    }
-
-private:
-    enum
-    {
-        lanes = 8
-    };
-
-    static int units(float cost) { return cvRound(cost * costUnits); }
-
-    const MatchingCost& cost_;
-    const Mat& disparity_;
-    int numDisparities_;
-    std::vector<int> pixels_;
-    std::vector<float> costs_;
-};
-
-template <typename Costs, typename CostOfLayer>
-void computeConfidence(const ConfidenceMaps& maps, int numDisparities, const CostOfLayer& cost, Mat& confidence)
-{
-    typedef typename Costs::Cost Cost;
-    const Mat& disparity = maps.disparity;
-    const int width = disparity.cols, window = Constants::window, radius = window / 2, far = Constants::farFromSteps;
-    Mat distance, visible, fromUpper, byMedian;
-    distancesInColumns(disparity, distance);
-    sumDifferences(disparity, maps.unfiltered, false, maxMedian, Constants::medianWindow, byMedian);
-    if (maps.upper.empty())
-        fromUpper = Mat::zeros(byMedian.size(), CV_32S);
-    else
-        sumDifferences(disparity, maps.upper, true, maxUpper, Constants::upperWindow, fromUpper);
-    findStable(disparity, visibleMaxDiff, visible);
-    for (int y = 0; y < visible.rows && !cost.limits().isEmpty(); ++y)
-        cost.limits().hideUnmatched(y, disparity.ptr<ushort>(y), visible.ptr(y));
-    confidence.create(disparity.size(), CV_8U);
-    parallel_for_(Range(0, countStripes(disparity.rows, stripeRows)), [&](const Range& stripes) {
-        Costs costs(cost, disparity, numDisparities);
-        // Rows of the costs of disparities and of their alternatives: what enters a window, what is in it, and its sums
-        Mat_<Cost> entering(2, width), kept(2 * window, width, Cost(0)), sums(2, width + 2 * radius, Cost(0));
-        std::vector<Cost> groups(2 * (width + window));
-        std::vector<short> padded(width + 2 * far + vectorMargin), squares(width);
-        std::vector<float> factors(width + vectorMargin), agreement(width + 1);
-        const Range rows(stripes.start * stripeRows, std::min(stripes.end * stripeRows, disparity.rows));
-        for (int y = rows.start - radius, slot = 0; y < rows.end + radius; ++y, slot = (slot + 1) % window)
-        {
-            costs.evaluate(std::min(std::max(y, 0), disparity.rows - 1), entering[0], entering[1]);
-            for (int i = 0; i < 2; ++i)
-            {
-                Cost* row = sums[i] + radius;
-                dispatched::slideWindow(entering[i], width, kept[2 * slot + i], row);
-                std::fill(row - radius, row, row[0]);
-                std::fill(row + width, row + width + radius, row[width - 1]);
-            }
-            const int centre = y - radius;
-            if (centre < rows.start)
-                continue; // the first window is not complete
-            dispatched::squaredDistanceRow(distance.ptr(centre), width, &padded[far], squares.data());
-            dispatched::agreementRow(fromUpper.ptr<int>(centre / 2), byMedian.ptr<int>(centre / 2), width,
-                                     agreement.data());
-            dispatched::confidenceRow(sums[0], sums[1], squares.data(), visible.ptr(centre), agreement.data(), width,
-                                      groups.data(), factors.data(), confidence.ptr(centre));
         }
     });
+    cost.ofDisparities(disparity, own);
+    cost.ofDisparities(before, costs[0]);
+    cost.ofDisparities(after, costs[1]);
+    own = sumOverWindows(own, costWindow);
+    others = sumOverWindows(costs[0] + costs[1], costWindow);
+}
+
+//! What the left-right check does not hide, and matches what has data: not 0
+Mat visiblePixels(const Mat& disparity, const CostLimits& limits)
+{
+    Mat visible;
+    findStable(disparity, visibleMaxDiff, visible);
+    for (int y = 0; y < visible.rows && !limits.isEmpty(); ++y)
+        limits.hideUnmatched(y, disparity.ptr<ushort>(y), visible.ptr(y));
+    return visible;
+}
+
+void takeSquareRoots(std::vector<float>& values)
+{
+    for (size_t i = 0; i < values.size(); i += 4)
+        v_store(&values[i], v_sqrt(v_load(&values[i])));
 }
 
 } // namespace
 
-void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const CensusCost& cost, Mat& confidence)
-{
-    computeConfidence<CensusAlternatives>(maps, numDisparities, cost, confidence);
-}
-
 void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const MatchingCost& cost, Mat& confidence)
 {
-    computeConfidence<CostAlternatives>(maps, numDisparities, cost, confidence);
+    const Mat& disparity = maps.disparity;
+    const Mat inColumns = distancesInColumns(disparity), visible = visiblePixels(disparity, cost.limits());
+    Mat own, others;
+    compareAlternatives(disparity, numDisparities, cost, own, others);
+    const Mat byMedian = sumDifferences(disparity, maps.unfiltered, false, maxMedian, medianWindow);
+    const Mat fromUpper = maps.upper.empty() ? Mat(Mat::zeros(byMedian.size(), CV_32S))
+                                             : sumDifferences(disparity, maps.upper, true, maxUpper, upperWindow);
+    // Sums of differences by which the confidence is halved
+    const float halving = halvingDifference * 4 * subpixelScale, upper = halving * (float)(upperWindow * upperWindow),
+                median = halving * (float)(medianWindow * medianWindow);
+    const int far = farFromSteps, width = disparity.cols;
+    const float hidden = hiddenShare;
+    confidence.create(disparity.size(), CV_8U);
+    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+        std::vector<short> padded(width + 2 * far + distanceBlock), squares(width + distanceBlock);
+        std::vector<float> agreement(2 * byMedian.cols), factors(alignSize(width, 4));
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const int *const p = fromUpper.ptr<int>(y / 2), *const m = byMedian.ptr<int>(y / 2);
+            for (int x = 0; x < byMedian.cols; ++x)
+                agreement[2 * x] = agreement[2 * x + 1] =
+                    upper * median / ((upper + (float)p[x]) * (median + (float)m[x]));
+            const int *const c = own.ptr<int>(y), *const a = others.ptr<int>(y);
+            squareDistances(inColumns.ptr(y), width, &padded[far], squares.data());
+            for (int x = 0; x < width; ++x)
+                factors[x] = squares[x];
+            takeSquareRoots(factors);
+            const uchar* const isVisible = visible.ptr(y);
+            uchar* const row = confidence.ptr(y);
+            HDP_VECTORIZED for (int x = 0; x < width; ++x)
+            {
+                const int more = a[x] - 2 * c[x], all = a[x] + 2 * c[x];
+                factors[x] = factors[x] / (float)far * ((more > 0 ? (float)more : 0.f) / (all > 0 ? (float)all : 1.f));
+            }
+            takeSquareRoots(factors);
+            HDP_VECTORIZED for (int x = 0; x < width; ++x) factors[x] *= agreement[x];
+            takeSquareRoots(factors);
+            for (int x = 0; x < width; ++x)
+                row[x] = (uchar)(int)(255 * (isVisible[x] ? 1.f : hidden) * factors[x] + 0.5f);
+        }
+    });
 }
 
 }}} // namespace cv::stereo::hdp

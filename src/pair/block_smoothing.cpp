@@ -20,7 +20,6 @@ HDP_TUNABLE(int, maxStep, 20, "grey levels", "larger ones are edges of the scene
 HDP_TUNABLE(double, minRatio, 5, "mean of the steps inside blocks",
             "of the mean step between them: less finds blocks by chance, more overlooks weak ones");
 HDP_TUNABLE(int, minSteps, 64, "steps", "between blocks, for a mean: fewer find blocks by chance");
-HDP_TUNABLE(double, minStep, 0.25, "grey levels", "mean between blocks: less than a unit of the levels is no step");
 HDP_TUNABLE(int, smoothedSteps, 4, "mean steps between blocks",
             "that are taken away: larger ones are edges of the scene");
 
@@ -85,7 +84,7 @@ BlockGrid findBlocks(const Mat& grey)
     {
         const double step = sums[i] / (double)std::max(numbers[i], 1),
                      others = (sum - sums[i]) / (double)std::max(number - numbers[i], 1);
-        if (numbers[i] >= minSteps && step >= minStep * greyScale && step >= minRatio * others)
+        if (numbers[i] >= minSteps && step >= minRatio * others)
         {
             grid.begin = i;
             grid.step = step;

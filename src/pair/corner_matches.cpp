@@ -35,8 +35,6 @@ HDP_TUNABLE(int, iterations, 3, "steps", "of Lucas and Kanade: more cost time, f
 HDP_TUNABLE(double, maxMove, 2, "pixels", "of a match: one that goes farther has lost its corner");
 HDP_TUNABLE(double, maxResidual, 0.5, "share of the left variance",
             "mean square difference: more lets wrong matches in, less loses noisy images");
-HDP_TUNABLE(double, minDeterminant, 1e-3, "share of the product of the diagonal",
-            "of a structure tensor: below, the window moves freely along an edge");
 
 HDP_DISPATCH(structureTensors)
 HDP_DISPATCH(windowSums)
@@ -177,7 +175,7 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     // Gradients are over two pixels.
     const double xx = 0.25 * w.sums[4], xy = 0.25 * w.sums[5], yy = 0.25 * w.sums[6];
     const double determinant = xx * yy - xy * xy;
-    if (determinant <= minDeterminant * xx * yy)
+    if (determinant <= 0)
         return;
 
     Point2d place(first.x + match.x - match.left.x, first.y + match.y - match.left.y);

@@ -8,7 +8,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of findCornerMatches() and trackCornerMatches() that the compiler needs
+//! The constants of findCornerMatches() and trackCornerMatches() that the compiler needs, or other stages
 struct CornerMatching
 {
     enum
@@ -20,6 +20,7 @@ struct CornerMatching
         searchRadius = 2, // rows above and below that are searched on the coarse layer: more cost time and give rivals
         trackWidth = 16,  // pixels; window on the finer layers: as many as a vector has
         trackHeight = 13, // pixels; odd, to have a middle row, and about as large as the width: more has two surfaces
+        minMatches = 24,  // for a model of rows or light, which not all of them fit
         fractionBits = 5  // a tracked window begins at a multiple of 1 / 32 pixel: weights of 2 x 2 pixels have 16 bits
     };
 };

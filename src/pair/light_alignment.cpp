@@ -19,9 +19,7 @@ namespace {
 
 const double white = 255 * greyScale;
 HDP_TUNABLE(int, meanRadius, 3, "pixels", "of the square around a corner whose mean level counts: noise averages out");
-HDP_TUNABLE(int, minMatches, 24, "matches", "for ten coefficients, most of which the prior holds");
 HDP_TUNABLE(double, levelDeviation, 0.5 / 255, "of white", "by which matched levels differ at best: they are rounded");
-HDP_TUNABLE(double, minChange, 1. / 255, "of white", "root of the mean square: what is below is not worth a change");
 HDP_TUNABLE(double, maxRest, 4. / 255, "of white", "median difference that a model which fits may leave");
 HDP_TUNABLE(double, maxRestShare, 0.7, "share", "of that difference before the model: one that explains less is none");
 
@@ -81,19 +79,13 @@ bool estimateLight(const CoarseMatches& coarse, LightModel& model)
     if (coarse.matches.empty())
         return false;
     const std::vector<LevelPair> pairs = toLevels(coarse);
-    if ((int)pairs.size() < minMatches)
+    if ((int)pairs.size() < CornerMatching::minMatches)
         return false;
     const FitPrior<LightModel::terms> same = { LightModel::identity(), expectedDeviations() };
     model.coefficients = fitRobustly(pairs, same, same.coefficients).coefficients;
-    double change = 0;
-    for (const LevelPair& pair : pairs)
-    {
-        const double difference = model.coefficients.dot(pair.basis) - pair.basis[0];
-        change += difference * difference / pairs.size();
-    }
     const double before = levelDeviation * medianOf(fitResiduals(pairs, same.coefficients));
     const double rest = levelDeviation * medianOf(fitResiduals(pairs, model.coefficients));
-    return change > minChange * minChange && rest < maxRest && rest < maxRestShare * before;
+    return rest < maxRest && rest < maxRestShare * before;
 }
 
 void alignLight(Mat& levels, const LightModel& model, const ImageFrame& frame)

@@ -19,7 +19,6 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(int, minMatches, 24, "matches", "for five coefficients, and not all of them are right");
 HDP_TUNABLE(int, trackedArea, 600000, "pixels", "of the finest layer that is looked at: finer ones tell no more");
 HDP_TUNABLE(double, ownDeviation, 0.02, "pixels of the layer", "of a match's row, beside what its window says of it");
 HDP_TUNABLE(double, slopeDeviation, 2e-3, "rows per pixel", "cameras are turned by a tenth of a degree");
@@ -201,7 +200,7 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
     for (int layer = coarse.layer;; --layer)
     {
         const std::vector<RowMove> moves = toMoves(matches, layer, size);
-        if ((int)moves.size() < minMatches)
+        if ((int)moves.size() < CornerMatching::minMatches)
             break;
         const RowFit fit = fitRows(moves, size);
         const MeanSquares ofFit = meanSquares(fit, size);
