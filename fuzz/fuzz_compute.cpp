@@ -3,8 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // A libFuzzer target: images, parameters, strategies, models, files and what is known of a pair beforehand, made of the
-// fuzzer's bytes. scripts/fuzz.sh builds
-// it with AddressSanitizer and UndefinedBehaviorSanitizer and runs it.
+// fuzzer's bytes. scripts/fuzz.sh builds it with AddressSanitizer and UndefinedBehaviorSanitizer and runs it.
 //
 // Besides what these find, it stops if
 // - something else is thrown than a cv::Exception, or what the user's own strategy throws,

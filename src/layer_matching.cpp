@@ -40,6 +40,8 @@ public:
     Verdict run()
     {
         result_.prior.clear();
+        if (plan_.hasIntervals && plan_.seesBelow)
+            doubleIntervals(intervals(), plan_.numDisparities, own_.candidateIntervals);
         if (plan_.method == COST_SCANLINES)
             matchCosts();
         else if (plan_.method == WINDOW_SCANLINES)
@@ -170,14 +172,8 @@ private:
     //! DisparityInterval of each pixel, if the plan has them
     const Mat& intervals() const { return in_.known.intervals[plan_.layer]; }
 
-    //! The same in candidates of a volume
-    const Mat& candidateIntervals()
-    {
-        if (!plan_.seesBelow)
-            return intervals();
-        doubleIntervals(intervals(), plan_.numDisparities, own_.candidateIntervals);
-        return own_.candidateIntervals;
-    }
+    //! The same in candidates of a volume, see run()
+    const Mat& candidateIntervals() const { return plan_.seesBelow ? own_.candidateIntervals : intervals(); }
 
     //! What the costs of a volume are
     void prepareVolumeCost() { shared_.volumeCost.prepare(own_.census, in_.below); }

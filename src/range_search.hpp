@@ -14,10 +14,10 @@ namespace cv { namespace stereo { namespace hdp {
 //! support: receives how many there are; with none the range is empty.
 CV_EXPORTS Range supportedDisparities(const std::vector<CornerMatch>& matches, int& support);
 
-/** The range of disparities of pairs whose caller does not know it, of any sign. Corners are matched over the whole width
-of a coarse layer, in both directions. What they span is enlarged by as much and more, and all pixels of the layer below
-are matched over that: bare surfaces and near things have no corners. The disparities that stand the left-right check
-there, with a margin, are the range. */
+/** The range of disparities of pairs whose caller does not know it, of any sign. Corners are matched over the whole
+width of a coarse layer, in both directions. What they span is enlarged by as much and more, and all pixels of the layer
+below are matched over that: bare surfaces and near things have no corners. The disparities that stand the left-right
+check there, with a margin, are the range. */
 class CV_EXPORTS RangeSearch
 {
 public:
@@ -25,8 +25,8 @@ public:
     @param left Without NaN, as completePair() leaves it.
     @param right Of the same size and type.
     @param masks Theirs.
-    @param isFrame Whether it is a frame of a video: it keeps the range of the frame before if that has all that is found
-    and is not much larger, or if nothing is found.
+    @param isFrame Whether it is a frame of a video: it keeps the range of the frame before if that has all that is
+    found and is not much larger, or if nothing is found.
     @return First disparity, and the one behind the last.
     @throws cv::Exception if the images have too few points in common. */
     Range find(const Mat& left, const Mat& right, const PairMasks& masks, bool isFrame);

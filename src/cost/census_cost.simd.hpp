@@ -7,9 +7,8 @@
 #include "../base/disparity_units.hpp"
 #include "../base/grey_levels.hpp"
 #include "../base/vectorized.hpp"
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "census_counting.simd.hpp"
-#endif
+#include <cstring>
+#include <type_traits>
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
@@ -106,23 +105,85 @@ void rightCensusRow(const CensusWindow& window, const short* grey, int cols, uch
 
 namespace {
 
+//! A byte in each of a word's; words are of as many bytes as there are candidates, up to 8.
+template <typename Word> inline Word repeated(unsigned byte) { return (Word)-1 / 255 * byte; }
+
+//! The number of bits set in each 4 bits
+template <typename Word> inline Word countInNibbles(Word bits)
+{
+    bits -= (bits >> 1) & repeated<Word>(0x55);
+    return (bits & repeated<Word>(0x33)) + ((bits >> 2) & repeated<Word>(0x33));
+}
+
+//! The number of bits set in each byte of 1 to 3 words
+template <int count, typename Word> inline Word countInBytes(Word a, Word b, Word c)
+{
+    // Sum and carry of three bits: two counts instead of three
+    const Word nibbles = count == 1   ? countInNibbles(a)
+                         : count == 2 ? countInNibbles(a) + countInNibbles(b)
+                                      : countInNibbles(a ^ b ^ c) + 2 * countInNibbles((a & b) | ((a ^ b) & c));
+    return (nibbles & repeated<Word>(0x0f)) + ((nibbles >> 4) & repeated<Word>(0x0f));
+}
+
+template <int lanes, int count, typename Word, typename T>
+void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, T* cost)
+{
+    // Bits are counted in all words of a block at once, in order to fill vectors.
+    const int block = lanes > 16 ? 1 : 32, words = lanes / (int)sizeof(Word);
+    const double rowsPerPixel = 1. / planes.width;
+    Word differences[count][block * words], bits[block * words];
+    for (int begin = 0; begin < size; begin += block)
+    {
+        const int pixelCount = block == 1 ? 1 : std::min(block, size - begin);
+        for (int i = 0; i < pixelCount; ++i)
+        {
+            const int p = pixels[begin + i], y = rowOf(p, rowsPerPixel), x = p - y * planes.width;
+            const uchar* left = planes.left + y * planes.leftStep + 4 * x;
+            const uchar* right = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
+            for (int plane = 0; plane < count; ++plane, ++left, right += planes.rightPlane)
+            {
+                const Word pixel = repeated<Word>(*left);
+                HDP_VECTORIZED for (int k = 0; k < words; ++k)
+                {
+                    Word candidates;
+                    std::memcpy(&candidates, right + k * sizeof(Word), sizeof(Word));
+                    differences[plane][i * words + k] = candidates ^ pixel;
+                }
+            }
+        }
+        HDP_VECTORIZED for (int k = 0; k < pixelCount * words; ++k) bits[k] = countInBytes<count>(
+            differences[0][k], differences[count > 1 ? 1 : 0][k], differences[count > 2 ? 2 : 0][k]);
+        const uchar* const counted = reinterpret_cast<const uchar*>(bits);
+        T* const to = cost + (size_t)begin * lanes;
+        HDP_VECTORIZED for (int k = 0; k < pixelCount * lanes; ++k) to[k] = counted[k];
+    }
+}
+
+template <int lanes, typename T>
+void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, T* cost)
+{
+    typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
+    if (planes.count == 3)
+        evaluateCosts<lanes, 3, Word>(planes, pixels, size, first, cost);
+    else if (planes.count == 2)
+        evaluateCosts<lanes, 2, Word>(planes, pixels, size, first, cost);
+    else
+        evaluateCosts<lanes, 1, Word>(planes, pixels, size, first, cost);
+}
+
 template <typename T>
 void evaluateCosts(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, T* cost)
 {
-    const auto store = [=](const uchar* bits, int number, int position) {
-        T* const to = cost + position;
-        HDP_VECTORIZED for (int k = 0; k < number; ++k) to[k] = bits[k];
-    };
     switch (lanes)
     {
     case 4:
-        return evaluateCosts<4>(planes, pixels, count, first, store);
+        return evaluateCosts<4>(planes, pixels, count, first, cost);
     case 8:
-        return evaluateCosts<8>(planes, pixels, count, first, store);
+        return evaluateCosts<8>(planes, pixels, count, first, cost);
     case 16:
-        return evaluateCosts<16>(planes, pixels, count, first, store);
+        return evaluateCosts<16>(planes, pixels, count, first, cost);
     default:
-        return evaluateCosts<32>(planes, pixels, count, first, store);
+        return evaluateCosts<32>(planes, pixels, count, first, cost);
     }
 }
 

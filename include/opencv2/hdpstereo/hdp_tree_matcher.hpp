@@ -456,7 +456,9 @@ public:
         the parameters of the alignment are all 0. */
         CV_PROP double noise;
 
-        //! First disparity of the range that was searched, in pixels: minDisparity, or what was found, see numDisparities.
+        /** @brief First disparity of the range that was searched, in pixels.
+
+        That of the parameter minDisparity, or what was found, see numDisparities. */
         CV_PROP int minDisparity;
 
         /** @brief Number of disparities of the range that was searched.
