@@ -150,13 +150,21 @@ private:
         CostVolume& volume = shared_.volume;
         prepareVolumeCost();
         aggregateMeans(forest, shared_.volumeCost, plan_.trees.gamma, shared_.aggregation, volume);
-        if (plan_.checksLastFrame && contradictsLastFrame(in_.lastFrame, in_.prediction, lastFrameSide(), volume))
-            return false;
+        if (plan_.checksLastFrame)
+        {
+            predictFromLastFrame();
+            if (refusesLastFrame(volume, shared_.predicted))
+                return false;
+        }
         if (plan_.prefersLastFrame)
-            preferLastFrame(in_.lastFrame, in_.prediction, lastFrameSide(), true, volume);
-        scanVolume(forest.weights);
+            preferPredicted(shared_.predicted, true, volume);
         const bool hasPlanes = plan_.trees.prefersPlanes && volume.isUniform; // which ranges may change
-        if (hasPlanes && preferTreePlanes(forest, result_.winners, volume) > 0)
+        const bool isPredicted = hasPlanes && plan_.prefersLastFrame;
+        if (isPredicted)
+            predictWinners(shared_.predicted, volume, result_.winners); // good enough for planes
+        else
+            scanVolume(forest.weights);
+        if ((hasPlanes && preferTreePlanes(forest, result_.winners, volume) > 0) || isPredicted)
             scanVolume(forest.weights);
         return true;
     }
@@ -178,8 +186,11 @@ private:
     //! What the costs of a volume are
     void prepareVolumeCost() { shared_.volumeCost.prepare(own_.census, in_.below); }
 
-    //! Side of this layer's pixels, in pixels of the layer that the last frame is of
-    int lastFrameSide() const { return 1 << (plan_.layer - in_.pair.finest().layer); }
+    void predictFromLastFrame()
+    {
+        const int side = 1 << (plan_.layer - in_.pair.finest().layer);
+        predictDisparities(in_.lastFrame, in_.prediction, side, in_.images.guide.size(), shared_.predicted);
+    }
 
     //! Scanlines over the costs as they are, and what the last frame predicts
     void matchCosts()
@@ -190,8 +201,10 @@ private:
             const DisparityInterval all = { 0, (ushort)(plan_.numDisparities - 1) };
             prepareVolumeCost();
             shared_.volume.fill(shared_.volumeCost, in_.images.guide.size(), all);
-            if (plan_.prefersLastFrame)
-                preferLastFrame(in_.lastFrame, in_.prediction, lastFrameSide(), false, shared_.volume);
+            if (!plan_.prefersLastFrame)
+                return;
+            predictFromLastFrame();
+            preferPredicted(shared_.predicted, false, shared_.volume);
         });
         clock_.run("cost aggregation", [&] {
             weighEdges(guide(), own_.edgeWeights);

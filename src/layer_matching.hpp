@@ -77,6 +77,7 @@ struct SharedScratch
     CostVolume volume;
     VolumeScanlineBuffers volumeScanlines;
     VideoScratch video;
+    Mat predicted;     // disparities of the top layer, by the last frame
     FrameMemory frame; // what the finest layer leaves to the next frame of a video
 };
 

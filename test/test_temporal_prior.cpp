@@ -57,6 +57,16 @@ struct MovedVideo
     FramePrediction next;
 };
 
+//! As a layer does it; means are asked first.
+void prefer(const MovedVideo& video, bool areMeans, CostVolume& volume)
+{
+    Mat predicted;
+    predictDisparities(video.last, video.next, side, volume.size, predicted);
+    const bool isRefused = areMeans && refusesLastFrame(volume, predicted);
+    EXPECT_FALSE(isRefused);
+    preferPredicted(predicted, areMeans, volume);
+}
+
 void expectCosts(const CostVolume& volume, int x, int y, double disparity, bool areMeans)
 {
     const uchar* costs = &volume.costs[volume.candidates[y * volume.size.width + x].start()];
@@ -83,7 +93,7 @@ TEST(HDPStereo_TemporalPrior, sources)
     for (bool areMeans : { false, true })
     {
         CostVolume volume = flatVolume(layerSize / side);
-        preferLastFrame(video.last, video.next, side, areMeans, volume);
+        prefer(video, areMeans, volume);
         for (int y = 0; y < volume.size.height; ++y)
             for (int i = 0; i < 5; ++i)
                 expectCosts(volume, 3 * i, y, expected[i], areMeans);
@@ -100,7 +110,7 @@ TEST(HDPStereo_TemporalPrior, contradiction)
         CostVolume volume = flatVolume(layerSize / side);
         volume.costs[15] = (uchar)(flatCost - CostPreference::contradiction - 1);
         const std::vector<uchar> before = volume.costs;
-        preferLastFrame(video.last, video.next, side, areMeans, volume);
+        prefer(video, areMeans, volume);
         for (int k = 0; k < candidates; ++k)
             EXPECT_EQ(before[k] + (areMeans ? 0 : penalty(10, k, false)), volume.costs[k]) << k;
         expectCosts(volume, 1, 0, 10, areMeans);
@@ -116,7 +126,9 @@ TEST(HDPStereo_TemporalPrior, contradicted_frame)
         CostVolume volume = flatVolume(layerSize / side);
         for (int i = 0; i < refused; ++i)
             volume.costs[volume.candidates[i + (areBeside ? 96 : 0)].start() + 3] = (uchar)(flatCost - rise);
-        return contradictsLastFrame(video.last, video.next, side, volume);
+        Mat predicted;
+        predictDisparities(video.last, video.next, side, volume.size, predicted);
+        return refusesLastFrame(volume, predicted);
     };
     const int rise = CostPreference::contradiction + 1;
     EXPECT_FALSE(contradicts(0, rise, false));
@@ -127,6 +139,20 @@ TEST(HDPStereo_TemporalPrior, contradicted_frame)
     video.next.motion.isStill = true;
     video.next.sources.rowRange(0, 12).setTo(SAME_PLACE);
     EXPECT_TRUE(contradicts(10, rise, false)) << "a camera at rest";
+}
+
+//! What is predicted, with fractions; else the first of the lowest costs
+TEST(HDPStereo_TemporalPrior, winners)
+{
+    CostVolume volume = flatVolume(Size(3, 2));
+    Mat predicted(volume.size, CV_32F, Scalar(-1)), winners;
+    predicted.at<float>(0, 1) = 7.28f;
+    predicted.at<float>(1, 2) = 0;
+    for (int k : { 11, 17 })
+        volume.costs[volume.candidates[4].start() + k] = (uchar)(flatCost - 1);
+    predictWinners(predicted, volume, winners);
+    const Mat expected = (Mat_<ushort>(2, 3) << 0, 116, 0, 0, 11 * subpixelScale, 0);
+    expectIdentical(expected, winners);
 }
 
 //! None before a second pair has agreed, and none if nothing moves.

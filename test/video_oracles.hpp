@@ -258,12 +258,12 @@ private:
     }
 
     //! What a disparity of the last frame may cost more: if the camera stands still, if the disparity is within two
-    //! pixels of the image from the measured one, and if not
-    int shareOf(Point cell, int taken) const
+    //! pixels of the image from the measured one, and if not, by the frames that it stands for
+    int shareOf(Point cell, int taken, int count) const
     {
         const int distance = std::abs(taken - measured_.at<ushort>(2 * cell));
         const bool isNear = distance <= std::max(32 / prediction_->key.scale, 1);
-        return isStill_ ? 128 + 26 : !isNear ? 128 + 10 : last_->frames == 1 ? 33 : 60;
+        return isStill_ ? 128 + 26 : !isNear ? 128 + 10 * count : last_->frames == 1 ? 33 : 60;
     }
 
     //! Returns whether more than 30 percent of the cells that have a source contradict it.
@@ -280,7 +280,11 @@ private:
                 const Point cell(x, y);
                 const int unmoved = last_->disparity.at<ushort>(2 * cell);
                 const int moved = isStill_ ? 0 : movedToCell(change_, cell) >> 4;
-                choices_.at<uchar>(y, x) = (uchar)choiceOf(cell, shareOf(cell, unmoved), shareOf(cell, moved));
+                const int unmovedCount = last_->detail.at<uchar>(2 * cell) % 16;
+                const int movedCount =
+                    isStill_ ? 0 : last_->detail.at<uchar>(movedFrom(prediction_->warp, 2 * x, 2 * y)) % 16;
+                choices_.at<uchar>(y, x) =
+                    (uchar)choiceOf(cell, shareOf(cell, unmoved, unmovedCount), shareOf(cell, moved, movedCount));
             }
         return 100 * contradicting > 30 * all;
     }
@@ -331,9 +335,9 @@ private:
             return set(x, y, here, 1);
         if (std::abs(here - there) > tolerance())
             return choiceAt(x, y) >= hdp::KEPT ? set(x, y, there, count - 1) : set(x, y, here, 1);
-        const int weight = std::min(count, choice == hdp::MOVED ? 1 : isStill_ ? 4 : 2);
+        const int weight = std::min(count, choice == hdp::MOVED ? 3 : isStill_ ? 4 : 2);
         const double step = std::max(std::min(here - there, 256), -256) / (weight + 1.);
-        set(x, y, there + (int)std::floor(step + 0.5), std::min(count + 1, 4));
+        set(x, y, there + (int)std::floor(step + 0.5), std::min(count + 1, 7));
     }
 
     void set(int x, int y, int finer, int count)

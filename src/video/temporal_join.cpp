@@ -27,7 +27,7 @@ HDP_TUNABLE(int, nearShare, 60, "percent of that sum",
             "the same if the camera moved: the costs of warped disparities are higher, however right they are");
 HDP_TUNABLE(int, nearDistance, 2, "pixels of the image",
             "from the measured disparity, up to which it is so: what is farther away is right or wrong");
-HDP_TUNABLE(int, apartShare, 10, "percent of that sum",
+HDP_TUNABLE(int, apartShare, 10, "percent of that sum, per frame that it stands for",
             "of one that is farther away: more keeps what has gone or is covered, less keeps less of what was right");
 HDP_TUNABLE(int, wrongShare, 33, "percent of that sum", "beyond it, a cell contradicts the last frame: less is noise");
 HDP_TUNABLE(int, contradictedShare, 30, "percent of the cells with a source",
@@ -37,10 +37,10 @@ HDP_TUNABLE(int, driftStep, 12, "cells", "between those that correct the predict
 // How it is joined with the measured one
 HDP_TUNABLE(int, tolerance, 2, "pixels of the image", "between disparities that agree: more joins two surfaces");
 HDP_TUNABLE(int, maxStep, 1, "pixels", "towards the measured one, before its share is taken: it may be an outlier");
-HDP_TUNABLE(int, maxCount, 4, "frames", "that a disparity may stand for: more flickers less and follows changes later");
+HDP_TUNABLE(int, maxCount, 7, "frames", "that a disparity may stand for: more flickers less and follows changes later");
 HDP_TUNABLE(int, maxUnmovedWeight, 2, "frames",
             "that it counts for at the same place if the camera moved: it may be by chance");
-HDP_TUNABLE(int, maxMovedWeight, 1, "frames",
+HDP_TUNABLE(int, maxMovedWeight, 3, "frames",
             "that it counts for where the motion leads, which blurs from frame to frame");
 HDP_TUNABLE(int, stripeHeight, 32, "rows of cells", "for a thread: fewer compute the rows between stripes more often");
 
@@ -67,16 +67,20 @@ struct LastFrame
     Size cells() const { return prediction.sources.size(); }
 };
 
-//! The disparities that the motion takes to the first pixels of a row's cells
-void takeMovedCells(const LastFrame& frame, int y, std::vector<int>& finer)
+//! The disparities that the motion takes to the first pixels of a row's cells, and their details
+void takeMovedCells(const LastFrame& frame, int y, std::vector<int>& finer, std::vector<uchar>& detail)
 {
-    const int count = frame.cells().width;
-    for (int j = 0; j < count; ++j)
-    {
-        const Point at = frame.prediction.warp(j * cell, y);
-        finer[j] = frame.memory.disparity.ptr<ushort>(at.y)[at.x] << FrameMemory::detailBits;
-    }
-    dispatched::changeDisparities(frame.change, y, cell, count, finer.data());
+    const int endX = frame.cells().width * cell;
+    frame.prediction.warp.forEachRun(y, [&](int x, const Point& from, int count) {
+        const ushort* const disparities = frame.memory.disparity.ptr<ushort>(from.y) + from.x;
+        const uchar* const details = frame.memory.detail.ptr(from.y) + from.x;
+        for (int k = x % cell; k < count && x + k < endX; k += cell)
+        {
+            finer[(x + k) / cell] = disparities[k] << FrameMemory::detailBits;
+            detail[(x + k) / cell] = details[k];
+        }
+    });
+    dispatched::changeDisparities(frame.change, y, cell, frame.cells().width, finer.data());
 }
 
 //! How the motion changes disparities, as it was measured
@@ -85,9 +89,10 @@ DisparityChange measuredChange(const LastFrame& frame, const Mat& measured)
     const float unit = 1.f / subpixelScale;
     std::vector<float> predicted, now;
     std::vector<int> moved(frame.cells().width);
+    std::vector<uchar> details(frame.cells().width);
     for (int i = 0; i < frame.cells().height; i += driftStep)
     {
-        takeMovedCells(frame, i * cell, moved);
+        takeMovedCells(frame, i * cell, moved, details);
         for (int j = 0; j < frame.cells().width; j += driftStep)
             if (frame.prediction.sources.ptr(i)[j] & MOVED_PLACE)
             {
@@ -102,10 +107,9 @@ ChoiceShares choiceShares(const LastFrame& frame)
 {
     const int distance = std::max(nearDistance * subpixelScale / frame.prediction.key.scale, 1);
     if (frame.isStill())
-        return { stillShare | ChoiceShares::KEEPS, stillShare | ChoiceShares::KEEPS, distance };
+        return { stillShare | ChoiceShares::KEEPS, 0, INT_MAX };
     // No pair has agreed with a first frame yet: from there, nothing that contradicts is taken.
-    return { frame.memory.frames == 1 ? std::min(+nearShare, +wrongShare) : +nearShare,
-             apartShare | ChoiceShares::KEEPS, distance };
+    return { frame.memory.frames == 1 ? std::min(+nearShare, +wrongShare) : +nearShare, apartShare, distance };
 }
 
 //! Compares costs in each cell whose first pixel has another disparity in the last frame.
@@ -121,17 +125,18 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
     scratch.evidence.create(cells, CV_16SC(EVIDENCE_CHANNELS));
     parallel_for_(Range(0, cells.height), [&](const Range& rows) {
         std::vector<int> moved(cells.width), compared(cells.width);
-        std::vector<uchar> different(cells.width);
+        std::vector<uchar> different(cells.width), movedDetail(cells.width);
         for (int i = rows.start; i < rows.end; ++i)
         {
             const int y = i * cell;
             if (!frame.isStill())
-                takeMovedCells(frame, y, moved);
+                takeMovedCells(frame, y, moved, movedDetail);
             dispatched::compareDisparities(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y), moved.data(),
                                            cells.width, same, maxDistance, frame.prediction.sources.ptr(i),
                                            scratch.sources.ptr(i), different.data());
-            dispatched::shareCells(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y), moved.data(),
-                                   cells.width, shares, scratch.shares.ptr(i));
+            dispatched::shareCells(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y),
+                                   frame.memory.detail.ptr(y), moved.data(), movedDetail.data(), cells.width, shares,
+                                   scratch.shares.ptr(i));
             int count = 0;
             for (int j = 0; j < cells.width; ++j)
             {
@@ -206,14 +211,23 @@ struct RowScratch
     std::vector<uchar> detail;
 };
 
+//! Most runs are blocks, which need no call.
+template <typename T> void copyRun(const T* from, int count, T* to)
+{
+    if (count == FrameWarp::block)
+        std::memcpy(to, from, FrameWarp::block * sizeof(T));
+    else
+        std::copy(from, from + count, to);
+}
+
 //! The pixels of a row come from where the motion leads.
 void takeMoved(const LastFrame& frame, int y, RowScratch& scratch)
 {
     const FrameMemory& memory = frame.memory;
     const int width = memory.disparity.cols;
     frame.prediction.warp.forEachRun(y, [&](int x, const Point& from, int count) {
-        std::memcpy(&scratch.disparity[x], memory.disparity.ptr<ushort>(from.y) + from.x, count * sizeof(ushort));
-        std::memcpy(&scratch.detail[x], memory.detail.ptr(from.y) + from.x, count);
+        copyRun(memory.disparity.ptr<ushort>(from.y) + from.x, count, &scratch.disparity[x]);
+        copyRun(memory.detail.ptr(from.y) + from.x, count, &scratch.detail[x]);
     });
     dispatched::unpackRow(scratch.disparity.data(), scratch.detail.data(), width, scratch.moved.data(),
                           scratch.movedCounts.data());
@@ -224,8 +238,9 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
              FrameMemory& next)
 {
     const int width = measured.cols, cells = frame.cells().width;
+    static_assert(cell == 2, "There are as many pixels.");
     for (int j = 0; j < cells; ++j)
-        std::fill_n(&scratch.choices[j * cell], +cell, choices[j]);
+        scratch.choices[2 * j] = scratch.choices[2 * j + 1] = choices[j];
     std::fill(scratch.choices.begin() + cells * cell, scratch.choices.end(), choices[cells - 1]);
     dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width,
                           scratch.unmoved.data(), scratch.unmovedCounts.data());

@@ -68,8 +68,9 @@ struct ChoiceShares
         KEEPS = 128, // in a share: what is taken is KEPT
         PERCENT = 127
     };
-    int near, apart; // if the two disparities are near each other, and if not
-    int distance;    // up to which they are near, in units of a map
+    int near;     // if the two disparities are near each other,
+    int apart;    // and if not, per frame that the one before stands for; it is KEPT then
+    int distance; // up to which they are near, in units of a map
 };
 
 //! How disparities are joined, in FrameMemory's units

@@ -52,12 +52,14 @@ void compareDisparities(const ushort* measured, const ushort* unmoved, const int
 /** Finds how much more the disparities of the frame before may cost than the measured ones.
 @param measured As of compareDisparities().
 @param unmoved As well.
-@param moved As well.
+@param unmovedDetail FrameMemory's, of the same pixels.
+@param moved As of compareDisparities().
+@param movedDetail FrameMemory's, where the motion leads, of each cell.
 @param count Number of cells.
 @param rule What they may.
 @param shares Receives two numbers per cell: percent of the unmoved one, and of the moved one. */
-void shareCells(const ushort* measured, const ushort* unmoved, const int* moved, int count, const ChoiceShares& rule,
-                uchar* shares);
+void shareCells(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail, const int* moved,
+                const uchar* movedDetail, int count, const ChoiceShares& rule, uchar* shares);
 
 /** Adds up what the pixels on the diagonals of cells tell, see TemporalEvidence.
 @param rows The rows of the cells.
@@ -216,16 +218,18 @@ void compareCells(const ComparedRow* rows, const int* moved, const uchar* differ
     compare(rows, moved, different, cells, count, offset, evidence);
 }
 
-void shareCells(const ushort* measured, const ushort* unmoved, const int* moved, int count, const ChoiceShares& rule,
-                uchar* shares)
+void shareCells(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail, const int* moved,
+                const uchar* movedDetail, int count, const ChoiceShares& rule, uchar* shares)
 {
-    const int near = rule.near, apart = rule.apart, maxDistance = rule.distance;
+    const int near = rule.near, apart = rule.apart, maxDistance = rule.distance, keeps = ChoiceShares::KEEPS;
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
         const int here = measured[j * FrameMemory::cell], there = unmoved[j * FrameMemory::cell];
         const int where = moved[j] >> FrameMemory::detailBits;
-        shares[2 * j] = (uchar)select(std::abs(there - here) <= maxDistance, near, apart);
-        shares[2 * j + 1] = (uchar)select(std::abs(where - here) <= maxDistance, near, apart);
+        const int unmovedCount = unmovedDetail[j * FrameMemory::cell] & FrameMemory::countMask;
+        const int movedCount = movedDetail[j] & FrameMemory::countMask;
+        shares[2 * j] = (uchar)select(std::abs(there - here) <= maxDistance, near, apart * unmovedCount | keeps);
+        shares[2 * j + 1] = (uchar)select(std::abs(where - here) <= maxDistance, near, apart * movedCount | keeps);
     }
 }
 

@@ -33,20 +33,6 @@ bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, fl
     return !(sources & SAME_PLACE) || p.key.scale * std::abs(disparity - unmoved) <= TemporalSources::maxDistance;
 }
 
-//! Calls take(pixel, disparity) for the pixels of a row of the volume that the last frame predicts a disparity for.
-template <typename Take>
-void forEachPredicted(const FrameMemory& last, const FramePrediction& prediction, int side, const Size& size, int y,
-                      const Take& take)
-{
-    const int centreY = std::min(y * side + side / 2, last.disparity.rows - 1);
-    for (int x = 0; x < size.width; ++x)
-    {
-        float disparity;
-        if (predict(last, prediction, std::min(x * side + side / 2, last.disparity.cols - 1), centreY, disparity))
-            take(y * size.width + x, disparity / side);
-    }
-}
-
 } // namespace
 
 bool hasPrior(const FrameMemory& last, const FramePrediction& prediction)
@@ -54,31 +40,78 @@ bool hasPrior(const FrameMemory& last, const FramePrediction& prediction)
     return prediction.isMoving() && last.frames > 1;
 }
 
-bool contradictsLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side,
-                          const CostVolume& volume)
+void predictDisparities(const FrameMemory& last, const FramePrediction& prediction, int side, const Size& size,
+                        Mat& predicted)
 {
-    std::vector<int> predicted(volume.size.height), refused(volume.size.height);
+    predicted.create(size, CV_32F);
+    parallel_for_(Range(0, size.height), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const int centreY = std::min(y * side + side / 2, last.disparity.rows - 1);
+            float* const row = predicted.ptr<float>(y);
+            for (int x = 0; x < size.width; ++x)
+            {
+                float disparity;
+                const int centreX = std::min(x * side + side / 2, last.disparity.cols - 1);
+                row[x] = predict(last, prediction, centreX, centreY, disparity) ? disparity / side : -1;
+            }
+        }
+    });
+}
+
+bool refusesLastFrame(const CostVolume& volume, Mat& predicted)
+{
+    std::vector<int> known(volume.size.height), refused(volume.size.height);
     parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
-            forEachPredicted(last, prediction, side, volume.size, y, [&](int own, float disparity) {
-                ++predicted[y];
-                refused[y] += CostPreference::isContradicted(own, disparity, volume);
-            });
+        {
+            float* const row = predicted.ptr<float>(y);
+            for (int x = 0; x < volume.size.width; ++x)
+            {
+                if (row[x] < 0)
+                    continue;
+                ++known[y];
+                if (!CostPreference::isContradicted(y * volume.size.width + x, row[x], volume))
+                    continue;
+                ++refused[y];
+                row[x] = -1;
+            }
+        }
     });
-    const int64 all = std::accumulate(predicted.begin(), predicted.end(), (int64)0);
+    const int64 all = std::accumulate(known.begin(), known.end(), (int64)0);
     return 100 * std::accumulate(refused.begin(), refused.end(), (int64)0) > maxRefused * all;
 }
 
-void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side, bool areMeans,
-                     CostVolume& volume)
+void preferPredicted(const Mat& predicted, bool areMeans, CostVolume& volume)
 {
     const CostPreference preference(CostVolume::scale * (areMeans ? maxPenaltyOfMeans : maxPenalty));
     parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
-            forEachPredicted(last, prediction, side, volume.size, y, [&](int own, float disparity) {
-                if (!(areMeans && CostPreference::isContradicted(own, disparity, volume)))
-                    preference.apply(own, disparity, volume);
-            });
+        {
+            const float* const row = predicted.ptr<float>(y);
+            for (int x = 0; x < volume.size.width; ++x)
+                if (row[x] >= 0)
+                    preference.apply(y * volume.size.width + x, row[x], volume);
+        }
+    });
+}
+
+void predictWinners(const Mat& predicted, const CostVolume& volume, Mat& winners)
+{
+    winners.create(volume.size, CV_16U);
+    parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const float* const known = predicted.ptr<float>(y);
+            ushort* const row = winners.ptr<ushort>(y);
+            for (int x = 0; x < volume.size.width; ++x)
+            {
+                const CostVolume::Candidates own = volume.of(y * volume.size.width + x);
+                const uchar *const costs = &volume.costs[own.start()], *const end = costs + own.interval.size();
+                const int lowest = known[x] < 0 ? own.interval.first + (int)(std::min_element(costs, end) - costs) : 0;
+                row[x] = (ushort)(known[x] < 0 ? subpixelScale * lowest : cvRound(subpixelScale * known[x]));
+            }
+        }
     });
 }
 

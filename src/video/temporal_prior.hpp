@@ -13,25 +13,33 @@ namespace cv { namespace stereo { namespace hdp {
 //! moves, as joinLastFrame() keeps disparities then.
 CV_EXPORTS bool hasPrior(const FrameMemory& last, const FramePrediction& prediction);
 
-/** Whether this frame's own costs refuse the last frame: at many of the pixels that it predicts a disparity for,
-another one is much better.
+/** The disparities that the last frame predicts for the pixels of a volume. Where the image stands still and looks
+moved as well, with different disparities, it predicts none.
 @param last The last frame.
 @param prediction What predictFrame() found; the frame continues.
 @param side That of the volume's pixels, in pixels of the layer that the prediction is of.
-@param volume Means of costs over trees, as a single frame has them. */
-CV_EXPORTS bool contradictsLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side,
-                                     const CostVolume& volume);
+@param size That of the volume.
+@param predicted CV_32FC1, receives them, in pixels of the volume; negative where there is none. */
+CV_EXPORTS void predictDisparities(const FrameMemory& last, const FramePrediction& prediction, int side,
+                                   const Size& size, Mat& predicted);
 
-/** P(D_t | D_(t-1)): raises the costs of disparities other than the one that the last frame predicts, see
-CostPreference. Where the image stands still and looks moved as well, with different disparities, it predicts
-none.
-@param last The last frame.
-@param prediction What predictFrame() found; see hasPrior().
-@param side That of the volume's pixels, in pixels of the layer that the prediction is of.
-@param areMeans Whether the costs are means over trees; those that contradict then stay.
+/** Whether this frame's own costs refuse the last frame: at many of the pixels that it predicts a disparity for,
+another one is much better.
+@param volume Means of costs over trees, as a single frame has them.
+@param predicted The disparities; those of such pixels are taken away. */
+CV_EXPORTS bool refusesLastFrame(const CostVolume& volume, Mat& predicted);
+
+/** P(D_t | D_(t-1)): raises the costs of disparities other than the predicted one, see CostPreference.
+@param predicted The disparities; see hasPrior().
+@param areMeans Whether the costs are means over trees.
 @param volume The costs, changed. */
-CV_EXPORTS void preferLastFrame(const FrameMemory& last, const FramePrediction& prediction, int side, bool areMeans,
-                                CostVolume& volume);
+CV_EXPORTS void preferPredicted(const Mat& predicted, bool areMeans, CostVolume& volume);
+
+/** What the winners will be, without scanlines: the predicted disparities, and the lowest costs beside them.
+@param predicted The disparities.
+@param volume The costs; each pixel has candidates.
+@param winners CV_16UC1, receives a disparity map. */
+CV_EXPORTS void predictWinners(const Mat& predicted, const CostVolume& volume, Mat& winners);
 
 }}} // namespace cv::stereo::hdp
 
