@@ -34,14 +34,17 @@ struct FrameWarp
     {
         const int width = size.width, lastX = width - 1, lastY = size.height - 1;
         const Vec2s* const row = shifts.ptr<Vec2s>(y / block);
-        for (int x = 0; x < width; x += block)
+        for (int x = 0, end; x < width; x = end)
         {
             const Vec2s s = row[x / block];
+            for (end = x + block; end < width && row[end / block] == s;)
+                end += block;
+            end = std::min(end, width);
             const int fromX = x + s[0], fromY = std::min(std::max(y + s[1], 0), lastY);
-            if (fromX >= 0 && fromX + block <= width && x + block <= width)
-                take(x, Point(fromX, fromY), +block);
+            if (fromX >= 0 && end + s[0] <= width)
+                take(x, Point(fromX, fromY), end - x);
             else
-                for (int i = x; i < std::min(x + block, width); ++i)
+                for (int i = x; i < end; ++i)
                     take(i, Point(std::min(std::max(i + s[0], 0), lastX), fromY), 1);
         }
     }

@@ -211,23 +211,14 @@ struct RowScratch
     std::vector<uchar> detail;
 };
 
-//! Most runs are blocks, which need no call.
-template <typename T> void copyRun(const T* from, int count, T* to)
-{
-    if (count == FrameWarp::block)
-        std::memcpy(to, from, FrameWarp::block * sizeof(T));
-    else
-        std::copy(from, from + count, to);
-}
-
 //! The pixels of a row come from where the motion leads.
 void takeMoved(const LastFrame& frame, int y, RowScratch& scratch)
 {
     const FrameMemory& memory = frame.memory;
     const int width = memory.disparity.cols;
     frame.prediction.warp.forEachRun(y, [&](int x, const Point& from, int count) {
-        copyRun(memory.disparity.ptr<ushort>(from.y) + from.x, count, &scratch.disparity[x]);
-        copyRun(memory.detail.ptr(from.y) + from.x, count, &scratch.detail[x]);
+        std::memcpy(&scratch.disparity[x], memory.disparity.ptr<ushort>(from.y) + from.x, count * sizeof(ushort));
+        std::memcpy(&scratch.detail[x], memory.detail.ptr(from.y) + from.x, count);
     });
     dispatched::unpackRow(scratch.disparity.data(), scratch.detail.data(), width, scratch.moved.data(),
                           scratch.movedCounts.data());
