@@ -6,8 +6,7 @@
 #include "synthetic_video.hpp"
 #include "video_oracles.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace hdp;
 
@@ -210,6 +209,33 @@ TEST(HDPStereo_FramePrediction, continued)
     }
 }
 
+//! Another exposure of the whole frame changes neither verdict nor motion; what is remembered are its own levels.
+TEST(HDPStereo_FramePrediction, exposure)
+{
+    SyntheticVideo video(Size(203, 131), 10.3, 2);
+    const SyntheticFrame first = video.render(0, someBoards()),
+                         second = video.render(1, someBoards(), Point3d(0.15, 0, 0));
+    VideoScratch scratch;
+    FramePrediction prediction, darker;
+    predictFrame(greyOf(first), usualKey(), FrameMemory(), scratch, prediction);
+    const FrameMemory last = remember(first, prediction, 1);
+    predictFrame(greyOf(second), usualKey(), last, scratch, prediction);
+    const Mat left = greyOf(second);
+    for (double gain : { 0.7, 0.55 })
+    {
+        const Mat dark = left * gain;
+        predictFrame(dark, usualKey(), last, scratch, darker);
+        ASSERT_EQ(CONTINUED, darker.verdict) << gain;
+        EXPECT_LE(cvtest::norm(prediction.motion.forward, darker.motion.forward, NORM_INF), 0.5) << gain;
+        EXPECT_GE(countNonZero(darker.sources), 0.9 * countNonZero(prediction.sources)) << gain;
+        Mat own;
+        oracle::halve(dark).convertTo(own, CV_8U, 0.25);
+        expectIdentical(own, darker.grey[0]);
+    }
+    predictFrame(left * 0.1, usualKey(), last, scratch, darker);
+    EXPECT_EQ(FIRST, darker.verdict) << "steps, no levels";
+}
+
 TEST(HDPStereo_FramePrediction, camera_at_rest)
 {
     SyntheticVideo video(Size(203, 131), 10.3, 2);
@@ -312,5 +338,4 @@ TEST(HDPStereo_FramePrediction, cut)
     EXPECT_LE(cuts, pairs - pairs / 5);
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

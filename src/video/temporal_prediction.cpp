@@ -22,6 +22,13 @@ HDP_TUNABLE(
     double, noMotion, 1.25, "cells",
     "median distance of the points from a motion that is none: more warps by wrong ones, less loses fast cameras");
 
+// Exposure, on the coarsest level
+HDP_TUNABLE(double, sameGain, 0.15, "difference from 1", "that frames are compared without: scenes change by as much");
+HDP_TUNABLE(double, sameMean, 10, "grey levels", "the same, of the mean");
+HDP_TUNABLE(double, maxGain, 2, "factor", "between two frames: more makes noise of what has hardly any levels");
+HDP_TUNABLE(int, exposurePoints, 30, "points", "that tell an exposure from another scene: fewer may be by chance");
+HDP_TUNABLE(int, minDeviation, 12, "grey levels", "before brightening: a darker image has steps for levels");
+
 // What is no cut, on the coarsest level
 HDP_TUNABLE(int, cutShare, 60, "percent of the contrast",
             "of changes: less is motion and noise, more is another scene");
@@ -51,6 +58,25 @@ void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
     grey.resize(std::max<size_t>(grey.size(), 1));
     halved.convertTo(grey[0], CV_8U, 1. / greyScale);
     buildPyramid({ grey[0] }, trackingLevels(halved.cols), grey);
+}
+
+/** The pyramid of this frame as the exposure of the last one would show it: levels of the same mean and deviation, if
+they are not about the same. They are only compared, so it need not be exact. */
+const std::vector<Mat>& exposedAsBefore(const std::vector<Mat>& before, const std::vector<Mat>& now, int brightening,
+                                        std::vector<Mat>& exposed)
+{
+    Scalar meanBefore, deviationBefore, mean, deviation;
+    meanStdDev(before.back(), meanBefore, deviationBefore);
+    meanStdDev(now.back(), mean, deviation);
+    const double gain = deviationBefore[0] / std::max(deviation[0], 1.), offset = meanBefore[0] - gain * mean[0];
+    const bool isSame = std::abs(gain - 1) < sameGain && std::abs(meanBefore[0] - mean[0]) < sameMean;
+    const double lowest = std::min(deviationBefore[0], deviation[0]);
+    if (isSame || lowest < (minDeviation << brightening) || gain > maxGain || gain * maxGain < 1)
+        return now;
+    exposed.resize(now.size());
+    for (size_t level = 0; level < now.size(); ++level)
+        now[level].convertTo(exposed[level], CV_8U, gain, offset);
+    return exposed;
 }
 
 //! From the last frame to this one, in pixels of the layer. The camera probably moves on as it did.
@@ -83,10 +109,10 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
 
 //! Whether this frame shows another scene, or none: on the coarsest level, about as much changed as there is contrast,
 //! or there is hardly any.
-bool isCut(const std::vector<Mat>& greyBefore, const FramePrediction& p)
+bool isCut(const std::vector<Mat>& greyBefore, const std::vector<Mat>& greyNow, const FramePrediction& p)
 {
-    const int level = (int)p.grey.size() - 1, side = cell << level;
-    const Mat &before = greyBefore[level], &now = p.grey[level];
+    const int level = (int)greyNow.size() - 1, side = cell << level;
+    const Mat &before = greyBefore[level], &now = greyNow[level];
     const int mean = cvRound(cv::mean(now)[0]);
     int64 known = 0, change = 0, contrast = 0;
     for (int y = 0; y < now.rows; ++y)
@@ -204,7 +230,9 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
     buildGrey(left, scratch.halved, p.grey);
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
-    p.motion = findMotion(last, p.grey, scratch.points);
+    const std::vector<Mat>& exposed = exposedAsBefore(last.grey, p.grey, key.brightening, scratch.exposed);
+    p.motion = findMotion(last, exposed, scratch.points);
+    const std::vector<Mat>& grey = (int)scratch.points.size() < exposurePoints ? p.grey : exposed;
     if (p.motion.error > noMotion * cell)
     {
         p.motion = CameraMotion();
@@ -213,12 +241,12 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
     p.backward = BackwardMotion(p.motion, key.minDisparity, (double)key.maxDisparity / subpixelScale);
     if (!p.motion.isStill)
         findWarp(p.backward, last.disparity, p.warp);
-    if (isCut(last.grey, p))
+    if (isCut(last.grey, grey, p))
     {
         p.motion = CameraMotion();
         return;
     }
-    findSources(last.grey[0], p.grey[0], p.motion.isStill ? nullptr : &p.warp, scratch, p.sources);
+    findSources(last.grey[0], grey[0], p.motion.isStill ? nullptr : &p.warp, scratch, p.sources);
     p.verdict = CONTINUED;
 }
 
