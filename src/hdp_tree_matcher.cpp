@@ -295,8 +295,7 @@ private:
             lastFrame_ = FrameMemory();
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
-            const int* const lastBrightening = lastFrame_.isEmpty() ? nullptr : &lastFrame_.key.brightening;
-            buildPairPyramids(pair.left, pair.right, pair.masks, pairPlan.pyramids, lastBrightening, pyramids_, images,
+            buildPairPyramids(pair.left, pair.right, pair.masks, pairPlan.pyramids, pyramids_, images,
                               given.isGiven ? &given.levels : nullptr);
         });
         result_.brightness = 1 << pyramids_.levels.brightening;
@@ -308,8 +307,6 @@ private:
         VideoFindings video = { FIRST, false };
         if (pairPlan.followsVideo)
             clock_.run("temporal prediction", [&] { video = predict(images[finest].left, pairPlan); });
-        if (video.verdict == FIRST && pyramids_.isDimmed)
-            return CONTRADICTED; // it is not the next frame after all
 
         PairPlan adapted = adapt(pairPlan, result_.findings, video);
         layers_.resize(pairPlan.top().layer + 1);
@@ -343,8 +340,8 @@ private:
     {
         const int finest = plan.finest().layer, scale = 1 << finest;
         const FrameKey key = { scale, plan.pyramids.minDisparity / (double)scale,
-                               largestDisparity(plan.alignment.numDisparities, finest), pyramids_.levels.brightening };
-        predictFrame(left, key, lastFrame_, shared_.video, prediction_);
+                               largestDisparity(plan.alignment.numDisparities, finest) };
+        predictFrame(left, key, pyramids_.levels.brightening, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, hasPrior(lastFrame_, prediction_) };
     }
 

@@ -135,7 +135,7 @@ std::vector<hdp::LayerImages> layersOf(const Mat& left, const Mat& right, hdp::P
 {
     const hdp::PyramidPlan plan = { 0, 0, 3, true, false };
     std::vector<hdp::LayerImages> images;
-    hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, nullptr, pyramids, images);
+    hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, pyramids, images);
     return images;
 }
 

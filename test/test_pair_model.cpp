@@ -188,12 +188,12 @@ TEST(HDPStereo_PairModel, levels_of_a_tile)
             levels.leftBlocks.begin = 3;
             levels.rightBlocks.begin = 6;
             levels.leftBlocks.step = levels.rightBlocks.step = 5;
-            hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, nullptr, pyramids, whole, &levels);
+            hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, pyramids, whole, &levels);
             model = hdp::toPairModel(plan, size, CV_8U, 16, levels, hdp::PairFindings());
         }
         const Rect tile(84, 40, 160, 120);
         const hdp::GivenPair given = hdp::toGivenPair(model.tile(tile), plan, tile.size());
-        hdp::buildPairPyramids(left(tile), right(tile), hdp::PairMasks(), plan, nullptr, ofTile, part, &given.levels);
+        hdp::buildPairPyramids(left(tile), right(tile), hdp::PairMasks(), plan, ofTile, part, &given.levels);
         for (int layer = 0; layer < 3; ++layer)
         {
             const int margin = 24 >> layer; // for the blocks beside, and columns that are moved

@@ -67,9 +67,8 @@ TEST(HDPStereo_PairPyramids, layers_of_both_images)
 
         hdp::PairPyramids pyramids;
         std::vector<hdp::LayerImages> images;
-        hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, nullptr, pyramids, images);
+        hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, pyramids, images);
         EXPECT_EQ(brightening, pyramids.levels.brightening);
-        EXPECT_FALSE(pyramids.isDimmed);
         ASSERT_EQ((size_t)plan.layers, images.size());
         for (const hdp::LayerImages& layer : images)
         {
@@ -103,22 +102,6 @@ TEST(HDPStereo_PairPyramids, unused_bits)
         ++seen[expected];
     }
     EXPECT_TRUE(seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
-}
-
-//! A frame is as bright as the last one if it could be brighter by one step.
-TEST(HDPStereo_PairPyramids, keeps_the_brightening_of_the_last_frame)
-{
-    RNG rng(54);
-    const Mat left = randomImage(rng, Size(64, 48), CV_8UC1, 60), right = randomImage(rng, Size(64, 48), CV_8UC1, 60);
-    const hdp::PyramidPlan plan = { 0, 0, 2, true, false };
-    std::vector<hdp::LayerImages> images;
-    for (int last = 0; last <= 2; ++last)
-    {
-        hdp::PairPyramids pyramids;
-        hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, &last, pyramids, images);
-        EXPECT_EQ(last == 1 ? 1 : 2, pyramids.levels.brightening) << last;
-        EXPECT_EQ(last == 1, pyramids.isDimmed) << last;
-    }
 }
 
 }} // namespace opencv_test

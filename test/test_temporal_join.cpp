@@ -5,8 +5,7 @@
 #include "helpers.hpp"
 #include "video_oracles.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace hdp;
 
@@ -25,6 +24,7 @@ struct RandomFrames
     {
         const int maxDisparity = (candidates - 1) * subpixelScale;
         last.frames = frames;
+        last.motion.isStill = rng.uniform(0, 2) == 0;
         last.disparity.create(size, CV_16U);
         last.detail.create(size, CV_8U);
         prediction.verdict = CONTINUED;
@@ -45,7 +45,7 @@ struct RandomFrames
                 const int surface = base + (x / 9 + y / 7) % 3 * 40;
                 measured.at<ushort>(y, x) = disparity(surface, 0.05, maxDisparity, rng);
                 last.disparity.at<ushort>(y, x) = disparity(surface, wrong, maxDisparity, rng);
-                const int count = rng.uniform(0, 5);
+                const int count = rng.uniform(0, 8);
                 last.detail.at<uchar>(y, x) =
                     (uchar)(rng.uniform(last.disparity.at<ushort>(y, x) ? 0 : 8, 16) * 16 + count);
                 if (x >= surface / subpixelScale)
@@ -154,5 +154,4 @@ TEST(HDPStereo_TemporalJoin, first)
     }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -43,6 +43,7 @@ struct MovedVideo
     {
         last.frames = 2;
         last.disparity = Mat(layerSize, CV_16U, Scalar(disparity));
+        last.detail = Mat(layerSize, CV_8U, Scalar(2)); // frames
         next.verdict = CONTINUED;
         next.key.scale = 1;
         next.key.maxDisparity = side * candidates * subpixelScale;
@@ -97,6 +98,23 @@ TEST(HDPStereo_TemporalPrior, sources)
         for (int y = 0; y < volume.size.height; ++y)
             for (int i = 0; i < 5; ++i)
                 expectCosts(volume, 3 * i, y, expected[i], areMeans);
+    }
+}
+
+//! What only one pair has had predicts nothing, neither at the same place nor where the motion leads.
+TEST(HDPStereo_TemporalPrior, unconfirmed)
+{
+    for (int place : { SAME_PLACE, MOVED_PLACE })
+    {
+        MovedVideo video(10 * side * subpixelScale);
+        video.next.sources.setTo(place);
+        const int x = 5, from = x * side + side / 2 + (place == MOVED_PLACE ? FrameMemory::cell : 0);
+        video.last.detail.col(from).setTo(FrameMemory::countMask << FrameMemory::detailBits | 1);
+        Mat predicted;
+        predictDisparities(video.last, video.next, side, layerSize / side, predicted);
+        for (int y = 0; y < predicted.rows; ++y)
+            for (int k = 0; k < predicted.cols; ++k)
+                EXPECT_EQ(k == x ? -1 : 10, predicted.at<float>(y, k)) << Point(k, y);
     }
 }
 

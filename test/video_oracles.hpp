@@ -258,12 +258,19 @@ private:
     }
 
     //! What a disparity of the last frame may cost more: if the camera stands still, if the disparity is within two
-    //! pixels of the image from the measured one, and if not, by the frames that it stands for
+    //! pixels of the image from the measured one, and if not, by the frames that have agreed with it
     int shareOf(Point cell, int taken, int count) const
     {
         const int distance = std::abs(taken - measured_.at<ushort>(2 * cell));
         const bool isNear = distance <= std::max(32 / prediction_->key.scale, 1);
-        return isStill_ ? 128 + 26 : !isNear ? 128 + 10 * count : last_->frames == 1 ? 33 : 60;
+        return isStill_ ? 128 + 26 : !isNear ? 128 + 10 * std::max(count - 1, 0) : count > 1 ? 60 : 33;
+    }
+
+    //! How many frames a disparity of the last frame counts for: all those of a camera at rest for two, once it moves
+    int countOf(Point from) const
+    {
+        const int count = last_->detail.at<uchar>(from) % 16;
+        return !isStill_ && last_->motion.isStill ? std::min(count, 2) : count;
     }
 
     //! Returns whether more than 30 percent of the cells that have a source contradict it.
@@ -280,9 +287,8 @@ private:
                 const Point cell(x, y);
                 const int unmoved = last_->disparity.at<ushort>(2 * cell);
                 const int moved = isStill_ ? 0 : movedToCell(change_, cell) >> 4;
-                const int unmovedCount = last_->detail.at<uchar>(2 * cell) % 16;
-                const int movedCount =
-                    isStill_ ? 0 : last_->detail.at<uchar>(movedFrom(prediction_->warp, 2 * x, 2 * y)) % 16;
+                const int unmovedCount = countOf(2 * cell);
+                const int movedCount = isStill_ ? 0 : countOf(movedFrom(prediction_->warp, 2 * x, 2 * y));
                 choices_.at<uchar>(y, x) =
                     (uchar)choiceOf(cell, shareOf(cell, unmoved, unmovedCount), shareOf(cell, moved, movedCount));
             }
@@ -298,7 +304,7 @@ private:
     void take(Point from, int& finer, int& count) const
     {
         finer = 16 * last_->disparity.at<ushort>(from) + last_->detail.at<uchar>(from) / 16 - 8;
-        count = last_->detail.at<uchar>(from) % 16;
+        count = countOf(from);
     }
 
     //! The same where the motion leads
@@ -335,7 +341,7 @@ private:
             return set(x, y, here, 1);
         if (std::abs(here - there) > tolerance())
             return choiceAt(x, y) >= hdp::KEPT ? set(x, y, there, count - 1) : set(x, y, here, 1);
-        const int weight = std::min(count, choice == hdp::MOVED ? 3 : isStill_ ? 4 : 2);
+        const int weight = std::min(count, choice == hdp::MOVED ? 1 : isStill_ ? 4 : 2);
         const double step = std::max(std::min(here - there, 256), -256) / (weight + 1.);
         set(x, y, there + (int)std::floor(step + 0.5), std::min(count + 1, 7));
     }

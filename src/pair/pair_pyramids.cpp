@@ -59,7 +59,7 @@ void buildMasks(const PairMasks& masks, const PyramidPlan& plan, PairPyramids& p
 //! Grey levels of an extended pair with its masks, brightened if it is dark, and without the blocks of compression.
 //! share: with data
 void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, double share, const PyramidPlan& plan,
-                const int* lastBrightening, bool isKnown, PairPyramids& pyramids)
+                bool isKnown, PairPyramids& pyramids)
 {
     LevelFindings& found = pyramids.levels;
     Mat &leftLevels = pyramids.leftLevels, &rightLevels = pyramids.rightLevels;
@@ -70,10 +70,8 @@ void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, doubl
     convert(found.bits - found.brightening);
     if (!isKnown)
     {
-        const int unused =
+        found.brightening =
             countUnusedBits(blackened(leftLevels, masks.left), blackened(rightLevels, masks.right), share);
-        pyramids.isDimmed = lastBrightening && unused == *lastBrightening + 1;
-        found.brightening = unused - pyramids.isDimmed;
         if (found.brightening > 0)
             convert(found.bits - found.brightening);
     }
@@ -90,8 +88,7 @@ void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, doubl
 } // namespace
 
 void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks, const PyramidPlan& plan,
-                       const int* lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images,
-                       const LevelFindings* given)
+                       PairPyramids& pyramids, std::vector<LayerImages>& images, const LevelFindings* given)
 {
     const int minDisparity = plan.minDisparity, extension = plan.extension, layers = plan.layers;
     Mat extended = left, shifted = right;
@@ -114,11 +111,10 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
         levels.bits = countBits(blackened(left, masks.left), blackened(right, masks.right), share);
     if (!plan.isCensus)
         levels.brightening = 0;
-    pyramids.isDimmed = false;
     if (plan.isCensus)
     {
         const PairMasks moved = masks.isEmpty() ? masks : PairMasks({ pyramids.leftMask[0], pyramids.rightMask[0] });
-        makeLevels(extended, shifted, moved, share, plan, lastBrightening, given != nullptr, pyramids);
+        makeLevels(extended, shifted, moved, share, plan, given != nullptr, pyramids);
         buildPyramid({ pyramids.leftLevels }, layers, pyramids.leftGrey);
         buildPyramid({ pyramids.rightLevels }, layers, pyramids.right);
     }

@@ -38,8 +38,7 @@ struct PairPyramids
 {
     std::vector<Mat> left, leftGrey, right, leftMask, rightMask;
     Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels;
-    LevelFindings levels;  // found, or given
-    bool isDimmed = false; // whether levels are doubled once less than without a frame before
+    LevelFindings levels; // found, or given
 };
 
 //! What buildPairPyramids() builds
@@ -60,13 +59,11 @@ exposed.
 @param right Of the same size and type.
 @param masks Theirs; what has no data does not count where levels are.
 @param plan What to build.
-@param lastBrightening That of the frame before, if there was one: kept if one more is possible, so that a video seldom
-changes it.
 @param pyramids Memory to work in; receives what was found.
 @param images Receives the images of each layer.
 @param given What is known already: nothing is looked for then. */
 CV_EXPORTS void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks, const PyramidPlan& plan,
-                                  const int* lastBrightening, PairPyramids& pyramids, std::vector<LayerImages>& images,
+                                  PairPyramids& pyramids, std::vector<LayerImages>& images,
                                   const LevelFindings* given = nullptr);
 
 //! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:

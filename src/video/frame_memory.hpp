@@ -16,12 +16,10 @@ struct FrameKey
     int scale;           // pixels of the image in a side of a pixel
     double minDisparity; // that the map counts from, in pixels of its layer
     int maxDisparity;    // that the map may have, in its units
-    int brightening;     // of the pair, see PairPyramids
 
     bool operator==(const FrameKey& other) const
     {
-        return scale == other.scale && minDisparity == other.minDisparity && maxDisparity == other.maxDisparity &&
-               brightening == other.brightening;
+        return scale == other.scale && minDisparity == other.minDisparity && maxDisparity == other.maxDisparity;
     }
 };
 
@@ -34,6 +32,7 @@ struct FrameMemory
     Mat disparity;         // CV_16UC1, a disparity map
     Mat detail;            // CV_8UC1: four more bits of each disparity, and the number of frames it stands for
     std::vector<Mat> grey; // CV_8UC1: the pyramid of the left image, from cells on
+    int brightening = 0;   // of its levels, see LevelFindings
 
     bool isEmpty() const { return frames == 0; }
     void clear() { frames = 0; } // keeps the memory

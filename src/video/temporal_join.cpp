@@ -27,7 +27,7 @@ HDP_TUNABLE(int, nearShare, 60, "percent of that sum",
             "the same if the camera moved: the costs of warped disparities are higher, however right they are");
 HDP_TUNABLE(int, nearDistance, 2, "pixels of the image",
             "from the measured disparity, up to which it is so: what is farther away is right or wrong");
-HDP_TUNABLE(int, apartShare, 10, "percent of that sum, per frame that it stands for",
+HDP_TUNABLE(int, apartShare, 10, "percent of that sum, per frame that has agreed with it",
             "of one that is farther away: more keeps what has gone or is covered, less keeps less of what was right");
 HDP_TUNABLE(int, wrongShare, 33, "percent of that sum", "beyond it, a cell contradicts the last frame: less is noise");
 HDP_TUNABLE(int, contradictedShare, 30, "percent of the cells with a source",
@@ -38,9 +38,11 @@ HDP_TUNABLE(int, driftStep, 12, "cells", "between those that correct the predict
 HDP_TUNABLE(int, tolerance, 2, "pixels of the image", "between disparities that agree: more joins two surfaces");
 HDP_TUNABLE(int, maxStep, 1, "pixels", "towards the measured one, before its share is taken: it may be an outlier");
 HDP_TUNABLE(int, maxCount, 7, "frames", "that a disparity may stand for: more flickers less and follows changes later");
+HDP_TUNABLE(int, stillCount, 2, "frames",
+            "that all those of a camera at rest count for once it moves: they have the same errors, noise apart");
 HDP_TUNABLE(int, maxUnmovedWeight, 2, "frames",
             "that it counts for at the same place if the camera moved: it may be by chance");
-HDP_TUNABLE(int, maxMovedWeight, 3, "frames",
+HDP_TUNABLE(int, maxMovedWeight, 1, "frames",
             "that it counts for where the motion leads, which blurs from frame to frame");
 HDP_TUNABLE(int, stripeHeight, 32, "rows of cells", "for a thread: fewer compute the rows between stripes more often");
 
@@ -64,6 +66,8 @@ struct LastFrame
     DisparityChange change; // of the camera's motion
 
     bool isStill() const { return prediction.motion.isStill; }
+    //! How many frames a disparity may count for
+    int maxCounted() const { return !isStill() && memory.motion.isStill ? +stillCount : +maxCount; }
     Size cells() const { return prediction.sources.size(); }
 };
 
@@ -107,9 +111,9 @@ ChoiceShares choiceShares(const LastFrame& frame)
 {
     const int distance = std::max(nearDistance * subpixelScale / frame.prediction.key.scale, 1);
     if (frame.isStill())
-        return { stillShare | ChoiceShares::KEEPS, 0, INT_MAX };
-    // No pair has agreed with a first frame yet: from there, nothing that contradicts is taken.
-    return { frame.memory.frames == 1 ? std::min(+nearShare, +wrongShare) : +nearShare, apartShare, distance };
+        return { stillShare | ChoiceShares::KEEPS, stillShare | ChoiceShares::KEEPS, 0, maxCount, INT_MAX };
+    // No pair has agreed with a disparity of one frame: nothing that contradicts is taken.
+    return { std::min(+nearShare, +wrongShare), nearShare, apartShare, frame.maxCounted(), distance };
 }
 
 //! Compares costs in each cell whose first pixel has another disparity in the last frame.
@@ -220,8 +224,8 @@ void takeMoved(const LastFrame& frame, int y, RowScratch& scratch)
         std::memcpy(&scratch.disparity[x], memory.disparity.ptr<ushort>(from.y) + from.x, count * sizeof(ushort));
         std::memcpy(&scratch.detail[x], memory.detail.ptr(from.y) + from.x, count);
     });
-    dispatched::unpackRow(scratch.disparity.data(), scratch.detail.data(), width, scratch.moved.data(),
-                          scratch.movedCounts.data());
+    dispatched::unpackRow(scratch.disparity.data(), scratch.detail.data(), width, frame.maxCounted(),
+                          scratch.moved.data(), scratch.movedCounts.data());
     dispatched::changeDisparities(frame.change, y, 1, width, scratch.moved.data());
 }
 
@@ -233,7 +237,7 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
     for (int j = 0; j < cells; ++j)
         scratch.choices[2 * j] = scratch.choices[2 * j + 1] = choices[j];
     std::fill(scratch.choices.begin() + cells * cell, scratch.choices.end(), choices[cells - 1]);
-    dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width,
+    dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width, frame.maxCounted(),
                           scratch.unmoved.data(), scratch.unmovedCounts.data());
     if (!frame.isStill())
         takeMoved(frame, y, scratch);
@@ -292,6 +296,7 @@ Verdict joinLastFrame(const CensusCost& cost, const FrameMemory& last, const Fra
     next.frames = prediction.verdict == FIRST ? 1 : last.frames + 1;
     next.key = prediction.key;
     next.motion = prediction.motion;
+    next.brightening = prediction.brightening;
     next.grey.resize(prediction.grey.size());
     for (size_t level = 0; level < next.grey.size(); ++level)
         prediction.grey[level].copyTo(next.grey[level]);

@@ -68,8 +68,10 @@ struct ChoiceShares
         KEEPS = 128, // in a share: what is taken is KEPT
         PERCENT = 127
     };
-    int near;     // if the two disparities are near each other,
-    int apart;    // and if not, per frame that the one before stands for; it is KEPT then
+    int first;    // if the two disparities are near each other, and the one before is of a single frame,
+    int near;     // or of more frames
+    int apart;    // if not, per frame that has agreed with the one before; it is KEPT then
+    int maxCount; // frames that it may count for
     int distance; // up to which they are near, in units of a map
 };
 

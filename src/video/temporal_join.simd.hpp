@@ -14,9 +14,10 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param disparity FrameMemory's.
 @param detail FrameMemory's.
 @param width Number of pixels.
+@param maxCount Frames that a disparity may count for.
 @param finer Receives the disparities in 1 / FrameMemory::scale pixel.
 @param counts Receives how many frames each stands for. */
-void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts);
+void unpackRow(const ushort* disparity, const uchar* detail, int width, int maxCount, int* finer, uchar* counts);
 
 /** Disparities of the frame before become those of this one.
 @param change The camera's motion.
@@ -162,12 +163,12 @@ void compareCellsOf(const ComparedRow* rows, const int* moved, const uchar* diff
 
 } // namespace
 
-void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts)
+void unpackRow(const ushort* disparity, const uchar* detail, int width, int maxCount, int* finer, uchar* counts)
 {
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         finer[x] = FrameMemory::finer(disparity[x], detail[x]);
-        counts[x] = (uchar)(detail[x] & FrameMemory::countMask);
+        counts[x] = (uchar)std::min(detail[x] & FrameMemory::countMask, maxCount);
     }
 }
 
@@ -221,15 +222,19 @@ void compareCells(const ComparedRow* rows, const int* moved, const uchar* differ
 void shareCells(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail, const int* moved,
                 const uchar* movedDetail, int count, const ChoiceShares& rule, uchar* shares)
 {
-    const int near = rule.near, apart = rule.apart, maxDistance = rule.distance, keeps = ChoiceShares::KEEPS;
+    const int first = rule.first, near = rule.near, apart = rule.apart, keeps = ChoiceShares::KEEPS;
+    const int maxCount = rule.maxCount, maxDistance = rule.distance;
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
         const int here = measured[j * FrameMemory::cell], there = unmoved[j * FrameMemory::cell];
         const int where = moved[j] >> FrameMemory::detailBits;
-        const int unmovedCount = unmovedDetail[j * FrameMemory::cell] & FrameMemory::countMask;
-        const int movedCount = movedDetail[j] & FrameMemory::countMask;
-        shares[2 * j] = (uchar)select(std::abs(there - here) <= maxDistance, near, apart * unmovedCount | keeps);
-        shares[2 * j + 1] = (uchar)select(std::abs(where - here) <= maxDistance, near, apart * movedCount | keeps);
+        const int unmovedCount = std::min(unmovedDetail[j * FrameMemory::cell] & FrameMemory::countMask, maxCount);
+        const int movedCount = std::min(movedDetail[j] & FrameMemory::countMask, maxCount);
+        const int unmovedAgreed = std::max(unmovedCount - 1, 0), movedAgreed = std::max(movedCount - 1, 0);
+        shares[2 * j] = (uchar)select(std::abs(there - here) <= maxDistance, select(unmovedAgreed > 0, near, first),
+                                      apart * unmovedAgreed | keeps);
+        shares[2 * j + 1] = (uchar)select(std::abs(where - here) <= maxDistance, select(movedAgreed > 0, near, first),
+                                          apart * movedAgreed | keeps);
     }
 }
 

@@ -62,16 +62,17 @@ void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
 
 /** The pyramid of this frame as the exposure of the last one would show it: levels of the same mean and deviation, if
 they are not about the same. They are only compared, so it need not be exact. */
-const std::vector<Mat>& exposedAsBefore(const std::vector<Mat>& before, const std::vector<Mat>& now, int brightening,
+const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const std::vector<Mat>& now, int brightening,
                                         std::vector<Mat>& exposed)
 {
     Scalar meanBefore, deviationBefore, mean, deviation;
-    meanStdDev(before.back(), meanBefore, deviationBefore);
+    meanStdDev(last.grey.back(), meanBefore, deviationBefore);
     meanStdDev(now.back(), mean, deviation);
     const double gain = deviationBefore[0] / std::max(deviation[0], 1.), offset = meanBefore[0] - gain * mean[0];
     const bool isSame = std::abs(gain - 1) < sameGain && std::abs(meanBefore[0] - mean[0]) < sameMean;
-    const double lowest = std::min(deviationBefore[0], deviation[0]);
-    if (isSame || lowest < (minDeviation << brightening) || gain > maxGain || gain * maxGain < 1)
+    const bool isDark =
+        deviationBefore[0] < (minDeviation << last.brightening) || deviation[0] < (minDeviation << brightening);
+    if (isSame || isDark || gain > maxGain || gain * maxGain < 1)
         return now;
     exposed.resize(now.size());
     for (size_t level = 0; level < now.size(); ++level)
@@ -109,10 +110,10 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
 
 //! Whether this frame shows another scene, or none: on the coarsest level, about as much changed as there is contrast,
 //! or there is hardly any.
-bool isCut(const std::vector<Mat>& greyBefore, const std::vector<Mat>& greyNow, const FramePrediction& p)
+bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const FramePrediction& p)
 {
     const int level = (int)greyNow.size() - 1, side = cell << level;
-    const Mat &before = greyBefore[level], &now = greyNow[level];
+    const Mat &before = last.grey[level], &now = greyNow[level];
     const int mean = cvRound(cv::mean(now)[0]);
     int64 known = 0, change = 0, contrast = 0;
     for (int y = 0; y < now.rows; ++y)
@@ -131,7 +132,7 @@ bool isCut(const std::vector<Mat>& greyBefore, const std::vector<Mat>& greyNow, 
             change += std::abs(now.ptr(y)[x] - before.ptr(at.y)[at.x]);
             contrast += std::abs(now.ptr(y)[x] - mean);
         }
-    return 100 * known < cutKnown * (int64)now.total() || contrast < (cutContrast * known << p.key.brightening) ||
+    return 100 * known < cutKnown * (int64)now.total() || contrast < (cutContrast * known << last.brightening) ||
            (change > cutNoise * known && 100 * change > cutShare * contrast);
 }
 
@@ -219,18 +220,19 @@ void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
 
 } // namespace
 
-void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
+void predictFrame(const Mat& left, const FrameKey& key, int brightening, const FrameMemory& last, VideoScratch& scratch,
                   FramePrediction& p)
 {
     p.verdict = FIRST;
     p.key = key;
+    p.brightening = brightening;
     p.motion = CameraMotion();
     if (std::min(left.cols, left.rows) < cell)
         return;
     buildGrey(left, scratch.halved, p.grey);
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
-    const std::vector<Mat>& exposed = exposedAsBefore(last.grey, p.grey, key.brightening, scratch.exposed);
+    const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, brightening, scratch.exposed);
     p.motion = findMotion(last, exposed, scratch.points);
     const std::vector<Mat>& grey = (int)scratch.points.size() < exposurePoints ? p.grey : exposed;
     if (p.motion.error > noMotion * cell)
@@ -241,7 +243,7 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
     p.backward = BackwardMotion(p.motion, key.minDisparity, (double)key.maxDisparity / subpixelScale);
     if (!p.motion.isStill)
         findWarp(p.backward, last.disparity, p.warp);
-    if (isCut(last.grey, grey, p))
+    if (isCut(last, grey, p))
     {
         p.motion = CameraMotion();
         return;

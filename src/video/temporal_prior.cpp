@@ -18,6 +18,9 @@ HDP_TUNABLE(int, maxPenalty, 6, "bits",
             "of disparities other than the predicted one: more keeps errors, less adds noise");
 HDP_TUNABLE(int, maxPenaltyOfMeans, 3, "bits", "the same over means, which vary less and contradict more clearly");
 
+//! Whether more than one pair has had a disparity
+bool isConfirmed(const FrameMemory& last, int x, int y) { return (last.detail.ptr(y)[x] & FrameMemory::countMask) > 1; }
+
 //! The disparity that the last frame predicts for a pixel, in pixels; false if there is none.
 bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, float& disparity)
 {
@@ -26,11 +29,13 @@ bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, fl
     const int sources = p.sources.ptr(i)[std::min(x / cell, p.sources.cols - 1)];
     disparity = unmoved;
     if (!(sources & MOVED_PLACE))
-        return sources != 0;
+        return sources != 0 && isConfirmed(last, x, y);
     const DisparityChange& change = p.backward.change();
     const Point from = p.warp(x, y);
     disparity = change.now(last.disparity.ptr<ushort>(from.y)[from.x] * unit, change.ofX * x + change.ofRow(y));
-    return !(sources & SAME_PLACE) || p.key.scale * std::abs(disparity - unmoved) <= TemporalSources::maxDistance;
+    const bool isClear =
+        !(sources & SAME_PLACE) || p.key.scale * std::abs(disparity - unmoved) <= TemporalSources::maxDistance;
+    return isClear && isConfirmed(last, from.x, from.y);
 }
 
 } // namespace
@@ -109,7 +114,8 @@ void predictWinners(const Mat& predicted, const CostVolume& volume, Mat& winners
                 const CostVolume::Candidates own = volume.of(y * volume.size.width + x);
                 const uchar *const costs = &volume.costs[own.start()], *const end = costs + own.interval.size();
                 const int lowest = known[x] < 0 ? own.interval.first + (int)(std::min_element(costs, end) - costs) : 0;
-                row[x] = (ushort)(known[x] < 0 ? subpixelScale * lowest : cvRound(subpixelScale * known[x]));
+                row[x] =
+                    (ushort)(known[x] < 0 ? subpixelScale * lowest / volume.steps : cvRound(subpixelScale * known[x]));
             }
         }
     });
