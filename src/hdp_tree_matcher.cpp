@@ -9,6 +9,7 @@
 #include "map/disparity_sigma.hpp"
 #include "pair/missing_pixels.hpp"
 #include "range_search.hpp"
+#include "video/temporal_confidence.hpp"
 #include "video/temporal_prior.hpp"
 
 #include <limits>
@@ -353,6 +354,8 @@ private:
                                       plan.isTop ? Mat() : layers_[plan.layer + 1].disparity };
         Mat confidence;
         disparityConfidence(maps, plan.numDisparities, scratch_[plan.layer].cost(plan.cost), confidence);
+        if (result_.plan.followsVideo)
+            trustStable(lastFrame_, confidence);
         return confidence;
     }
 

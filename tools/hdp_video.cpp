@@ -144,14 +144,20 @@ public:
         disparity_ = disparity;
     }
 
-    double d1() const { return meanOf(d1_); }
+    double d1() const { return meanScore(scores_).d1; }
+    //! Area under the sparsification curve of the confidence, over the least that there could be
+    double sparsification() const
+    {
+        const Score mean = meanScore(scores_);
+        return mean.sparsification / mean.leastSparsification;
+    }
     //! The worst of the frames beside another stream's, in points of D1
     double mostAbove(const Stream& other) const
     {
         double most = NO_SCORE;
-        for (size_t i = 0; i < d1_.size() && i < other.d1_.size(); ++i)
-            if (!(d1_[i] - other.d1_[i] <= most))
-                most = d1_[i] - other.d1_[i];
+        for (size_t i = 0; i < scores_.size() && i < other.scores_.size(); ++i)
+            if (!(scores_[i].d1 - other.scores_[i].d1 <= most))
+                most = scores_[i].d1 - other.scores_[i].d1;
         return most;
     }
     double flicker() const { return pixels_ > 0 ? change_ / pixels_ : NO_SCORE; }
@@ -165,7 +171,16 @@ private:
     void addErrors(const Mat& disparity, const Frame& frame)
     {
         if (frame.pair.protocol != Pair::NO_TRUTH)
-            d1_.push_back(scoreMap(disparity, frame.pair).d1);
+        {
+            Score score = scoreMap(disparity, frame.pair);
+            if (method_.isHdp)
+            {
+                Mat confidence;
+                matcher_.dynamicCast<HDPTreeMatcher>()->getConfidence(confidence);
+                findSparsification(wrongPixels(disparity, frame.pair), frame.pair.judged, confidence, score);
+            }
+            scores_.push_back(score);
+        }
         if (disparity_.empty() || frame.isStill.empty())
             return;
         const Mat isKnown = frame.isStill & knownPixels(disparity) & knownPixels(disparity_);
@@ -182,7 +197,7 @@ private:
     Ptr<StereoMatcher> matcher_;
     Mat disparity_;                  // of the last frame
     std::vector<double> seconds_;    // by frame
-    std::vector<double> d1_;         // of the frames that count
+    std::vector<Score> scores_;      // of the frames that count
     double change_ = 0;              // of the disparities from frame to frame, where the image stands still
     int64 pixels_ = 0, changed_ = 0; // how many these are, and those with a change above 1
 };
@@ -195,8 +210,8 @@ static Table toTable(const String& title, const std::vector<double>& noise, cons
 {
     Table table;
     table.title = title;
-    table.header = { "method",   "noise",        "D1",       "temporal", "flicker px",
-                     "temporal", "above 1 px %", "temporal", "ms",       "temporal" };
+    table.header = { "method",       "noise",    "D1",   "temporal", "flicker px", "temporal",
+                     "above 1 px %", "temporal", "area", "temporal", "ms",         "temporal" };
     for (size_t i = 0; i < streams.size(); ++i)
     {
         const Stream &single = streams[i][0], &temporal = streams[i][1];
@@ -208,6 +223,8 @@ static Table toTable(const String& title, const std::vector<double>& noise, cons
         table.addNumber(temporal.flicker());
         table.addNumber(single.changed(), "%.1f");
         table.addNumber(temporal.changed(), "%.1f");
+        table.addNumber(single.sparsification());
+        table.addNumber(temporal.sparsification());
         table.addNumber(single.milliseconds(), "%.1f");
         table.addNumber(temporal.milliseconds(), "%.1f");
     }

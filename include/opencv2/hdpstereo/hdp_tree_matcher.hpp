@@ -563,8 +563,8 @@ public:
 
     It is computed by this call; compute() does not take longer. It grows with the distance to the nearest step of the
     disparities and with how much the costs beside the winner stand out from its own. It falls with what the median
-    changed, with the difference from the layer above, and where a pixel is not visible in the right image. It is no
-    probability: it serves to sort or weight pixels, or to reject those below a threshold.
+    changed, with the difference from the layer above, and where a pixel is not visible in the right image. In a video
+    it falls where fewer frames have had the disparity than elsewhere. It is no probability: it serves to sort or weight pixels, or to reject those below a threshold.
     @param confidence Receives CV_8UC1 of the left image's size: from 0 to 255, larger is more reliable; 0 where a
     pixel has no data or a filter rejected it. Empty before the first compute() and after one that threw an exception.
      */
