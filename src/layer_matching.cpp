@@ -9,6 +9,7 @@
 #include "forest/disparity_prediction.hpp"
 #include "forest/tree_planes.hpp"
 #include "pair/disparity_ranges.hpp"
+#include "map/edge_vote.hpp"
 #include "map/left_right_check.hpp"
 #include "map/median_filter.hpp"
 #include "map/occlusion_filling.hpp"
@@ -313,6 +314,22 @@ private:
             moveIntoIntervals(intervals(), disparity);
     }
 
+    //! Pixels without data have no vote, and none beside them changes.
+    void voteAtEdges()
+    {
+        swap(result_.disparity, own_.filtered);
+        const PairMasks& masks = in_.images.masks;
+        if (masks.isEmpty())
+            return hdp::voteAtEdges(in_.images.left, own_.filtered, result_.disparity);
+        const Mat hasData = pixelsWithData(masks.left);
+        in_.images.left.copyTo(own_.votingLevels);
+        own_.votingLevels.setTo(Scalar(USHRT_MAX), hasData == 0);
+        hdp::voteAtEdges(own_.votingLevels, own_.filtered, result_.disparity);
+        Mat inside;
+        erode(hasData, inside, Mat());
+        own_.filtered.copyTo(result_.disparity, inside == 0);
+    }
+
     void filterMap()
     {
         if (plan_.medianSize == 0)
@@ -325,6 +342,8 @@ private:
         }
         if (plan_.restoresThinStructures)
             restoreThinStructures(result_.winners, result_.disparity);
+        if (plan_.votesAtEdges)
+            voteAtEdges();
     }
 
     const LayerInput& in_;

@@ -29,7 +29,7 @@ inline std::string textOf(const hdp::LayerPlan& p)
     text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
          << p.fillsOcclusions << " intervals " << p.hasIntervals << " joins prior " << p.joinsPrior
          << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " x " << p.medianPasses
-         << " thin structures " << p.restoresThinStructures << "\n";
+         << " thin structures " << p.restoresThinStructures << " votes " << p.votesAtEdges << "\n";
     return text.str();
 }
 

@@ -233,6 +233,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
     plan.medianPasses = plan.medianSize > 0 ? p.disparityMedianPasses : 1;
     plan.restoresThinStructures = plan.isFinest && !predictsIntervals(p) && plan.medianSize > 0;
+    plan.votesAtEdges = layer == 0 && plan.cost.isCensus && plan.medianSize > 0;
     return plan;
 }
 

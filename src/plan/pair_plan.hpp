@@ -93,6 +93,7 @@ struct LayerPlan
     bool joinsLastFrame = false;
     int medianSize = 0, medianPasses = 1; // of the median over the winners; size 0: none
     bool restoresThinStructures = false;
+    bool votesAtEdges = false;
 
     //! Candidates per pixel of disparity
     int steps() const { return seesBelow ? 2 : 1; }

@@ -131,7 +131,7 @@ public:
     void find(const Range& blockRows)
     {
         const Range rows(blockRows.start * side, std::min(blockRows.end * side, height_));
-        const Mat kernel = Mat::ones(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U);
+        const Mat kernel(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U, Scalar(1));
         for (int map = 0; map < 2; ++map)
         {
             Mat minima = buffers_.min[map].rowRange(rows), maxima = buffers_.max[map].rowRange(rows);

@@ -1,0 +1,66 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "edge_vote.hpp"
+
+#include "edge_vote.simd.hpp"
+#include "map/edge_vote.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
+#include "../base/disparity_units.hpp"
+#include "../base/grey_levels.hpp"
+#include "../base/tunable.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+HDP_TUNABLE(int, likeness, 36, "grey levels",
+            "from which on votes count nothing: less is noise, more is another surface");
+HDP_TUNABLE(int, minStep, 2, "pixels", "of disparities at the border of two surfaces: less is the slope of one");
+HDP_TUNABLE(int, reach, 1, "pixels", "beyond both ends of a step, on the same surfaces: more are third ones");
+HDP_TUNABLE(int, nearest, 9, "votes", "of the nearest pixels, one less per row or column: more blurs corners");
+
+HDP_DISPATCH(voteRow)
+
+} // namespace
+
+void voteAtEdges(const Mat& grey, const Mat& disparity, Mat& voted)
+{
+    const int width = disparity.cols, lastRow = disparity.rows - 1;
+    if (width < VoteRows::columns)
+        return disparity.copyTo(voted);
+    voted.create(disparity.size(), CV_16U);
+    const auto nearness = [](int distance) { return (ushort)std::max(nearest - std::abs(distance), 1); };
+    ushort columnNearness[2 * VoteRows::columns + 1];
+    for (int k = -VoteRows::columns; k <= VoteRows::columns; ++k)
+        columnNearness[k + VoteRows::columns] = nearness(k);
+    VoteRule rule = { (ushort)(likeness * greyScale),
+                      (ushort)(minStep * subpixelScale),
+                      (ushort)(reach * subpixelScale),
+                      {},
+                      columnNearness + VoteRows::columns };
+    for (int r = 0; r < VoteRows::rows; ++r)
+        rule.rowNearness[r] = nearness(VoteRows::rowStep * (r - VoteRows::rows / 2));
+    parallel_for_(Range(0, disparity.rows), [&](const Range& range) {
+        std::vector<ushort> near(width + 2), far(width + 2);
+        VoteRows rows;
+        rows.width = width;
+        for (int y = range.start; y < range.end; ++y)
+        {
+            for (int r = 0; r < VoteRows::rows; ++r)
+            {
+                const int row = clamped(y + VoteRows::rowStep * (r - VoteRows::rows / 2), 0, lastRow);
+                rows.grey[r] = grey.ptr<ushort>(row);
+                rows.disparity[r] = disparity.ptr<ushort>(row);
+            }
+            rows.farAbove = disparity.ptr<ushort>(std::max(y - VoteRows::barWidth, 0));
+            rows.farBelow = disparity.ptr<ushort>(std::min(y + VoteRows::barWidth, lastRow));
+            rows.above = disparity.ptr<ushort>(std::max(y - 1, 0));
+            rows.below = disparity.ptr<ushort>(std::min(y + 1, lastRow));
+            dispatched::voteRow(rows, rule, near.data(), far.data(), voted.ptr<ushort>(y));
+        }
+    });
+}
+
+}}} // namespace cv::stereo::hdp
