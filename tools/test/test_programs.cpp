@@ -537,6 +537,58 @@ TEST(HDPStereo_Programs, batch_of_folders)
 #endif
 }
 
+//! One sentence, before anything is matched or written
+TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String a = folder.path("dataset/a"), none = folder.path("none"), out = folder.path("out"),
+                 left = a + "/left.png", right = a + "/right.png", pair = " " + left + " " + right + " ",
+                 batch = " --batch " + a + " " + a + " " + out;
+    folder.writeText("words.yml", "no: [ calibration");
+    const String words = folder.path("words.yml");
+    const struct
+    {
+        String arguments, error;
+    } cases[] = {
+        { " --batch " + none + " " + a + " " + out, "there is no folder '" + none + "'" },
+        { " --batch " + a + " " + none + " " + out, "there is no folder '" + none + "'" },
+        { " --batch " + none + " " + out, "there is no file or folder '" + none + "'" },
+        { " --batch " + left + " " + out, "'" + left + "': line 1 is not a left image, a right one and a name" },
+        { " --batch " + a + " " + a + " " + left, "cannot make the folder '" + left + "'" },
+        { batch + " --calibration=" + none, "there is no file '" + none + "'" },
+        { batch + " --calibration=" + left + " --calibration2=" + none, "there is no file '" + none + "'" },
+        { batch + " --findings=" + none, "filename: '" + none + "' does not hold a pair model" },
+        { batch + " --left-mask=" + none, "cannot read the image '" + none + "'" },
+        { batch + " --prior=" + none, "cannot read the image '" + none + "'" },
+        { " " + none + " " + right, "cannot read the image '" + none + "'" },
+        { " " + left + " " + none, "cannot read the image '" + none + "'" },
+        { pair + "--calibration=" + a, "there is no file '" + a + "'" },
+        { pair + "--findings=" + a, "filename: '" + a + "' does not hold a pair model" },
+        { pair + "--findings=" + words, "filename: '" + words + "' does not hold a pair model" },
+        { pair + "--largest=" + none, "cannot read the image '" + none + "'" },
+        { pair + "--truth=" + none, "cannot read the image '" + none + "'" },
+        { pair + "--point-cloud=x.ply --reprojection=" + none, "there is no file '" + none + "'" },
+        { pair + "--point-cloud=x.ply --reprojection=" + words, "'" + words + "' has no matrix Q" },
+        { pair + none + "/map.png", "cannot write '" + none + "/map.png': there is no folder '" + none + "'" },
+        { pair + "--picture=map.xyz", "cannot write 'map.xyz': no image format has this extension" },
+        { pair + "--output=" + out, "cannot write '" + out + "': no image format has this extension" },
+        { pair + "--save-findings=" + none + "/rig.yml", "cannot write '" + none + "/rig.yml': there is no folder" },
+        { " --tiles " + none + " " + right + " " + out, "cannot read the image '" + none + "'" },
+        { " --tiles" + pair + out + ".tif --findings=" + none, "filename: '" + none + "' does not hold a pair model" },
+        { " --tiles" + pair + out + ".tif --calibration=" + none, "--calibration does not go with --tiles" },
+    };
+    for (const auto& c : cases)
+    {
+        const Execution result = run(folder, "hdpstereo --num-disparities=32" + c.arguments);
+        EXPECT_EQ(1, result.status) << c.arguments;
+        EXPECT_EQ("", result.output) << c.arguments;
+        EXPECT_EQ(0u, result.errors.find("error: " + c.error)) << c.arguments << "\n" << result.errors;
+        EXPECT_EQ(firstLine(result.errors) + "\n", result.errors);
+        EXPECT_FALSE(fs::exists(out)) << c.arguments;
+    }
+}
+
 TEST(HDPStereo_Programs, stereo_match_takes_masks)
 {
     const DatasetFolder folder;
