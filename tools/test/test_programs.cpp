@@ -853,7 +853,20 @@ TEST(HDPStereo_Programs, camera)
         }
         EXPECT_EQ(0u, run(folder, command + " --frames=1").output.find("1 frames, ")) << "type " << type;
     }
-    EXPECT_EQ(1, run(folder, program + "no/such/video.avi --no-gui").status);
+    const std::pair<String, String> wrong[] = {
+        { " --no-gui", "a source is needed" },
+        { "no/such/video.avi --no-gui", "cannot open the source no/such/video.avi" },
+        { folder.path("lefts") + " no/such/folder --no-gui", "cannot open the source no/such/folder" },
+        { folder.path("both.png") + " --no-gui -c=no/such.yml", "cannot read the calibration 'no/such.yml'" },
+        { folder.path("both.png") + " --no-gui --num-disparities=many", "--scale must be from 0.05 to 1, the numbers" },
+    };
+    for (const auto& call : wrong)
+    {
+        const Execution bad = run(folder, program + call.first);
+        EXPECT_EQ(1, bad.status) << call.first;
+        EXPECT_EQ(0u, bad.errors.find("error: " + call.second)) << bad.errors;
+        EXPECT_EQ(firstLine(bad.errors) + "\n", bad.errors);
+    }
 }
 
 }} // namespace opencv_test
