@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // From two cameras to depth: raw pairs of cameras, videos, folders or files, and their calibration, are rectified by
-// cv::stereo::StereoRig and matched by cv::stereo::HDPTreeMatcher. Shows the left image beside its disparities, the frames
-// per second, and how much the disparities flicker: the last frame predicts the next, unless the key t turns that off.
+// cv::stereo::StereoRig and matched by cv::stereo::HDPTreeMatcher. Shows the left image beside its disparities, the
+// frames per second, and how much disparities flicker: the last frame predicts the next, unless the key t turns that off.
 // Writes depth and coloured points, and tells how the rig has drifted since its calibration.
 
 #include "stereo_files.hpp"
@@ -21,8 +21,7 @@ using namespace hdp_samples;
 
 static const char* const keys =
     "{help h ?        |      | print this and exit }"
-    "{@left           |      | left images: file, folder, video, numbers (left%02d.jpg), address or number of a camera "
-    "}"
+    "{@left           |      | left images: file, folder, video, pictures (left%02d.jpg), address, number of a camera }"
     "{@right          |      | right images; without it, the left source has both side by side }"
     "{right-first     |      | side by side: the right image is the left half }"
     "{calibration c   |      | of both cameras, or of the left one: OpenCV's intrinsics.yml, ROS's left.yaml, Kalibr's "
