@@ -236,6 +236,14 @@ TEST(HDPStereo_Programs, evaluate)
     EXPECT_NE(String::npos, page.find("data:image/jpeg"));
     EXPECT_EQ(Size(160, 120), cv::imread(folder.path("maps/fast/dataset/b.png"), IMREAD_UNCHANGED).size());
 
+    const Execution confidence =
+        run(folder, "hdp_evaluate --num-disparities=32 --methods=fast --confidence " + folder.path("dataset"));
+    EXPECT_EQ(0, confidence.status) << confidence.errors;
+    for (const char* row : { "| confidence >= | dataset: pixels | dataset: wrong |", "\n| 0 | 100.0 | ", "\n| 200 | " })
+        EXPECT_NE(String::npos, confidence.output.find(row)) << confidence.output;
+    EXPECT_EQ("error: --confidence: bm knows no errors\n",
+              run(folder, "hdp_evaluate --methods=bm --confidence " + folder.path("dataset")).errors);
+
     // A pair that cannot be read is named and left out.
     std::remove(folder.path("dataset/b/right.png").c_str());
     const Execution two = run(folder, common);
