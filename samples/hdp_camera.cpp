@@ -3,36 +3,25 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // From two cameras to depth: raw pairs of cameras, videos, folders or files, and their calibration, are rectified by
-// cv::stereo::StereoRig and matched by cv::stereo::HDPTreeMatcher. Shows the left image beside its disparities, the frames
-// per second, and how much the disparities flicker: the last frame predicts the next, unless the key t turns that off.
+// cv::stereo::StereoRig and matched by cv::stereo::HDPTreeMatcher. Shows the left image beside its disparities, the
+// frames per second, and how much disparities flicker: the last frame predicts the next, unless the key t turns that off.
 // Writes depth and coloured points, and tells how the rig has drifted since its calibration.
 
-#include <cstdlib>
-#include <fstream>
+#include "stereo_files.hpp"
+#include "stereo_source.hpp"
+#include "stereo_view.hpp"
+
 #include <iostream>
 
-#include "opencv2/core/utility.hpp"
-#include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/core/utils/logger.hpp"
-#include "opencv2/hdpstereo.hpp"
-#include "opencv2/imgcodecs.hpp"
-#include "opencv2/imgproc.hpp"
-#include "opencv2/opencv_modules.hpp"
-#include "opencv2/videoio.hpp"
-#ifdef HAVE_OPENCV_HIGHGUI
-#include "opencv2/highgui.hpp"
-#endif
 
 using namespace cv;
-using cv::stereo::HDPTreeMatcher;
-using cv::stereo::RigDrift;
-using cv::stereo::StereoRig;
+using namespace cv::stereo;
+using namespace hdp_samples;
 
 static const char* const keys =
     "{help h ?        |      | print this and exit }"
-    "{@left           |      | left images: a file, a folder, a video, pictures by number (left%02d.jpg), an address, "
-    "or a "
-    "camera's number }"
+    "{@left           |      | left images: file, folder, video, pictures (left%02d.jpg), address, number of a camera }"
     "{@right          |      | right images; without it, the left source has both side by side }"
     "{right-first     |      | side by side: the right image is the left half }"
     "{calibration c   |      | of both cameras, or of the left one: OpenCV's intrinsics.yml, ROS's left.yaml, Kalibr's "
@@ -48,354 +37,65 @@ static const char* const keys =
     "{single-frames   |      | without temporal prediction; the key t turns it on and off }"
     "{watch           |      | print every 20 frames how the right camera has turned since the calibration }"
     "{frames          |      | stop after this many; by default at the end of the source, or at Esc or q }"
-    "{results         |      | a folder: of each frame the rectified pair, disparities (.pfm), depth (.png in "
-    "millimetres, "
-    ".pfm in metres) and points (.ply) }"
+    "{results         |      | folder: pairs, disparities, depth (.png in millimetres, .pfm in metres), points }"
     "{output          |      | what is shown: a video (FILE.avi, Motion JPEG) or pictures (FILE%04d.png) }"
     "{no-gui          |      | no window }";
 
 static void fail(const String& message) { CV_Error(Error::StsError, message); }
 
-//! Images one after the other: of a file, a folder, or what cv::VideoCapture knows
-class ImageSource
-{
-public:
-    void open(const String& name)
-    {
-        if (utils::fs::isDirectory(name))
-            glob(utils::fs::join(name, "*"), files_); // in the order of their names
-        else if (haveImageReader(name))
-            files_.push_back(name);
-        else
-        {
-            const bool isCamera = !name.empty() && name.find_first_not_of("0123456789") == String::npos;
-            if (isCamera ? !capture_.open(std::atoi(name.c_str())) : !capture_.open(name))
-                fail("cannot open the " + String(isCamera ? "camera " : "source ") + name);
-        }
-    }
-
-    bool grab() { return capture_.isOpened() ? capture_.grab() : next_ < files_.size(); }
-
-    bool retrieve(Mat& image)
-    {
-        if (capture_.isOpened())
-            return capture_.retrieve(image);
-        image = imread(files_[next_], IMREAD_ANYCOLOR | IMREAD_ANYDEPTH);
-        if (image.empty())
-            fail("cannot read the image '" + files_[next_] + "'");
-        next_++;
-        return true;
-    }
-
-    double fps() const
-    {
-        const double fps = capture_.get(CAP_PROP_FPS);
-        return fps >= 1 && fps <= 1000 ? fps : 25; // cameras and pictures may not know
-    }
-
-private:
-    VideoCapture capture_;
-    std::vector<String> files_;
-    size_t next_ = 0;
-};
-
-//! Where the pairs come from
-class StereoSource
-{
-public:
-    explicit StereoSource(const CommandLineParser& parser)
-        : sideBySide_(!parser.has("@right")), rightFirst_(parser.has("right-first"))
-    {
-        left_.open(parser.get<String>("@left"));
-        if (!sideBySide_)
-            right_.open(parser.get<String>("@right"));
-    }
-
-    //! Returns false at the end.
-    bool read(Mat& left, Mat& right)
-    {
-        // Both are grabbed before one is decoded, so that two cameras see the same moment.
-        if (!left_.grab() || (!sideBySide_ && !right_.grab()) || !left_.retrieve(frame_))
-            return false;
-        if (!sideBySide_)
-        {
-            left = frame_;
-            return right_.retrieve(right);
-        }
-        const int half = frame_.cols / 2;
-        left = frame_.colRange(0, half);
-        right = frame_.colRange(half, 2 * half);
-        if (rightFirst_)
-            swap(left, right);
-        return true;
-    }
-
-    double fps() const { return left_.fps(); }
-
-private:
-    const bool sideBySide_, rightFirst_;
-    ImageSource left_, right_;
-    Mat frame_;
-};
-
-//! Where the pictures go: a window, a file, or neither
-class Viewer
-{
-public:
-    explicit Viewer(const CommandLineParser& parser)
-        : path_(parser.get<String>("output")), hasWindow_(!parser.has("no-gui") && haveDisplay())
-    {
-    }
-
-    //! Returns the key that was pressed; -1 if there is none.
-    int show(const Mat& picture, double fps)
-    {
-        if (!path_.empty() && !writer_.isOpened())
-        {
-            const bool isSequence = path_.find('%') != String::npos;
-            const int codec = isSequence ? 0 : VideoWriter::fourcc('M', 'J', 'P', 'G');
-            if (!writer_.open(path_, isSequence ? CAP_IMAGES : CAP_ANY, codec, isSequence ? 0 : fps, picture.size()))
-                fail("cannot write '" + path_ + "'");
-        }
-        if (!path_.empty())
-            writer_.write(picture);
-#ifdef HAVE_OPENCV_HIGHGUI
-        if (hasWindow_)
-        {
-            imshow("hdp_camera", picture);
-            return waitKey(1);
-        }
-#endif
-        return -1;
-    }
-
-private:
-    //! A window without a display may end the program, not just throw.
-    static bool haveDisplay()
-    {
-#if defined HAVE_OPENCV_HIGHGUI && defined __unix__ && !defined __APPLE__
-        return std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY") || std::getenv("QT_QPA_PLATFORM");
-#else
-        return true;
-#endif
-    }
-
-    const String path_;
-    bool hasWindow_;
-    VideoWriter writer_;
-};
-
 static int presetOf(const String& name)
 {
     if (name != "ultrafast" && name != "fast" && name != "quality")
         fail("--preset=" + name + ": neither ultrafast nor fast, quality");
-    return name == "fast"      ? HDPTreeMatcher::PRESET_FAST
-           : name == "quality" ? HDPTreeMatcher::PRESET_QUALITY
-                               : HDPTreeMatcher::PRESET_ULTRAFAST;
+    return name == "ultrafast" ? HDPTreeMatcher::PRESET_ULTRAFAST
+           : name == "fast"    ? HDPTreeMatcher::PRESET_FAST
+                               : HDPTreeMatcher::PRESET_QUALITY;
 }
 
-//! An image as it is shown, in colors of 8 bit. Cameras and pictures may have grey levels, also in 16 bit.
-static Mat colorsOf(const Mat& image)
+//! The calibrated cameras; none without a calibration
+static Ptr<StereoRig> openRig(const CommandLineParser& parser, Size imageSize, Size size)
 {
-    Mat colors = image;
-    if (image.depth() == CV_16U)
-        normalize(image, colors, 0, 255, NORM_MINMAX, CV_8U);
-    if (colors.channels() != 3)
-        cvtColor(colors, colors, colors.channels() == 1 ? COLOR_GRAY2BGR : COLOR_BGRA2BGR);
-    return colors;
+    if (!parser.has("calibration"))
+        return Ptr<StereoRig>();
+    const StereoCalibration calibration = readStereoCalibration(
+        parser.get<String>("calibration"), parser.get<String>("calibration2"), imageSize, parser.get<double>("unit"));
+    return StereoRig::create(calibration, parser.get<double>("field-of-view"), size);
 }
 
-//! The left image beside its disparities, from blue (far) to orange (near)
-static Mat drawPicture(const Mat& left, const Mat& disparity, const HDPTreeMatcher& matcher,
-                       const std::vector<String>& lines)
+static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width, const Ptr<StereoRig>& rig)
 {
-    const HDPTreeMatcher::Findings findings = matcher.getFindings();
-    const int smallest = findings.minDisparity, range = findings.numDisparities;
-    Mat levels, colors, picture;
-    disparity.convertTo(levels, CV_8U, 150. / range, 20 - 150. / range * smallest);
-    applyColorMap(levels, colors, COLORMAP_TURBO);
-    colors.setTo(Scalar::all(0), disparity < smallest);
-    hconcat(colorsOf(left), colors, picture);
-    const double size = std::max(picture.cols / 1280., 0.4);
-    for (size_t i = 0; i < lines.size(); i++)
+    const int count = parser.has("num-disparities") ? parser.get<int>("num-disparities") : (width / 5 + 15) / 16 * 16;
+    const Ptr<HDPTreeMatcher> matcher =
+        HDPTreeMatcher::create(parser.get<int>("min-disparity"), count, presetOf(parser.get<String>("preset")));
+    matcher->setDisparityDepth(CV_32F); // in pixels
+    if (rig)
     {
-        const Point origin(cvRound(12 * size), cvRound(30 * size * (i + 1)));
-        for (const bool isOutline : { true, false })
-            putText(picture, lines[i], origin, FONT_HERSHEY_SIMPLEX, size, Scalar::all(isOutline ? 0 : 255),
-                    cvRound(isOutline ? 4 * size + 1 : size), LINE_AA);
+        Mat leftMask, rightMask; // what no raw pixel reaches has no disparity
+        rig->getMasks(leftMask, rightMask);
+        matcher->setMasks(leftMask, rightMask);
     }
-    return picture;
-}
-
-//! What is measured without temporal prediction, or with it
-class Statistics
-{
-public:
-    void match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, Mat& disparity)
-    {
-        timer_.start();
-        matcher.compute(left, right, disparity);
-        timer_.stop();
-        Mat grey;
-        cvtColor(colorsOf(left), grey, COLOR_BGR2GRAY);
-        GaussianBlur(grey, grey, Size(), 2);
-        if (!lastGrey_.empty())
-            addFlicker(grey, disparity);
-        lastGrey_ = grey;
-        lastDisparity_ = disparity.clone();
-    }
-
-    //! The next frame does not follow the last one.
-    void interrupt() { lastGrey_.release(); }
-
-    String text() const
-    {
-        const String time = timer_.getCounter() > 0 ? format("%.1f ms", timer_.getAvgTimeMilli()) : String("-");
-        return frames_ > 0 ? time + format(", flicker %.2f px", flicker_) : time;
-    }
-
-private:
-    //! How much disparities change from frame to frame where the image stands still: a mean of the last frames
-    void addFlicker(const Mat& grey, const Mat& disparity)
-    {
-        const double stillLevels = 3;
-        const int meanOf = 20;
-        Mat change, isStill;
-        absdiff(grey, lastGrey_, change);
-        isStill = change < stillLevels;
-        absdiff(disparity, lastDisparity_, change);
-        frames_ = std::min(frames_ + 1, meanOf);
-        flicker_ += (mean(change, isStill)[0] - flicker_) / frames_;
-    }
-
-    TickMeter timer_;
-    Mat lastGrey_, lastDisparity_;
-    double flicker_ = 0;
-    int frames_ = 0;
-};
-
-//! A binary .ply file of the points that have a depth
-static void writePoints(const String& path, const Mat& disparity, const Mat& depth, const Mat& colors, const Mat& Q)
-{
-    Mat points;
-    reprojectImageTo3D(disparity, points, Q);
-    std::ofstream file(path.c_str(), std::ios::binary);
-    file << "ply\nformat binary_little_endian 1.0\nelement vertex " << countNonZero(depth == depth)
-         << "\nproperty float x\nproperty float y\nproperty float z\n"
-            "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
-    for (int y = 0; y < depth.rows; y++)
-        for (int x = 0; x < depth.cols; x++)
-            if (!cvIsNaN(depth.at<float>(y, x)))
-            {
-                const Vec3b bgr = colors.at<Vec3b>(y, x), rgb(bgr[2], bgr[1], bgr[0]);
-                file.write((const char*)points.ptr(y, x), sizeof(Vec3f));
-                file.write((const char*)rgb.val, sizeof(rgb.val));
-            }
-    if (!file.flush())
-        fail("cannot write '" + path + "'");
-}
-
-static void writeImage(const String& path, const Mat& image)
-{
-    if (!imwrite(path, image))
-        fail("cannot write '" + path + "'");
-}
-
-//! The calibrated cameras; without a calibration, images are only resized, and have no depth.
-class Cameras
-{
-public:
-    Cameras(const CommandLineParser& parser, Size imageSize)
-        : scale_(parser.get<double>("scale")), results_(parser.get<String>("results"))
-    {
-        if (!parser.has("calibration"))
-            return;
-        const Size size(cvRound(imageSize.width * scale_), cvRound(imageSize.height * scale_));
-        rig_ = StereoRig::create(cv::stereo::readStereoCalibration(parser.get<String>("calibration"),
-                                                                   parser.get<String>("calibration2"), imageSize,
-                                                                   parser.get<double>("unit")),
-                                 parser.get<double>("field-of-view"), size);
-        rig_->getRectification(R1_, R2_, P1_, P2_, Q_);
-        if (parser.has("watch"))
-            drift_ = RigDrift::create(P2_, size);
-    }
-
-    void rectify(Mat& left, Mat& right) const
-    {
-        if (rig_)
-            return rig_->rectify(left, right, left, right);
-        resize(left, left, Size(), scale_, scale_, INTER_AREA);
-        resize(right, right, Size(), scale_, scale_, INTER_AREA);
-    }
-
-    //! What no raw pixel reaches has no disparity.
-    void setMasks(HDPTreeMatcher& matcher) const
-    {
-        Mat masks[2];
-        if (rig_)
-            rig_->getMasks(masks[0], masks[1]);
-        matcher.setMasks(masks[0], masks[1]);
-    }
-
-    //! --watch: takes a frame into account.
-    void watch(const HDPTreeMatcher& matcher, int frame)
-    {
-        if (!drift_)
-            return;
-        drift_->add(matcher.getFindings().rows);
-        if (frame % 20 == 0)
-            printDrift();
-    }
-
-    void printDrift() const
-    {
-        if (!drift_)
-            return;
-        std::vector<double> values, deviations;
-        drift_->getEstimate(values, deviations);
-        std::cout << "right camera after " << drift_->getFrames() << " frames:";
-        const char* const names[] = { " pitch", ", yaw", ", roll", ", focal length" };
-        for (int i = 0; i < 4; i++)
-            std::cout << format("%s %+.3f +- %.3f %s", names[i], values[i], deviations[i], i < 3 ? "degrees" : "%");
-        std::cout << std::endl;
-    }
-
-    //! --results
-    void write(int frame, const HDPTreeMatcher& matcher, const Mat& left, const Mat& right, const Mat& disparity) const
-    {
-        if (results_.empty())
-            return;
-        const String base = utils::fs::join(results_, format("%06d_", frame));
-        writeImage(base + "left.png", left);
-        writeImage(base + "right.png", right);
-        writeImage(base + "disparity.pfm", disparity);
-        if (!rig_)
-            return;
-        Mat metres, millimetres;
-        const int smallest = matcher.getFindings().minDisparity;
-        rig_->computeDepth(disparity, metres, CV_32F, smallest);
-        rig_->computeDepth(disparity, millimetres, CV_16U, smallest);
-        writeImage(base + "depth.pfm", metres);
-        writeImage(base + "depth.png", millimetres);
-        writePoints(base + "points.ply", disparity, metres, colorsOf(left), Q_);
-    }
-
-private:
-    const double scale_;
-    const String results_;
-    Ptr<StereoRig> rig_;
-    Ptr<RigDrift> drift_;
-    Mat R1_, R2_, P1_, P2_, Q_;
-};
-
-static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
-{
-    const int numDisparities =
-        parser.has("num-disparities") ? parser.get<int>("num-disparities") : std::max((width / 5 + 15) / 16 * 16, 16);
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(parser.get<int>("min-disparity"), numDisparities,
-                                                               presetOf(parser.get<String>("preset")));
-    matcher->setDisparityDepth(CV_32F);
     return matcher;
+}
+
+//! Without a calibration, images are rectified, and only resized.
+static void rectify(const Ptr<StereoRig>& rig, Size size, Mat& left, Mat& right)
+{
+    if (rig)
+        return rig->rectify(left, right, left, right);
+    resize(left, left, size, 0, 0, INTER_AREA);
+    resize(right, right, size, 0, 0, INTER_AREA);
+}
+
+//! --watch
+static void printDrift(const RigDrift& drift)
+{
+    std::vector<double> values, deviations;
+    drift.getEstimate(values, deviations);
+    std::cout << "right camera after " << drift.getFrames() << " frames:";
+    const char* const names[] = { " pitch", ", yaw", ", roll", ", focal length" };
+    for (int i = 0; i < 4; i++)
+        std::cout << format("%s %+.3f +- %.3f %s", names[i], values[i], deviations[i], i < 3 ? "degrees" : "%");
+    std::cout << std::endl;
 }
 
 static void run(const CommandLineParser& parser)
@@ -404,40 +104,62 @@ static void run(const CommandLineParser& parser)
     const int maxFrames = parser.has("frames") ? parser.get<int>("frames") : INT_MAX;
     const double scale = parser.get<double>("scale");
     const String results = parser.get<String>("results");
+    for (const char* number : { "min-disparity", "num-disparities" })
+        if (parser.has(number))
+            parser.get<int>(number); // check() tells whether it is one
+    if (!parser.has("@left"))
+        fail("a source is needed: a file, a folder, a video or a camera; --help says more");
     if (!parser.check() || !(scale >= 0.05 && scale <= 1))
-        fail("--scale must be from 0.05 to 1, --frames and --min-disparity whole numbers");
+        fail("--scale must be from 0.05 to 1, the numbers of frames and disparities whole ones");
     if (!results.empty() && !utils::fs::createDirectories(results))
         fail("cannot make the folder '" + results + "'");
-    Viewer viewer(parser);
-    StereoSource source(parser);
+    Viewer viewer(parser.get<String>("output"), !parser.has("no-gui"));
+    StereoSource source(parser.get<String>("@left"), parser.get<String>("@right"), parser.has("right-first"));
 
+    Size size; // of the images that are matched
+    Ptr<StereoRig> rig;
+    Ptr<RigDrift> drift;
     Ptr<HDPTreeMatcher> matcher; // kept for all frames, and with it its buffers and what it knows of the last frame
-    Ptr<Cameras> cameras;
     bool isTemporal = !parser.has("single-frames");
-    Statistics statistics[2]; // without temporal prediction, and with it
+    FrameStatistics statistics[2]; // without temporal prediction, and with it
     Mat left, right, disparity;
     TickMeter all;
     all.start();
     int frames = 0, key = -1;
     for (; key != 27 && key != 'q' && frames < maxFrames && source.read(left, right); frames++)
     {
-        if (!cameras)
-            cameras = makePtr<Cameras>(parser, left.size());
-        cameras->rectify(left, right);
         if (!matcher)
         {
-            matcher = createMatcher(parser, left.cols);
-            cameras->setMasks(*matcher);
+            size = Size(cvRound(left.cols * scale), cvRound(left.rows * scale));
+            rig = openRig(parser, left.size(), size);
+            matcher = createMatcher(parser, size.width, rig);
+            if (rig && parser.has("watch"))
+            {
+                Mat R1, R2, P1, P2, Q;
+                rig->getRectification(R1, R2, P1, P2, Q);
+                drift = RigDrift::create(P2, size);
+            }
         }
+        rectify(rig, size, left, right);
         matcher->setUseTemporalPrediction(isTemporal);
-        statistics[isTemporal].match(*matcher, left, right, disparity);
-        cameras->watch(*matcher, frames + 1);
-        cameras->write(frames, *matcher, left, right, disparity);
+        statistics[isTemporal].start();
+        matcher->compute(left, right, disparity);
+        statistics[isTemporal].stop(left, disparity);
+        const HDPTreeMatcher::Findings findings = matcher->getFindings();
+        if (drift)
+        {
+            drift->add(findings.rows);
+            if ((frames + 1) % 20 == 0)
+                printDrift(*drift);
+        }
+        if (!results.empty())
+            writeResults(utils::fs::join(results, format("%06d_", frames)), rig, left, right, disparity,
+                         findings.minDisparity);
         all.stop(); // and on, for the time until now
         all.start();
         const std::vector<String> lines = { format("%.1f frames/s", (frames + 1) / all.getTimeSec()),
                                             "single: " + statistics[0].text(), "temporal: " + statistics[1].text() };
-        key = viewer.show(drawPicture(left, disparity, *matcher, lines), source.fps());
+        key = viewer.show(drawPicture(left, disparity, findings, lines), source.fps());
         if (key == 't')
         {
             isTemporal = !isTemporal;
@@ -447,7 +169,8 @@ static void run(const CommandLineParser& parser)
     all.stop();
     if (frames == 0)
         fail("the source has no frame");
-    cameras->printDrift();
+    if (drift)
+        printDrift(*drift);
     std::cout << format("%d frames, %.1f frames/s, matching ", frames, frames / all.getTimeSec())
               << statistics[isTemporal].text() << std::endl;
     if (!std::cout)

@@ -8,6 +8,8 @@
 #include "../src/pair/image_levels.hpp"
 #include "../src/plan/pair_plan.hpp"
 
+#include <fstream>
+
 namespace opencv_test { namespace {
 
 typedef HDPTreeMatcher M;
@@ -308,6 +310,13 @@ TEST(HDPStereo_PairModel, files)
     }
     expectRejected([] { PairModel::load("no such file.yml"); }, "no such file.yml");
     expectRejected([&] { model.save("no such folder/model.yml"); }, "no such folder");
+    const TemporaryFile other(".yml");
+    for (const char* text :
+         { "pairModel: [ 1", "%YAML:1.0\n---\nother: 1\n", "%YAML:1.0\n---\npairModel: { width: 1 }\n" })
+    {
+        std::ofstream(other.name.c_str()) << text;
+        expectRejected([&] { PairModel::load(other.name); }, other.name);
+    }
 
     // Every field is needed.
     const std::string text = textOf(model);

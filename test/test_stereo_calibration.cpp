@@ -139,21 +139,52 @@ TEST_P(HDPStereo_CalibrationFiles, namesEachNumberThatIsNone)
             }
 }
 
+//! A rig that cannot be is told by the file and the field that say so.
 TEST_P(HDPStereo_CalibrationFiles, refusesImpossibleRigs)
 {
-    const auto expect = [this](const std::function<void(StereoCalibration&)>& change, const std::string& text) {
+    const auto writer = GetParam().write;
+    const auto expect =
+        [&](const std::function<void(StereoCalibration&)>& change, const std::string& name, const std::string& text) {
         StereoCalibration c = calibrationOf(GetParam());
         change(c);
-        const Files files = GetParam().write(c);
-        expectRefused(files, GetParam().size, files[0].name, text);
+        const Files files = writer(c);
+        SCOPED_TRACE(text);
+        expectRejected([&] { read(files, GetParam().size); }, name + " must be " + text);
     };
-    expect([](StereoCalibration& c) { c.cameraMatrix1.at<double>(0, 2) = 3000; }, "principal point");
-    if (GetParam().write == inRosFiles)
-        return; // their rectification is made for a possible one
-    expect([](StereoCalibration& c) { c.cameraMatrix2.at<double>(1, 1) = 0; }, "focal length");
-    expect([](StereoCalibration& c) { c.T *= 0; }, "baseline");
-    expect([](StereoCalibration& c) { c.T *= -1; }, "exchange them");
-    expect([](StereoCalibration& c) { c.T = (Mat_<double>(3, 1) << 0, -0.1, 0); }, "side by side");
+    const struct
+    {
+        Files (*write)(const StereoCalibration&);
+        std::string focal, center, distortion, rotation, translation;
+    } all[] = { { inOpenCVFiles, "'intrinsics.yml': M2/data", "'intrinsics.yml': M1", "'intrinsics.yml': D2/data",
+                  "'extrinsics.yml': R/data", "'extrinsics.yml': T/data" },
+                { inRosFiles, "'right.yaml': camera_matrix/data", "'left.yaml': camera_matrix/data",
+                  "'right.yaml': distortion_coefficients/data", "", "" },
+                { inKalibrFile, "'camchain.yaml': cam1/intrinsics", "'camchain.yaml': cam0/intrinsics",
+                  "'camchain.yaml': cam1/distortion_coeffs", "'camchain.yaml': cam1/T_cn_cnm1",
+                  "'camchain.yaml': cam1/T_cn_cnm1" },
+                { inEurocFiles, "'cam1.yaml': intrinsics", "'cam0.yaml': intrinsics",
+                  "'cam1.yaml': distortion_coefficients", "'cam1.yaml': T_BS/data",
+                  "'cam0.yaml' with 'cam1.yaml': T_BS/data" },
+                { inZedFile, "'SN12345.conf': RIGHT_CAM_HD/FX, FY", "'SN12345.conf': LEFT_CAM_HD/CX, CY",
+                  "'SN12345.conf': RIGHT_CAM_HD/K1, K2, P1, P2, K3", "", "'SN12345.conf': STEREO/BASELINE, TY, TZ" } };
+    const auto& names =
+        *std::find_if(std::begin(all), std::end(all), [&](decltype(*all) n) { return n.write == writer; });
+    expect([](StereoCalibration& c) { c.cameraMatrix1.at<double>(0, 2) = 3000; }, names.center, "of a principal point");
+    const bool isRational = writer == inZedFile && GetParam().coefficients == 8;
+    expect([](StereoCalibration& c) { c.distCoeffs2.at<double>(1) = 2e6; },
+           names.distortion + (isRational ? ", K4, K5, K6" : ""), "of finite numbers of a magnitude below");
+    if (writer == inRosFiles)
+        return; // their rectification is made for a possible one; see refusesRosFilesOfImpossibleRigs
+    expect([](StereoCalibration& c) { c.cameraMatrix2.at<double>(1, 1) = 0; }, names.focal, "of focal lengths");
+    expect([](StereoCalibration& c) { c.T *= 0; }, names.translation, "of a baseline above 0");
+    expect([](StereoCalibration& c) { c.T *= -1; }, names.translation, "that of a second camera to the right");
+    expect([](StereoCalibration& c) { c.T = (Mat_<double>(3, 1) << 0, -0.1, 0); }, names.translation,
+           "that of cameras side by side");
+    if (writer == inZedFile)
+        return; // three angles are always a rotation
+    const std::string rotation = writer == inOpenCVFiles ? "a rotation" : "a pose, with a rotation";
+    expect([](StereoCalibration& c) { c.R *= 1.5; }, names.rotation, rotation);
+    expect([](StereoCalibration& c) { c.R.row(1) *= -1; }, names.rotation, rotation);
 }
 
 TEST_P(HDPStereo_CalibrationFiles, isScaledToImagesOfTheSameAspect)
@@ -177,7 +208,7 @@ TEST(HDPStereo_StereoCalibration, refusesRosFilesOfOtherOrder)
 {
     Files files = inRosFiles(makeCalibration());
     std::swap(files[0], files[1]);
-    expectRefused(files, Size(), "right.yaml", "exchange them");
+    expectRefused(files, Size(), "right.yaml", "'left.yaml': projection_matrix/data must be that of a second camera");
 }
 
 //! ROS has the pose in the rectification: its projections have the baseline, its rotations are to be rotations.
@@ -207,7 +238,7 @@ TEST(HDPStereo_StereoCalibration, refusesRosFilesOfImpossibleRigs)
     for (int i = 0; i < 2; ++i)
     {
         expect(i, "rectification_matrix", 4, -1, "rectification_matrix/data must be a rotation");
-        expect(i, "camera_matrix", 0, 0, cv::format("cameraMatrix%d must be of focal lengths", i + 1));
+        expect(i, "camera_matrix", 0, 0, "camera_matrix/data must be of focal lengths");
     }
 }
 

@@ -38,6 +38,8 @@ static const char* const KEYS =
     "{csv             |     | FILE.csv for the tables, and one of every pair }"
     "{maps            |     | folder for the maps: METHOD/SET/SCENE.png (16 bit, times 256, 0 = none) }"
     "{calibration     |     | only prints how many errors are within what getDisparitySigma() says, by sets }"
+    "{confidence      |     | only prints how many pixels have what getConfidence(), and how many of these are wrong, "
+    "by sets }"
     "{runs            | 1   | how often a pair is matched; the shortest time counts }"
     "{jobs            | 1   | how many pairs are matched at a time; they share the threads, and get slower }"
     "{threads         |     | number of threads; all processors if not given }";
@@ -92,13 +94,14 @@ static int run(const CommandLineParser& parser)
             std::cout << toMarkdown(foundRangesTable(method, selectScenes(parser))) << std::endl;
         return 0;
     }
-    if (parser.has("calibration"))
-    {
-        for (const Method& method : settings.methods)
-            std::cout << toMarkdown(calibrationTable(method, selectScenes(parser), settings.numDisparities))
-                      << std::endl;
-        return 0;
-    }
+    for (const String option : { "calibration", "confidence" })
+        if (parser.has(option))
+        {
+            const auto makeTable = option == "calibration" ? calibrationTable : confidenceErrorsTable;
+            for (const Method& method : settings.methods)
+                std::cout << toMarkdown(makeTable(method, selectScenes(parser), settings.numDisparities)) << std::endl;
+            return 0;
+        }
 
     std::vector<SceneResult> results;
     for (const Scene& scene : selectScenes(parser))
@@ -153,5 +156,5 @@ int main(int argc, char** argv)
         argc, argv, String(KEYS) + TUNABLE_KEYS,
         "Tables of the paper, and a report with pictures, of a dataset of rectified stereo pairs.\n"
         "Exit status: 0 if all is well, 2 if a pair was skipped, 130 if interrupted, 1 on other errors.\n",
-        { "changes=", "calibration" }, 1, run);
+        { "changes=", "calibration", "confidence" }, 1, run);
 }

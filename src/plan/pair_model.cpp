@@ -186,11 +186,20 @@ void PairModel::save(const String& filename) const
 
 PairModel PairModel::load(const String& filename)
 {
-    const FileStorage fs(filename, FileStorage::READ);
-    if (!fs.isOpened() || !fs["pairModel"].isMap())
-        CV_Error(Error::StsParseError, "'" + filename + "' must be a file with a pairModel");
     PairModel model;
-    model.read(fs["pairModel"]);
+    try
+    {
+        const FileStorage fs(filename, FileStorage::READ);
+        if (!fs.isOpened())
+            CV_Error(Error::StsObjectNotFound, "cannot read it");
+        if (!fs["pairModel"].isMap())
+            CV_Error(Error::StsParseError, "pairModel is missing");
+        model.read(fs["pairModel"]);
+    }
+    catch (const cv::Exception& e) // neither the parser's nor read()'s name the file
+    {
+        CV_Error(e.code, "filename: '" + filename + "' does not hold a pair model: " + e.err);
+    }
     return model;
 }
 

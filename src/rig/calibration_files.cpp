@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "calibration_files.hpp"
+#include "calibration_check.hpp"
 
 #include <cmath>
 
@@ -12,16 +13,28 @@ namespace {
 
 typedef std::vector<CalibrationText> Texts;
 
-// Numbers of a calibration are below this: its squares and products stay finite.
-const double largest = 1e6;
-
 struct Camera
 {
     Size size;
     Matx33d matrix;
     std::vector<double> distortion;
     bool isFisheye;
+    CameraNames names;
 };
+
+struct NamedCalibration
+{
+    StereoCalibration calibration;
+    CalibrationNames names;
+};
+
+std::string nameOf(const CalibrationText& text, const std::string& path) { return "'" + text.file() + "': " + path; }
+
+//! Of a field that both cameras have in a file of their own
+std::string nameOf(const Texts& texts, const std::string& path)
+{
+    return "'" + texts[0].file() + "' with " + nameOf(texts[1], path);
+}
 
 Matx33d cameraMatrix(double fx, double fy, double cx, double cy) { return Matx33d(fx, 0, cx, 0, fy, cy, 0, 0, 1); }
 
@@ -34,9 +47,12 @@ Size sizeOf(const CalibrationText& text, double width, double height, const std:
     return Size((int)width, (int)height);
 }
 
-StereoCalibration join(const Camera& left, const Camera& right, const Matx33d& R, const Vec3d& T)
+NamedCalibration join(const Camera& left, const Camera& right, const Matx33d& R, const Vec3d& T,
+                      const std::string& rotation, const std::string& translation)
 {
-    StereoCalibration calibration;
+    NamedCalibration result;
+    result.names = { "imageSize", { left.names, right.names }, rotation, translation };
+    StereoCalibration& calibration = result.calibration;
     calibration.imageSize = left.size;
     calibration.cameraMatrix1 = Mat(left.matrix, true);
     calibration.distCoeffs1 = Mat(left.distortion, true);
@@ -45,7 +61,7 @@ StereoCalibration join(const Camera& left, const Camera& right, const Matx33d& R
     calibration.R = Mat(R, true);
     calibration.T = Mat(T, true);
     calibration.isFisheye = left.isFisheye;
-    return calibration;
+    return result;
 }
 
 void requireAlike(const CalibrationText& text, const Camera& left, const Camera& right)
@@ -66,6 +82,8 @@ void readPose(const CalibrationText& text, const std::string& path, Matx33d& R, 
     if (pose.row(3) != Matx14d(0, 0, 0, 1))
         text.fail(path, "a pose, with 0, 0, 0, 1 in its last row");
     R = pose.get_minor<3, 3>(0, 0);
+    if (!isRotation(R))
+        text.fail(path, "a pose, with a rotation in its first columns");
     T = Vec3d(pose(0, 3), pose(1, 3), pose(2, 3));
 }
 
@@ -96,38 +114,41 @@ Camera readPinhole(const CalibrationText& text, const std::string& camera, const
     size_t count;
     result.isFisheye = isFisheyeModel(text, camera + "distortion_model", count);
     result.distortion = count == 0 ? std::vector<double>(4) : text.numbers(camera + coefficients, count);
+    const std::string name = nameOf(text, camera + "intrinsics");
+    result.names = { name, name, nameOf(text, camera + coefficients) };
     return result;
 }
 
-StereoCalibration readKalibr(const CalibrationText& text)
+NamedCalibration readKalibr(const CalibrationText& text)
 {
     const Camera left = readPinhole(text, "cam0/", "distortion_coeffs");
     const Camera right = readPinhole(text, "cam1/", "distortion_coeffs");
     requireAlike(text, left, right);
     Matx33d R;
     Vec3d T;
-    readPose(text, "cam1/T_cn_cnm1", R, T);
-    return join(left, right, R, T);
+    const std::string path = "cam1/T_cn_cnm1";
+    readPose(text, path, R, T);
+    return join(left, right, R, T, nameOf(text, path), nameOf(text, path));
 }
 
-StereoCalibration readEuroc(const Texts& texts)
+NamedCalibration readEuroc(const Texts& texts)
 {
     Camera cameras[2];
     Matx33d R[2]; // from the camera to the body
     Vec3d T[2];
+    std::string path; // of the pose
     for (int i = 0; i < 2; ++i)
     {
         cameras[i] = readPinhole(texts[i], "", "distortion_coefficients");
-        readPose(texts[i], texts[i].has("T_BS/data") || !texts[i].has("T_BS") ? "T_BS/data" : "T_BS", R[i], T[i]);
+        path = texts[i].has("T_BS/data") || !texts[i].has("T_BS") ? "T_BS/data" : "T_BS";
+        readPose(texts[i], path, R[i], T[i]);
     }
     requireAlike(texts[1], cameras[0], cameras[1]);
-    return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * (T[0] - T[1]));
+    return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * (T[0] - T[1]), nameOf(texts, path),
+                nameOf(texts, path));
 }
 
-//! But for the few digits of files
-bool isRotation(const Matx33d& R) { return norm(R * R.t(), Matx33d::eye(), NORM_INF) <= 1e-2 && determinant(R) > 0; }
-
-StereoCalibration readRos(const Texts& texts)
+NamedCalibration readRos(const Texts& texts)
 {
     Camera cameras[2];
     Matx33d R[2]; // rectification
@@ -150,11 +171,14 @@ StereoCalibration readRos(const Texts& texts)
         if (!(P[0] > 0))
             text.fail("projection_matrix/data", "of a focal length above 0");
         offsets[i] = P[3] / P[0];
+        const std::string name = nameOf(text, "camera_matrix/data");
+        camera.names = { name, name, nameOf(text, "distortion_coefficients/data") };
     }
     requireAlike(texts[1], cameras[0], cameras[1]);
-    if (std::abs(offsets[1] - offsets[0]) < 1 / largest) // of the rig, which has no field of its own
+    if (std::abs(offsets[1] - offsets[0]) < leastBaseline) // of the rig, which has no field of its own
         texts[1].fail("projection_matrix/data", "of a baseline above 0, times -fx as fourth number");
-    return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * Vec3d(offsets[1] - offsets[0], 0, 0));
+    return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * Vec3d(offsets[1] - offsets[0], 0, 0),
+                nameOf(texts, "rectification_matrix/data"), nameOf(texts, "projection_matrix/data"));
 }
 
 //! Each matrix is in one of the texts: M1 and so on.
@@ -169,14 +193,17 @@ std::vector<double> readMatrix(const Texts& texts, const std::string& name, size
     return textWith(texts, name).numbers(name + "/data", count);
 }
 
-StereoCalibration readOpenCV(const Texts& texts, Size imageSize, double unit)
+NamedCalibration readOpenCV(const Texts& texts, Size imageSize, double unit)
 {
     Camera cameras[2];
     for (int i = 0; i < 2; ++i)
     {
         cameras[i].size = imageSize;
-        cameras[i].matrix = Matx33d(readMatrix(texts, i ? "M2" : "M1", 9).data());
-        cameras[i].distortion = readMatrix(texts, i ? "D2" : "D1", 0);
+        const std::string K = i ? "M2" : "M1", D = i ? "D2" : "D1";
+        cameras[i].matrix = Matx33d(readMatrix(texts, K, 9).data());
+        cameras[i].distortion = readMatrix(texts, D, 0);
+        const std::string name = nameOf(textWith(texts, K), K + "/data");
+        cameras[i].names = { name, name, nameOf(textWith(texts, D), D + "/data") };
         const CalibrationText& text = textWith(texts, "fisheye_model");
         cameras[i].isFisheye = text.has("fisheye_model") && text.number("fisheye_model") != 0;
     }
@@ -193,7 +220,8 @@ StereoCalibration readOpenCV(const Texts& texts, Size imageSize, double unit)
                              imageSize.width, imageSize.height));
     }
     const std::vector<double> T = readMatrix(texts, "T", 3);
-    return join(cameras[0], cameras[1], Matx33d(readMatrix(texts, "R", 9).data()), Vec3d(T.data()) * unit);
+    return join(cameras[0], cameras[1], Matx33d(readMatrix(texts, "R", 9).data()), Vec3d(T.data()) * unit,
+                nameOf(textWith(texts, "R"), "R/data"), nameOf(textWith(texts, "T"), "T/data"));
 }
 
 //! Sections of the ZED's files, by the size of the images
@@ -241,19 +269,23 @@ Camera readZedCamera(const CalibrationText& text, const std::string& side, const
     camera.matrix = cameraMatrix(text.number(section + "FX"), text.number(section + "FY"), text.number(section + "CX"),
                                  text.number(section + "CY"));
     camera.isFisheye = distortion != section && !text.has(distortion + "P1");
+    camera.names = { nameOf(text, section + "FX, FY"), nameOf(text, section + "CX, CY"), nameOf(text, distortion) };
     for (const char* name : { "K1", "K2", "P1", "P2", "K3", "K4", "K5", "K6" })
     {
         const bool isTangential = name[0] == 'P', isRational = name[0] == 'K' && name[1] > '3';
         const bool isOptional = isRational && !camera.isFisheye;
         if (!(isTangential && camera.isFisheye) && !(isOptional && !text.has(distortion + name)) &&
             camera.distortion.size() < (camera.isFisheye ? 4 : 8))
+        {
+            camera.names.distortion += std::string(camera.distortion.empty() ? "" : ", ") + name;
             camera.distortion.push_back(text.number(distortion + name));
+        }
     }
     return camera;
 }
 
 //! As the vendor's open drivers give them to cv::stereoRectify, which knows the sign of the translation by itself
-StereoCalibration readZed(const CalibrationText& text, Size imageSize)
+NamedCalibration readZed(const CalibrationText& text, Size imageSize)
 {
     if (imageSize.empty())
         CV_Error(Error::StsBadArg, "imageSize must be given: '" + text.file() + "' is for cameras of several sizes");
@@ -268,7 +300,8 @@ StereoCalibration readZed(const CalibrationText& text, Size imageSize)
     const Vec3d position(text.number("STEREO/BASELINE"), stereo("TY"), stereo("TZ"));
     Matx33d R;
     Rodrigues(rotation, R);
-    return join(left, right, R, -1e-3 * position);
+    return join(left, right, R, -1e-3 * position, nameOf(text, "STEREO/RX, CV, RZ"),
+                nameOf(text, "STEREO/BASELINE, TY, TZ"));
 }
 
 bool hasAny(const Texts& texts, const std::vector<const char*>& prefixes)
@@ -288,7 +321,7 @@ void requireFiles(const Texts& texts, size_t count, const char* kind)
                      (count == 1 ? "one file for both cameras" : "a file for each camera: second must be given"));
 }
 
-StereoCalibration readKind(const Texts& texts, Size imageSize, double unit)
+NamedCalibration readKind(const Texts& texts, Size imageSize, double unit)
 {
     if (hasAny(texts, { "LEFT_CAM_", "RIGHT_CAM_", "STEREO/" }))
     {
@@ -330,96 +363,15 @@ void scale(const std::string& source, Size size, StereoCalibration& calibration)
     calibration.imageSize = size;
 }
 
-// Of checkCalibration(): each changes the field to its documented form.
-
-[[noreturn]] void failOf(const std::string& source, const std::string& field, const char* expected)
-{
-    CV_Error(Error::StsBadArg, source + ": " + field + " must be " + expected);
-}
-
-void checkNumbers(const std::string& source, const std::string& field, Mat& matrix)
-{
-    if (matrix.channels() != 1 || matrix.dims > 2 || matrix.empty())
-        failOf(source, field, "a matrix of one channel");
-    Mat numbers;
-    matrix.convertTo(numbers, CV_64F);
-    if (!checkRange(numbers, true, 0, -largest, largest))
-        failOf(source, field, "of finite numbers of a magnitude below 1000000");
-    matrix = numbers;
-}
-
-void checkCamera(const std::string& source, const std::string& number, Size size, bool isFisheye, Mat& matrix, Mat& D)
-{
-    const std::string name = "cameraMatrix" + number, coefficients = "distCoeffs" + number;
-    checkNumbers(source, name, matrix);
-    if (matrix.size() != Size(3, 3))
-        failOf(source, name, "3 x 3");
-    const Matx33d K(matrix);
-    if (!(K(0, 0) >= 1 && K(1, 1) >= 1))
-        failOf(source, name, "of focal lengths above 1 pixel");
-    if (K(0, 1) != 0 || K(1, 0) != 0 || K(2, 0) != 0 || K(2, 1) != 0 || K(2, 2) != 1)
-        failOf(source, name, "of the form fx, 0, cx, 0, fy, cy, 0, 0, 1");
-    if (!(K(0, 2) >= 0 && K(0, 2) <= size.width && K(1, 2) >= 0 && K(1, 2) <= size.height))
-        failOf(source, name, format("of a principal point in the image of %d x %d", size.width, size.height).c_str());
-    checkNumbers(source, coefficients, D);
-    D = D.reshape(1, 1);
-    const int count = D.cols;
-    if (isFisheye && count != 4)
-        failOf(source, coefficients, "4 numbers with fisheye");
-    if (count != 4 && count != 5 && count != 8 && count != 12 && count != 14)
-        failOf(source, coefficients, "4, 5, 8, 12 or 14 numbers");
-}
-
-void checkPose(const std::string& source, StereoCalibration& calibration)
-{
-    checkNumbers(source, "R", calibration.R);
-    if (calibration.R.size() != Size(3, 3))
-        failOf(source, "R", "3 x 3");
-    const Matx33d R(calibration.R);
-    if (!isRotation(R))
-        failOf(source, "R", "a rotation");
-    Matx31d w;
-    Matx33d u, vt;
-    SVD::compute(R, w, u, vt);
-    calibration.R = Mat(u * vt, true); // files have few digits
-
-    checkNumbers(source, "T", calibration.T);
-    if (calibration.T.total() != 3)
-        failOf(source, "T", "3 numbers");
-    calibration.T = calibration.T.reshape(1, 3);
-    const Vec3d right = -(Matx33d(calibration.R).t() * Vec3d(calibration.T.ptr<double>()));
-    if (norm(right) < 1 / largest)
-        failOf(source, "T", "a baseline above 0");
-    if (std::abs(right[0]) < std::max(std::abs(right[1]), std::abs(right[2])))
-        failOf(source, "T", "that of cameras side by side");
-    if (right[0] < 0)
-        failOf(source, "T", "that of a second camera to the right of the first one: exchange them, and their images");
-}
-
 } // namespace
 
 StereoCalibration toCalibration(const Texts& texts, Size imageSize, double unit)
 {
-    StereoCalibration calibration = readKind(texts, imageSize, unit);
-    std::string source = "'" + texts[0].file() + "'";
-    if (texts.size() > 1)
-        source += " with '" + texts[1].file() + "'";
-    checkCalibration(source, calibration);
+    NamedCalibration result = readKind(texts, imageSize, unit);
+    checkCalibration(result.names, result.calibration);
     if (!imageSize.empty())
-        scale(source, imageSize, calibration);
-    return calibration;
-}
-
-void checkCalibration(const std::string& source, StereoCalibration& calibration)
-{
-    StereoCalibration c = calibration;
-    const int most = 1 << 15;
-    if (c.imageSize.width < 1 || c.imageSize.height < 1 || c.imageSize.width > most || c.imageSize.height > most)
-        failOf(source, "imageSize", "from 1 x 1 to 32768 x 32768");
-    checkCamera(source, "1", c.imageSize, c.isFisheye, c.cameraMatrix1, c.distCoeffs1);
-    checkCamera(source, "2", c.imageSize, c.isFisheye, c.cameraMatrix2, c.distCoeffs2);
-    checkPose(source, c);
-    calibration = c;
+        scale("'" + texts[0].file() + "'", imageSize, result.calibration);
+    return result.calibration;
 }
 
 }}} // namespace cv::stereo::hdp

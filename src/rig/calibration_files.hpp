@@ -13,11 +13,6 @@ namespace cv { namespace stereo { namespace hdp {
 @param texts One or two. */
 CV_EXPORTS StereoCalibration toCalibration(const std::vector<CalibrationText>& texts, Size imageSize, double unit);
 
-/** Brings a calibration into the form that StereoCalibration documents, with a rotation that is one.
-@param source What the calibration is of, for the text of an exception.
-@throws cv::Exception if a matrix has another size, or what it has is not finite or impossible. */
-void checkCalibration(const std::string& source, StereoCalibration& calibration);
-
 }}} // namespace cv::stereo::hdp
 
 #endif

@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "opencv2/hdpstereo/stereo_rig.hpp"
 
-#include "calibration_files.hpp"
+#include "calibration_check.hpp"
 #include "rectification.hpp"
 
 #include <cmath>
@@ -128,13 +128,23 @@ private:
     hdp::RectificationMaps maps_[2];
 };
 
+hdp::CalibrationNames memberNames()
+{
+    const std::string c = "calibration: ";
+    return { c + "imageSize",
+             { { c + "cameraMatrix1", c + "cameraMatrix1", c + "distCoeffs1" },
+               { c + "cameraMatrix2", c + "cameraMatrix2", c + "distCoeffs2" } },
+             c + "R",
+             c + "T" };
+}
+
 } // namespace
 
 Ptr<StereoRig> StereoRig::create(const StereoCalibration& calibration, double fieldOfView, Size size)
 {
     CV_TRACE_FUNCTION();
     StereoCalibration checked = calibration;
-    hdp::checkCalibration("calibration", checked);
+    hdp::checkCalibration(memberNames(), checked);
     if (!(fieldOfView == 0 || (fieldOfView >= 1 && fieldOfView <= 170)))
         CV_Error(Error::StsOutOfRange, "fieldOfView must be 0, or from 1 to 170 degrees");
     if (size == Size())

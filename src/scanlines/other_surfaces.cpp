@@ -131,12 +131,11 @@ public:
     void find(const Range& blockRows)
     {
         const Range rows(blockRows.start * side, std::min(blockRows.end * side, height_));
-        const Mat kernel(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U, Scalar(1));
         for (int map = 0; map < 2; ++map)
         {
             Mat minima = buffers_.min[map].rowRange(rows), maxima = buffers_.max[map].rowRange(rows);
-            erode(maps_[map].rowRange(rows), minima, kernel); // a stripe sees its neighbours' rows
-            dilate(maps_[map].rowRange(rows), maxima, kernel);
+            erode(maps_[map].rowRange(rows), minima, kernel_); // a stripe sees its neighbours' rows
+            dilate(maps_[map].rowRange(rows), maxima, kernel_);
         }
         std::vector<ushort> matches(width_);
         std::vector<int> blocks; // with several surfaces around
@@ -236,6 +235,8 @@ private:
 
     const WindowPrediction& prediction_;
     const Mat maps_[2];
+    // Not Mat::ones(): the first thread with an expression sets them up, in OpenCV, which ThreadSanitizer does not see.
+    const Mat kernel_ = Mat(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U, Scalar(1));
     const CensusCost& cost_;
     const int numDisparities_;
     SurfaceBuffers& buffers_;

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "opencv2/hdpstereo.hpp"
 
@@ -45,9 +47,10 @@ static void addPixels(const Mat& disparity, const Mat& sigma, const Pair& pair, 
         }
 }
 
-Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities)
+//! Matches the scenes with truth; use is called with each, its pair, matcher and disparities.
+static void matchScenes(const char* option, const Method& method, const std::vector<Scene>& scenes, int numDisparities,
+                        const std::function<void(const Scene&, const Pair&, const HDPTreeMatcher&, const Mat&)>& use)
 {
-    std::map<String, std::vector<Share>> sets;
     for (const Scene& scene : scenes)
     {
         if (scene.truth.empty())
@@ -57,15 +60,23 @@ Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, i
         const Ptr<cv::StereoMatcher> matcher = method.create(range);
         const HDPTreeMatcher* const hdp = dynamic_cast<const HDPTreeMatcher*>(matcher.get());
         if (!hdp)
-            fail("--calibration: " + method.name + " knows no errors");
+            fail(option + (": " + method.name) + " knows no errors");
         const std::array<Mat, 2> images = imagesFor(method, pair.left, pair.right);
-        const Mat disparity = matchDensely(method, *matcher, images[0], images[1]);
+        use(scene, pair, *hdp, matchDensely(method, *matcher, images[0], images[1]));
+    }
+}
+
+Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities)
+{
+    std::map<String, std::vector<Share>> sets;
+    matchScenes("--calibration", method, scenes, numDisparities,
+                [&](const Scene& scene, const Pair& pair, const HDPTreeMatcher& matcher, const Mat& disparity) {
         Mat sigma;
-        hdp->getDisparitySigma(sigma);
+        matcher.getDisparitySigma(sigma);
         std::vector<Share>& shares = sets[scene.set];
         shares.resize(LEVELS.size() + 1);
         addPixels(disparity, sigma, pair, shares);
-    }
+    });
 
     Table table;
     table.title = "Errors within sigma, " + method.name;
@@ -82,6 +93,61 @@ Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, i
         {
             const Share& share = set.second[i];
             table.addNumber(share.pixels < LEAST_PIXELS ? NO_SCORE : 100 * share.within / share.pixels, "%.0f");
+        }
+    }
+    return table;
+}
+
+void ConfidenceErrors::add(const Mat& confidence, const Mat& disparity, const Mat& truth)
+{
+    const Mat known = knownPixels(truth);
+    for (int y = 0; y < truth.rows; y++)
+        for (int x = 0; x < truth.cols; x++)
+            if (known.at<uchar>(y, x))
+            {
+                const int level = confidence.at<uchar>(y, x);
+                pixels_[level]++;
+                wrong_[level] += !(std::abs(disparity.at<float>(y, x) - truth.at<float>(y, x)) <= 1);
+            }
+}
+
+double ConfidenceErrors::share(int least) const
+{
+    const double all = std::accumulate(pixels_.begin(), pixels_.end(), 0.);
+    return all > 0 ? 100 * std::accumulate(pixels_.begin() + least, pixels_.end(), 0.) / all : NO_SCORE;
+}
+
+double ConfidenceErrors::wrong(int least) const
+{
+    const double pixels = std::accumulate(pixels_.begin() + least, pixels_.end(), 0.);
+    return pixels < LEAST_PIXELS ? NO_SCORE : 100 * std::accumulate(wrong_.begin() + least, wrong_.end(), 0.) / pixels;
+}
+
+Table confidenceErrorsTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities)
+{
+    std::map<String, ConfidenceErrors> sets;
+    matchScenes("--confidence", method, scenes, numDisparities,
+                [&](const Scene& scene, const Pair& pair, const HDPTreeMatcher& matcher, const Mat& disparity) {
+        Mat confidence;
+        matcher.getConfidence(confidence);
+        sets[scene.set].add(confidence, disparity, pair.truth);
+    });
+
+    Table table;
+    table.title = "Errors by confidence, " + method.name;
+    table.note = "Percent of the pixels of known truth, occluded ones too, that have at least this confidence; percent "
+                 "of these that are wrong by more than a pixel, or have no disparity.";
+    table.header.push_back("confidence >=");
+    for (const auto& set : sets)
+        for (const char* what : { ": pixels", ": wrong" })
+            table.header.push_back(set.first + what);
+    for (int least = 0; least <= 200; least += 20)
+    {
+        table.addRow(cv::format("%d", least));
+        for (const auto& set : sets)
+        {
+            table.addNumber(set.second.share(least), "%.1f");
+            table.addNumber(set.second.wrong(least), "%.2f");
         }
     }
     return table;

@@ -20,6 +20,32 @@ namespace hdp_tools {
 @param numDisparities 0: those of the dataset. */
 Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities);
 
+//! Pixels by their confidence
+class ConfidenceErrors
+{
+public:
+    ConfidenceErrors() : pixels_(256), wrong_(256) {}
+
+    /** Adds the pixels of known truth.
+    @param confidence CV_8UC1.
+    @param disparity CV_32FC1 in pixels, not finite where there is none, which is wrong.
+    @param truth As Pair::truth. */
+    void add(const Mat& confidence, const Mat& disparity, const Mat& truth);
+
+    // In percent, by the least confidence, 0 to 255.
+
+    //! The pixels that have it; NO_SCORE if there are no pixels.
+    double share(int least) const;
+    //! Of these, the ones that are wrong by more than a pixel; NO_SCORE if they are too few.
+    double wrong(int least) const;
+
+private:
+    std::vector<double> pixels_, wrong_;
+};
+
+//! What values of HDPTreeMatcher::getConfidence() mean, by sets; arguments as of calibrationTable().
+Table confidenceErrorsTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities);
+
 } // namespace hdp_tools
 
 #endif

@@ -7,12 +7,33 @@
 #include <fstream>
 #include <limits>
 
+#include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 
 using namespace cv;
 
 String extensionOf(const String& path) { return path.substr(std::min(path.rfind('.'), path.size())); }
+
+void requireFile(const String& path)
+{
+    if (!utils::fs::exists(path) || utils::fs::isDirectory(path))
+        CV_Error(Error::StsObjectNotFound, "there is no file '" + path + "'");
+}
+
+void requireFolderOf(const String& path)
+{
+    const String folder = utils::fs::getParent(path);
+    if (!folder.empty() && !utils::fs::isDirectory(folder))
+        CV_Error(Error::StsObjectNotFound, "cannot write '" + path + "': there is no folder '" + folder + "'");
+}
+
+void requireImageWriter(const String& path)
+{
+    requireFolderOf(path);
+    if (!haveImageWriter(path))
+        CV_Error(Error::StsBadArg, "cannot write '" + path + "': no image format has this extension");
+}
 
 std::vector<uchar> encode(const String& extension, const Mat& image)
 {

@@ -10,6 +10,15 @@
 
 cv::String extensionOf(const cv::String& path);
 
+//! Throws if there is no such file, or it is a folder.
+void requireFile(const cv::String& path);
+
+//! Throws if the folder of a file to write is not there, or there is no image format of its extension.
+void requireImageWriter(const cv::String& path);
+
+//! Throws if the folder of a file to write is not there.
+void requireFolderOf(const cv::String& path);
+
 std::vector<uchar> encode(const cv::String& extension, const cv::Mat& image);
 
 //! A map in pixels, infinite where there is none, as --output says

@@ -177,8 +177,15 @@ static Matx44d readQ(const CommandLineParser& parser, const Ptr<StereoRig>& rig,
         return Matx44d(1, 0, 0, -0.5 * (size.width - 1), 0, 1, 0, -0.5 * (size.height - 1), 0, 0, 0, f, 0, 0, 1 / B, 0);
     }
     const String path = parser.get<String>("reprojection");
-    const FileStorage file(path, FileStorage::READ);
-    const Mat Q = file.isOpened() ? file["Q"].mat() : Mat();
+    requireFile(path);
+    Mat Q;
+    try
+    {
+        Q = FileStorage(path, FileStorage::READ)["Q"].mat();
+    }
+    catch (const cv::Exception&) // which does not name the file
+    {
+    }
     if (Q.size() != Size(4, 4) || Q.channels() != 1 || !checkRange(Q))
         CV_Error(Error::StsParseError, "'" + path + "' has no matrix Q of 4 x 4 finite numbers");
     return Q;
@@ -198,6 +205,12 @@ static void checkOptions(const CommandLineParser& parser)
     for (const char* option : { "min-disparity", "num-disparities" })
         if (parser.has(option))
             integerOf(parser, option);
+    for (const char* option : { "@out", "output", "picture", "depth" })
+        if (parser.has(option))
+            requireImageWriter(parser.get<String>(option));
+    for (const char* option : { "point-cloud", "save-findings" })
+        if (parser.has(option))
+            requireFolderOf(parser.get<String>(option));
     for (const char* option : { "focal", "baseline" })
         if (parser.has(option) && !(numberOf(parser, option) > 0))
             CV_Error(Error::StsBadArg, format("--%s must be above 0", option));

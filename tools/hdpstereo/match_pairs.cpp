@@ -29,8 +29,9 @@ static String withoutExtension(const String& name) { return name.substr(0, name.
 
 static std::vector<NamedPair> pairsOfFolders(const String& lefts, const String& rights)
 {
-    if (!utils::fs::isDirectory(rights))
-        CV_Error(Error::StsError, "there is no folder '" + rights + "'");
+    for (const String& folder : { lefts, rights })
+        if (!utils::fs::isDirectory(folder))
+            CV_Error(Error::StsObjectNotFound, "there is no folder '" + folder + "'");
     std::vector<String> paths;
     glob(utils::fs::join(lefts, "*"), paths);
     std::vector<NamedPair> pairs;
@@ -44,9 +45,10 @@ static std::vector<NamedPair> pairsOfList(const String& list)
 {
     std::ifstream file(list.c_str());
     if (!file)
-        CV_Error(Error::StsError, "cannot read '" + list + "'");
+        CV_Error(Error::StsObjectNotFound, "there is no file or folder '" + list + "'");
     std::vector<NamedPair> pairs;
-    for (std::string line; std::getline(file, line);)
+    std::string line;
+    for (int number = 1; std::getline(file, line); number++)
     {
         std::istringstream words(line);
         std::vector<String> parts;
@@ -57,7 +59,8 @@ static std::vector<NamedPair> pairsOfList(const String& list)
         if (parts.empty())
             continue;
         if (parts.size() != 3)
-            CV_Error(Error::StsBadArg, "'" + list + "': not a left image, a right one and a name: " + line);
+            CV_Error(Error::StsBadArg,
+                     format("'%s': line %d is not a left image, a right one and a name", list.c_str(), number));
         pairs.push_back({ parts[0], parts[1], parts[2] });
     }
     return pairs;
@@ -116,7 +119,8 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
                                        "': take another folder, or remove it");
     if (!before.empty())
         return;
-    utils::fs::createDirectories(out);
+    if (!utils::fs::createDirectories(out))
+        CV_Error(Error::StsError, "cannot make the folder '" + out + "'");
     writeWholeFile(path, std::vector<uchar>(text.begin(), text.end()));
 }
 
@@ -128,9 +132,9 @@ size_t matchPairs(const CommandLineParser& parser)
     const String format = parser.get<String>("format"), lefts = parser.get<String>("@left");
     if (format != "png" && format != "pfm")
         CV_Error(Error::StsBadArg, "--format=" + format + " is unknown, see --help");
-    const bool areFolders = utils::fs::isDirectory(lefts);
+    const bool areFolders = utils::fs::isDirectory(lefts) || parser.has("@out"); // or are meant to be
     const String out = parser.get<String>(areFolders ? "@out" : "@right");
-    if (out.empty() || (!areFolders && parser.has("@out")))
+    if (out.empty())
         CV_Error(Error::StsBadArg, "--batch needs LEFTS RIGHTS OUT, three folders, or LIST OUT, a file and a folder");
     const std::vector<NamedPair> pairs =
         areFolders ? pairsOfFolders(lefts, parser.get<String>("@right")) : pairsOfList(lefts);

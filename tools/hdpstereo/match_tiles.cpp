@@ -194,7 +194,8 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
 
 void checkTileOptions(const CommandLineParser& parser)
 {
-    for (const char* option : { "picture", "truth", "point-cloud", "compare", "batch", "smallest", "largest", "prior" })
+    for (const char* option : { "picture", "truth", "point-cloud", "compare", "batch", "smallest", "largest", "prior",
+                                "calibration", "calibration2", "depth" })
         if (parser.has(option))
             CV_Error(Error::StsBadArg, format("--%s does not go with --tiles", option));
     if (!parser.has("@left") || !parser.has("@right") || parser.has("@out") == parser.has("output"))
@@ -211,9 +212,9 @@ void matchTiles(const CommandLineParser& parser)
     const WindowedPair pair = openPair(parser);
     const Size size = pair.size();
     const String output = parser.get<String>(parser.has("output") ? "output" : "@out");
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, size.width);
     if (!pair.fits())
         std::cout << "read whole " << parser.get<String>("@left") << ", " << parser.get<String>("@right") << std::endl;
-    const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, size.width);
     const bool writesTiles = isWrittenByTiles(output);
     const double area = (double)size.width * size.height;
     const double pixels = affordedPixels(parser, area * (2. * pair.left->bytesInMemory() + (writesTiles ? 0 : 4)));

@@ -18,6 +18,9 @@ Rectifier::Rectifier(const CommandLineParser& parser)
 {
     if (first_.empty() && !second_.empty())
         CV_Error(Error::StsBadArg, "--calibration2 needs --calibration");
+    for (const String& path : { first_, second_ }) // a mistake of the call, not of a pair
+        if (!path.empty())
+            requireFile(path);
 }
 
 void Rectifier::apply(Mat& left, Mat& right, HDPTreeMatcher& matcher)

@@ -10,6 +10,7 @@
 
 #include <set>
 
+#include "evaluation/calibration.hpp"
 #include "evaluation/pictures.hpp"
 #include "evaluation/report.hpp"
 #include "evaluation/tables.hpp"
@@ -84,6 +85,26 @@ TEST(HDPStereo_Evaluation, sparsification_by_hand)
     findSparsification(Mat::zeros(1, 6, CV_8U), judged, wrong, score);
     EXPECT_EQ(0, score.sparsification);
     EXPECT_EQ(0, score.leastSparsification);
+}
+
+TEST(HDPStereo_Evaluation, errors_by_confidence_by_hand)
+{
+    // Errors: 0, 1 (not above), 1.5, none, 20; of unknown truth. 300 of each, as few pixels make no share
+    const Mat truth = repeat(Mat(Mat_<float>({ 1, 6 }, { 10, 10, 10, 10, 30, none })), 300, 1);
+    const Mat map = repeat(Mat(Mat_<float>({ 1, 6 }, { 10, 11, 8.5f, none, 10, 10 })), 300, 1);
+    const Mat confidence = repeat(Mat(Mat_<uchar>({ 1, 6 }, { 255, 100, 100, 0, 20, 200 })), 300, 1);
+    ConfidenceErrors errors;
+    EXPECT_TRUE(std::isnan(errors.share(0)));
+    errors.add(confidence, map, truth);
+    errors.add(confidence, map, truth);
+    EXPECT_DOUBLE_EQ(100, errors.share(0));
+    EXPECT_DOUBLE_EQ(80, errors.share(20));
+    EXPECT_DOUBLE_EQ(60, errors.share(100));
+    EXPECT_DOUBLE_EQ(20, errors.share(101));
+    EXPECT_DOUBLE_EQ(60, errors.wrong(0));
+    EXPECT_DOUBLE_EQ(50, errors.wrong(1));
+    EXPECT_DOUBLE_EQ(100. / 3, errors.wrong(21));
+    EXPECT_TRUE(std::isnan(errors.wrong(101))); // 600 pixels
 }
 
 TEST(HDPStereo_Evaluation, bad_pixels_by_hand)

@@ -236,6 +236,14 @@ TEST(HDPStereo_Programs, evaluate)
     EXPECT_NE(String::npos, page.find("data:image/jpeg"));
     EXPECT_EQ(Size(160, 120), cv::imread(folder.path("maps/fast/dataset/b.png"), IMREAD_UNCHANGED).size());
 
+    const Execution confidence =
+        run(folder, "hdp_evaluate --num-disparities=32 --methods=fast --confidence " + folder.path("dataset"));
+    EXPECT_EQ(0, confidence.status) << confidence.errors;
+    for (const char* row : { "| confidence >= | dataset: pixels | dataset: wrong |", "\n| 0 | 100.0 | ", "\n| 200 | " })
+        EXPECT_NE(String::npos, confidence.output.find(row)) << confidence.output;
+    EXPECT_EQ("error: --confidence: bm knows no errors\n",
+              run(folder, "hdp_evaluate --methods=bm --confidence " + folder.path("dataset")).errors);
+
     // A pair that cannot be read is named and left out.
     std::remove(folder.path("dataset/b/right.png").c_str());
     const Execution two = run(folder, common);
@@ -537,6 +545,58 @@ TEST(HDPStereo_Programs, batch_of_folders)
 #endif
 }
 
+//! One sentence, before anything is matched or written
+TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String a = folder.path("dataset/a"), none = folder.path("none"), out = folder.path("out"),
+                 left = a + "/left.png", right = a + "/right.png", pair = " " + left + " " + right + " ",
+                 batch = " --batch " + a + " " + a + " " + out;
+    folder.writeText("words.yml", "no: [ calibration");
+    const String words = folder.path("words.yml");
+    const struct
+    {
+        String arguments, error;
+    } cases[] = {
+        { " --batch " + none + " " + a + " " + out, "there is no folder '" + none + "'" },
+        { " --batch " + a + " " + none + " " + out, "there is no folder '" + none + "'" },
+        { " --batch " + none + " " + out, "there is no file or folder '" + none + "'" },
+        { " --batch " + left + " " + out, "'" + left + "': line 1 is not a left image, a right one and a name" },
+        { " --batch " + a + " " + a + " " + left, "cannot make the folder '" + left + "'" },
+        { batch + " --calibration=" + none, "there is no file '" + none + "'" },
+        { batch + " --calibration=" + left + " --calibration2=" + none, "there is no file '" + none + "'" },
+        { batch + " --findings=" + none, "filename: '" + none + "' does not hold a pair model" },
+        { batch + " --left-mask=" + none, "cannot read the image '" + none + "'" },
+        { batch + " --prior=" + none, "cannot read the image '" + none + "'" },
+        { " " + none + " " + right, "cannot read the image '" + none + "'" },
+        { " " + left + " " + none, "cannot read the image '" + none + "'" },
+        { pair + "--calibration=" + a, "there is no file '" + a + "'" },
+        { pair + "--findings=" + a, "filename: '" + a + "' does not hold a pair model" },
+        { pair + "--findings=" + words, "filename: '" + words + "' does not hold a pair model" },
+        { pair + "--largest=" + none, "cannot read the image '" + none + "'" },
+        { pair + "--truth=" + none, "cannot read the image '" + none + "'" },
+        { pair + "--point-cloud=x.ply --reprojection=" + none, "there is no file '" + none + "'" },
+        { pair + "--point-cloud=x.ply --reprojection=" + words, "'" + words + "' has no matrix Q" },
+        { pair + none + "/map.png", "cannot write '" + none + "/map.png': there is no folder '" + none + "'" },
+        { pair + "--picture=map.xyz", "cannot write 'map.xyz': no image format has this extension" },
+        { pair + "--output=" + out, "cannot write '" + out + "': no image format has this extension" },
+        { pair + "--save-findings=" + none + "/rig.yml", "cannot write '" + none + "/rig.yml': there is no folder" },
+        { " --tiles " + none + " " + right + " " + out, "cannot read the image '" + none + "'" },
+        { " --tiles" + pair + out + ".tif --findings=" + none, "filename: '" + none + "' does not hold a pair model" },
+        { " --tiles" + pair + out + ".tif --calibration=" + none, "--calibration does not go with --tiles" },
+    };
+    for (const auto& c : cases)
+    {
+        const Execution result = run(folder, "hdpstereo --num-disparities=32" + c.arguments);
+        EXPECT_EQ(1, result.status) << c.arguments;
+        EXPECT_EQ("", result.output) << c.arguments;
+        EXPECT_EQ(0u, result.errors.find("error: " + c.error)) << c.arguments << "\n" << result.errors;
+        EXPECT_EQ(firstLine(result.errors) + "\n", result.errors);
+        EXPECT_FALSE(fs::exists(out)) << c.arguments;
+    }
+}
+
 TEST(HDPStereo_Programs, stereo_match_takes_masks)
 {
     const DatasetFolder folder;
@@ -801,7 +861,20 @@ TEST(HDPStereo_Programs, camera)
         }
         EXPECT_EQ(0u, run(folder, command + " --frames=1").output.find("1 frames, ")) << "type " << type;
     }
-    EXPECT_EQ(1, run(folder, program + "no/such/video.avi --no-gui").status);
+    const std::pair<String, String> wrong[] = {
+        { " --no-gui", "a source is needed" },
+        { "no/such/video.avi --no-gui", "cannot open the source no/such/video.avi" },
+        { folder.path("lefts") + " no/such/folder --no-gui", "cannot open the source no/such/folder" },
+        { folder.path("both.png") + " --no-gui -c=no/such.yml", "cannot read the calibration 'no/such.yml'" },
+        { folder.path("both.png") + " --no-gui --num-disparities=many", "--scale must be from 0.05 to 1, the numbers" },
+    };
+    for (const auto& call : wrong)
+    {
+        const Execution bad = run(folder, program + call.first);
+        EXPECT_EQ(1, bad.status) << call.first;
+        EXPECT_EQ(0u, bad.errors.find("error: " + call.second)) << bad.errors;
+        EXPECT_EQ(firstLine(bad.errors) + "\n", bad.errors);
+    }
 }
 
 }} // namespace opencv_test

@@ -68,6 +68,7 @@ export class ResultView {
 
     #choose(view) {
         this.#view = view;
+        get('confidence-note').hidden = view !== 'confidence';
         for (const button of document.querySelectorAll('[data-view]'))
             button.setAttribute('aria-pressed', button.dataset.view === view);
         if (this.result && view !== 'points') {

@@ -197,11 +197,13 @@ test('what has little confidence is grey', async () => {
             return grey / (data.length / 4);
         });
     assert.equal(await greyShare(), 0);
+    assert.ok(await page.isHidden('#confidence-note'));
     await page.fill('#threshold', '90');
     const share = await greyShare();
     assert.ok(share > 0.05 && share < 0.8, `${share}`);
     await page.click('[data-view=confidence]');
     assert.equal(await page.textContent('#scale-unit'), 'confidence');
+    assert.ok(await page.isVisible('#confidence-note'));
 });
 
 test('the point cloud shows points, and turns', async () => {
