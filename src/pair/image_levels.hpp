@@ -40,17 +40,18 @@ are on the line from there to white. So the levels depend on the brightness with
 @param brightness 1 to 4. */
 CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey, double brightness = 1);
 
-/** What a dark pair is brightened by, see greyLevels(). Its levels are doubled, once or twice, if not more than one pixel in
-128 becomes white by that: as few are lamps and what they shine on. If more than one in 16 would, they are a part of the
-scene, and it is left out. Between the two, the more would become white, the less a pair is brightened. What is white
-already has nothing to lose, and does not count. More than two doublings would make noise look like texture.
+/** What a dark pair is brightened by, see greyLevels(). Its levels are doubled, once or twice, if not more than one
+pixel in 128 becomes white by that: as few are lamps and what they shine on. If more than one in 16 would, they are a
+part of the scene, and it is left out. Between the two, the more would become white, the less a pair is brightened.
+What is white already has nothing to lose, and does not count. More than two doublings would make noise look like
+texture.
 @param left,right See greyLevels().
 @param share See countBits().
 @return 1 to 4. */
 CV_EXPORTS double findBrightness(const Mat& left, const Mat& right, double share = 1);
 
-/** A power of two for a brightness: what levels of the images are taken times that are about those of the brightened pair.
-It can be divided by and multiplied with again without a rest, so that a model of the pair gives the same map. */
+/** The power of two that is about a brightness, for what is found in a brightened pair and told in levels of the
+images. It can be divided by and multiplied with again without a rest: a model of the pair gives the same map. */
 inline int roundedBrightness(double brightness) { return brightness < 1.5 ? 1 : brightness < 3 ? 2 : 4; }
 
 }}} // namespace cv::stereo::hdp
