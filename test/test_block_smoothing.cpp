@@ -117,7 +117,7 @@ TEST(HDPStereo_BlockSmoothing, weak_blocks_count_less)
 {
     int seen[3] = { 0, 0, 0 }; // none, weak and sure ones
     for (int seed = 0; seed < 8; ++seed)
-        for (double step = 1; step < 12; step += 0.5)
+        for (double step = 1; step < 16; step += 0.5)
         {
             RNG rng(seed);
             const int begin = seed, size = 32; // all rows and columns tell
@@ -128,7 +128,7 @@ TEST(HDPStereo_BlockSmoothing, weak_blocks_count_less)
                     grey.at<ushort>(y, x) =
                         (ushort)(500 + levels.at<double>((y + 8 - begin) / 8, (x + 8 - begin) / 8) + rng.uniform(0, 3));
             const Vec2d across = meanStep(grey, begin), down = meanStep(grey.t(), begin);
-            const double share = std::min(std::max((std::min(across[1], down[1]) - 2.5) / 1.5, 0.), 1.);
+            const double share = std::min(std::max((std::min(across[1], 1.5 * down[1]) - 4.5) / 1.5, 0.), 1.);
             const BlockGrid grid = hdp::findBlocks(grey);
             EXPECT_TRUE(share == 0 || grid.begin == begin);
             EXPECT_NEAR(share * across[0], grid.step, 1e-9) << "seed " << seed << ", step " << step;

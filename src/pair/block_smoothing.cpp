@@ -17,9 +17,12 @@ const int side = BlockGrid::side;
 HDP_TUNABLE(int, linesThatTell, 32, "rows or columns", "that are looked at: more cost time and find the same blocks");
 HDP_TUNABLE(double, flatChange, 0.5, "grey levels", "maximum from pixel to pixel beside a step: more is texture");
 HDP_TUNABLE(int, maxStep, 20, "grey levels", "larger ones are edges of the scene, however strong the compression is");
-HDP_TUNABLE(double, minRatio, 2.5, "mean of the steps inside blocks",
-            "of the mean step between them, up to which there are none: pairs without compression have less than 2");
-HDP_TUNABLE(double, sureRatio, 4, "mean of the steps inside blocks", "of that from which they are surely blocks");
+HDP_TUNABLE(
+    double, minRatio, 4.5, "mean of the steps inside blocks",
+    "of the mean step between them, up to which there are none: smoothing of weak ones costs more than it saves");
+HDP_TUNABLE(double, sureRatio, 6, "mean of the steps inside blocks", "of that from which they are surely blocks");
+HDP_TUNABLE(double, downWeight, 1.5, "factor",
+            "of the ratio of rows, which are only to confirm the columns: more confirms contours, less loses blocks");
 HDP_TUNABLE(int, minSteps, 64, "steps", "between blocks, for a mean: fewer find blocks by chance");
 HDP_TUNABLE(int, smoothedSteps, 4, "mean steps between blocks",
             "that are taken away: larger ones are edges of the scene");
@@ -123,7 +126,8 @@ Steps findSteps(const Mat& lines)
 BlockGrid findBlocks(const Mat& grey)
 {
     const Steps across = findSteps(someLines(grey, false)), down = findSteps(someLines(grey, true));
-    const double share = clamped((std::min(across.ratio, down.ratio) - minRatio) / (sureRatio - minRatio), 0., 1.);
+    const double share =
+        clamped((std::min(across.ratio, downWeight * down.ratio) - minRatio) / (sureRatio - minRatio), 0., 1.);
     BlockGrid grid;
     grid.begin = across.begin;
     grid.step = share * across.mean;

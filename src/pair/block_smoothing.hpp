@@ -23,9 +23,9 @@ struct BlockGrid
 
 /** Finds the blocks that strong compression makes visible. Where what remains of a block is flat, levels change between
 blocks alone: the mean of small steps between flat pixels is several times as large at one column in eight as at the
-others, and at one row in eight. The contours of a faint slope are so in one direction at most. The smaller of the two
-ratios tells how sure it is: from 4 on, the step of the grid is the mean one, down to 2.5 a part of it, and less is
-smoothed. Some rows and columns tell.
+others, and at one row in eight. The contours of a faint slope are so in one direction at most. The ratio of columns, or
+1.5 times that of rows if that is less, tells how sure it is: from 6 on, the step of the grid is the mean one, down to
+4.5 a part of it, and less is smoothed. Some rows and columns tell.
 @param grey See greyLevels().
 @return The grid. */
 CV_EXPORTS BlockGrid findBlocks(const Mat& grey);
