@@ -130,9 +130,14 @@ double expectedBrightness(const Mat& left, const Mat& right)
     double doublings = 0;
     for (int limit : { 512, 256 })
     {
-        int lost = 0;
+        int lost = 0, white = 0, dark = 0;
         for (const Mat& image : { left, right })
-            lost += cv::countNonZero((image >= limit) & (image < 1000));
+        {
+            lost += cv::countNonZero((image >= limit) & (image < 1020));
+            white += cv::countNonZero(image >= 1020);
+            dark += cv::countNonZero(image < limit);
+        }
+        lost += std::max(white - dark, 0);
         const double share = lost / (2. * left.total());
         doublings += std::min(std::max((1. / 16 - share) / (1. / 16 - 1. / 128), 0.), 1.);
     }
@@ -151,16 +156,32 @@ TEST(HDPStereo_ImageLevels, brightness_of_dark_pairs)
         EXPECT_EQ(1 << std::min(unused, 2), hdp::findBrightness(bright, dark));
         EXPECT_EQ(1 << std::min(unused, 2), hdp::findBrightness(dark, bright));
         for (int lamps : { 0, 50, 51, 100, 200, 300, 400, 500 }) // of 6400 pixels
-            for (int level : { 260, 600, 999, 1000, 1023 })
+            for (int level : { 260, 600, 1019, 1020, 1023 })
             {
                 Mat night = dark.clone();
                 for (int i = 0; i < lamps; ++i)
                     night.at<ushort>(i % size.height, 7 + i / size.height) = (ushort)level;
                 const double brightness = hdp::findBrightness(night, dark);
                 EXPECT_NEAR(expectedBrightness(night, dark), brightness, 1. / 64);
-                EXPECT_TRUE((lamps > 50 && level < 1000) || brightness == 4);
-                EXPECT_TRUE(lamps < 400 || level >= 1000 || brightness == (level < 512 ? 2 : 1));
+                EXPECT_TRUE((lamps > 50 && level < 1020) || brightness == 4);
+                EXPECT_TRUE(lamps < 400 || level >= 1020 || brightness == (level < 512 ? 2 : 1));
             }
+    }
+}
+
+TEST(HDPStereo_ImageLevels, bright_pairs_stay)
+{
+    RNG rng(55);
+    for (int white = 0; white <= 100; white += 10) // percent of the pixels
+    {
+        SCOPED_TRACE(testing::Message() << white << " percent");
+        Mat image(40, 50, CV_16UC1);
+        for (int i = 0; i < (int)image.total(); ++i)
+            image.at<ushort>(i / 50, i % 50) =
+                (ushort)(i % 100 < white ? rng.uniform(1020, 1024) : rng.uniform(0, 255));
+        const double brightness = hdp::findBrightness(image, image);
+        EXPECT_NEAR(expectedBrightness(image, image), brightness, 1. / 64);
+        EXPECT_EQ(white <= 50 ? 4 : 1, brightness);
     }
 }
 

@@ -22,8 +22,6 @@ HDP_TUNABLE(double, lampShare, 1. / 128, "of all pixels",
             "that may become white: as few are lamps and what they shine on");
 HDP_TUNABLE(double, sceneShare, 1. / 16, "of all pixels",
             "that would become white, for which a pair stays as it is: as many are a part of the scene");
-HDP_TUNABLE(int, whiteFrom, 250, "grey levels",
-            "of what is white already, and loses nothing: noise makes it less than 255");
 HDP_TUNABLE(int, rowsThatTell, 64, "rows", "of a dark pair, about: more cost time and tell the same");
 
 const int maxDoublings = 2;          // of the levels of a dark pair: more would make noise look like texture
@@ -154,20 +152,26 @@ void greyLevels(const Mat& image, int bits, Mat& grey, double brightness)
 
 double findBrightness(const Mat& left, const Mat& right, double share)
 {
-    const int step = std::max(left.rows / rowsThatTell, 1), white = whiteFrom * greyScale;
+    const int step = std::max(left.rows / rowsThatTell, 1), white = 255 * greyScale;
     double doublings = 0;
     for (int i = 1; i <= maxDoublings; ++i)
     {
         const int limit = whiteEnd >> i;
-        int64 lost = 0, all = 0;
+        int64 dark = 0, lost = 0, all = 0;
         for (int y = 0; y < left.rows; y += step, all += 2 * left.cols)
         {
             const ushort *l = left.ptr<ushort>(y), *r = right.ptr<ushort>(y);
-            int count = 0;
-            HDP_VECTORIZED for (int x = 0; x < left.cols; ++x) count +=
-                ((l[x] >= limit) & (l[x] < white)) + ((r[x] >= limit) & (r[x] < white));
-            lost += count;
+            int below = 0, belowWhite = 0;
+            HDP_VECTORIZED for (int x = 0; x < left.cols; ++x)
+            {
+                below += (l[x] < limit) + (r[x] < limit);
+                belowWhite += (l[x] < white) + (r[x] < white);
+            }
+            dark += below;
+            lost += belowWhite - below;
         }
+        // Of a pair that is mostly white, what is faint there is all that there is.
+        lost += std::max<int64>(all - lost - 2 * dark, 0);
         const double ofThem = lost / (all * share);
         doublings += clamped((sceneShare - ofThem) / (sceneShare - lampShare), 0., 1.);
     }

@@ -43,8 +43,8 @@ CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey, double brightn
 /** What a dark pair is brightened by, see greyLevels(). Its levels are doubled, once or twice, if not more than one
 pixel in 128 becomes white by that: as few are lamps and what they shine on. If more than one in 16 would, they are a
 part of the scene, and it is left out. Between the two, the more would become white, the less a pair is brightened.
-What is white already has nothing to lose, and does not count. More than two doublings would make noise look like
-texture.
+What is white already has nothing to lose, and does not count as far as it is no more than what stays dark. More than
+two doublings would make noise look like texture.
 @param left,right See greyLevels().
 @param share See countBits().
 @return 1 to 4. */
