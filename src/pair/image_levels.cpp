@@ -170,9 +170,9 @@ double findBrightness(const Mat& left, const Mat& right, double share)
             dark += below;
             lost += belowWhite - below;
         }
-        // Of a pair that is mostly white, what is faint there is all that there is.
-        lost += std::max<int64>(all - lost - 2 * dark, 0);
-        const double ofThem = lost / (all * share);
+        // Of a pair that is mostly white, what is faint there is all that there is. What has no data is black.
+        const double areWhite = (double)(all - dark - lost), stays = dark - all * (1 - share);
+        const double ofThem = (lost + std::max(areWhite - stays, 0.)) / (all * share);
         doublings += clamped((sceneShare - ofThem) / (sceneShare - lampShare), 0., 1.);
     }
     doublings = cvRound(doublings * steps) / steps;
