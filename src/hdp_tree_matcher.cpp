@@ -7,6 +7,7 @@
 #include "map/disparity_confidence.hpp"
 #include "map/disparity_reasons.hpp"
 #include "map/disparity_sigma.hpp"
+#include "pair/image_levels.hpp"
 #include "pair/missing_pixels.hpp"
 #include "range_search.hpp"
 #include "video/temporal_confidence.hpp"
@@ -299,7 +300,7 @@ private:
             buildPairPyramids(pair.left, pair.right, pair.masks, pairPlan.pyramids, pyramids_, images,
                               given.isGiven ? &given.levels : nullptr);
         });
-        result_.brightness = 1 << pyramids_.levels.brightening;
+        result_.brightness = roundedBrightness(pyramids_.levels.brightness);
         if (given.isGiven || pairPlan.alignment.looksForAnything())
             clock_.run("alignment", [&] {
                 alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings,
@@ -342,7 +343,7 @@ private:
         const int finest = plan.finest().layer, scale = 1 << finest;
         const FrameKey key = { scale, plan.pyramids.minDisparity / (double)scale,
                                largestDisparity(plan.alignment.numDisparities, finest) };
-        predictFrame(left, key, pyramids_.levels.brightening, lastFrame_, shared_.video, prediction_);
+        predictFrame(left, key, pyramids_.levels.brightness, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, hasPrior(lastFrame_, prediction_) };
     }
 

@@ -64,17 +64,117 @@ TEST(HDPStereo_BlockSmoothing, finds_none_in_other_images)
     EXPECT_EQ(0, hdp::findBlocks(greyOf(makeSyntheticPair(Size(320, 240), 64, 1).left)).step);
 }
 
+//! Levels of floor((x + slant y + phase) / period), as a faint slope has them, with some noise
+Mat contours(Size size, int period, int slant, int phase, int noise, RNG& rng)
+{
+    Mat wall(size, CV_8U);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+        {
+            const int changed = noise > 0 && rng.uniform(0, 100) < noise;
+            wall.at<uchar>(y, x) = (uchar)(60 + (x + slant * y + phase) / period + changed);
+        }
+    return wall;
+}
+
+TEST(HDPStereo_BlockSmoothing, contours_of_a_slope_are_none)
+{
+    RNG rng(5);
+    for (int period : { 8, 16, 24, 40 })
+        for (int slant = 0; slant <= 4; ++slant)
+            for (int phase = 0; phase < BlockGrid::side; ++phase)
+                for (int noise : { 0, 3 })
+                {
+                    const Mat wall = contours(Size(320, 240), period, slant, phase, noise, rng);
+                    SCOPED_TRACE(testing::Message() << "period " << period << ", slant " << slant << ", " << phase);
+                    EXPECT_EQ(0, hdp::findBlocks(greyOf(wall)).step);
+                    EXPECT_EQ(0, hdp::findBlocks(greyOf(wall.t())).step);
+                }
+}
+
+//! The mean of steps between flat pixels at one column in eight, and the ratio to those at the others
+Vec2d meanStep(const Mat& image, int begin)
+{
+    double sums[2] = { 0, 0 }, numbers[2] = { 0, 0 };
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 3; x + 2 < image.cols; ++x)
+        {
+            const auto change = [&](int at) {
+                return std::abs((double)image.at<ushort>(y, at) - image.at<ushort>(y, at - 1));
+            };
+            if (change(x - 2) > 2 || change(x - 1) > 2 || change(x + 1) > 2 || change(x + 2) > 2 || change(x) > 80)
+                continue;
+            const int isOther = x % BlockGrid::side != begin;
+            sums[isOther] += change(x);
+            numbers[isOther] += 1;
+        }
+    const double mean = sums[0] / std::max(numbers[0], 1.);
+    return Vec2d(mean, numbers[0] < 64 ? 0 : mean / std::max(sums[1] / std::max(numbers[1], 1.), 1. / 64));
+}
+
+//! The more is changed inside of blocks, the less sure they are: no jump
+TEST(HDPStereo_BlockSmoothing, weak_blocks_count_less)
+{
+    int seen[3] = { 0, 0, 0 }; // none, weak and sure ones
+    for (int seed = 0; seed < 8; ++seed)
+        for (double step = 1; step < 16; step += 0.5)
+        {
+            RNG rng(seed);
+            const int begin = seed, size = 32; // all rows and columns tell
+            Mat grey(size, size, CV_16U), levels(size, size, CV_64F);
+            rng.fill(levels, RNG::UNIFORM, 0, 2 * step);
+            for (int y = 0; y < size; ++y)
+                for (int x = 0; x < size; ++x)
+                    grey.at<ushort>(y, x) =
+                        (ushort)(500 + levels.at<double>((y + 8 - begin) / 8, (x + 8 - begin) / 8) + rng.uniform(0, 3));
+            const Vec2d across = meanStep(grey, begin), down = meanStep(grey.t(), begin);
+            const double share = std::min(std::max((std::min(across[1], 1.5 * down[1]) - 4.5) / 1.5, 0.), 1.);
+            const BlockGrid grid = hdp::findBlocks(grey);
+            EXPECT_TRUE(share == 0 || grid.begin == begin);
+            EXPECT_NEAR(share * across[0], grid.step, 1e-9) << "seed " << seed << ", step " << step;
+            ++seen[share == 0 ? 0 : share < 1 ? 1 : 2];
+        }
+    EXPECT_TRUE(seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
+}
+
+//! Between strips of texture, contours one level apart are all that there is.
+TEST(HDPStereo_BlockSmoothing, contours_are_matched)
+{
+    const int numDisparities = 32;
+    for (int preset : { +HDPTreeMatcher::PRESET_FAST, +HDPTreeMatcher::PRESET_QUALITY })
+        for (int seed = 0; seed < 8; ++seed)
+        {
+            RNG rng(seed);
+            const Size size(400, 240);
+            const int disparity = rng.uniform(2, numDisparities - 2);
+            Mat wall = contours(size + Size(numDisparities, 0), 8, 0, seed, 0, rng);
+            for (int x = 0; x + 16 <= wall.cols; x += 96)
+            {
+                const Mat strip = wall.colRange(x, x + 16);
+                strip += randomImage(rng, strip.size(), CV_8U, 40);
+            }
+            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities, preset);
+            Mat map;
+            match(*matcher, wall.colRange(0, size.width), wall.colRange(disparity, disparity + size.width))
+                .colRange(numDisparities, size.width)
+                .convertTo(map, CV_32F, 1. / 16);
+            EXPECT_LE(countNonZero(abs(map - disparity) >= 1), 0.005 * map.total())
+                << "preset " << preset << ", disparity " << disparity << ", phase " << seed;
+        }
+}
+
 //! Blocks of one level each, but for small changes
 Mat blocks(Size size, int begin, RNG& rng)
 {
-    Mat grey(size, CV_16U);
+    const int side = BlockGrid::side;
+    Mat grey(size, CV_16U), levels(size.height / side + 2, size.width / side + 2, CV_16U);
+    for (int i = 0; i < (int)levels.total(); ++i)
+        levels.at<ushort>(i / levels.cols, i % levels.cols) =
+            (ushort)(500 + rng.uniform(0, 16) + (rng.uniform(0, 8) == 0 ? 60 : 0)); // some edges of a scene
     for (int y = 0; y < size.height; ++y)
-        for (int x = 0, level = 0; x < size.width; ++x)
-        {
-            if (x == 0 || x % BlockGrid::side == begin)
-                level = 500 + rng.uniform(0, 16) + (rng.uniform(0, 8) == 0 ? 60 : 0); // some edges of a scene
-            grey.at<ushort>(y, x) = (ushort)(level + rng.uniform(0, 2));
-        }
+        for (int x = 0; x < size.width; ++x)
+            grey.at<ushort>(y, x) =
+                (ushort)(levels.at<ushort>(y / side, (x + side - begin) / side) + rng.uniform(0, 2));
     return grey;
 }
 

@@ -124,7 +124,27 @@ TEST(HDPStereo_ImageLevels, count_of_bits)
     EXPECT_EQ(16, countBitsOf(65535));
 }
 
-TEST(HDPStereo_ImageLevels, count_of_unused_bits)
+//! From the documentation: a share of pixels, white ones left out, for each doubling
+double expectedBrightness(const Mat& left, const Mat& right)
+{
+    double doublings = 0;
+    for (int limit : { 512, 256 })
+    {
+        int lost = 0, white = 0, dark = 0;
+        for (const Mat& image : { left, right })
+        {
+            lost += cv::countNonZero((image >= limit) & (image < 1020));
+            white += cv::countNonZero(image >= 1020);
+            dark += cv::countNonZero(image < limit);
+        }
+        lost += std::max(white - dark, 0);
+        const double share = lost / (2. * left.total());
+        doublings += std::min(std::max((1. / 16 - share) / (1. / 16 - 1. / 128), 0.), 1.);
+    }
+    return doublings <= 1 ? 1 + doublings : 2 * doublings;
+}
+
+TEST(HDPStereo_ImageLevels, brightness_of_dark_pairs)
 {
     RNG rng(53);
     const Size size(64, 50);
@@ -133,35 +153,67 @@ TEST(HDPStereo_ImageLevels, count_of_unused_bits)
         SCOPED_TRACE(testing::Message() << unused << " bits");
         const int white = 1024 >> unused; // in quarters of a level
         const Mat bright = randomImage(rng, size, CV_16UC1, white), dark = randomImage(rng, size, CV_16UC1, white / 8);
-        EXPECT_EQ(std::min(unused, 2), hdp::countUnusedBits(bright, dark));
-        EXPECT_EQ(std::min(unused, 2), hdp::countUnusedBits(dark, bright));
-        for (int lamps : { 50, 51 }) // of 6400 pixels
-        {
-            Mat night = dark.clone();
-            for (int i = 0; i < lamps; ++i)
-                night.at<ushort>(i % size.height, 7 + i / size.height) = 1023;
-            EXPECT_EQ(lamps == 50 ? 2 : 0, hdp::countUnusedBits(night, dark));
-        }
+        EXPECT_EQ(1 << std::min(unused, 2), hdp::findBrightness(bright, dark));
+        EXPECT_EQ(1 << std::min(unused, 2), hdp::findBrightness(dark, bright));
+        for (int lamps : { 0, 50, 51, 100, 200, 300, 400, 500 }) // of 6400 pixels
+            for (int level : { 260, 600, 1019, 1020, 1023 })
+            {
+                Mat night = dark.clone();
+                for (int i = 0; i < lamps; ++i)
+                    night.at<ushort>(i % size.height, 7 + i / size.height) = (ushort)level;
+                const double brightness = hdp::findBrightness(night, dark);
+                EXPECT_NEAR(expectedBrightness(night, dark), brightness, 1. / 64);
+                EXPECT_TRUE((lamps > 50 && level < 1020) || brightness == 4);
+                EXPECT_TRUE(lamps < 400 || level >= 1020 || brightness == (level < 512 ? 2 : 1));
+            }
     }
 }
 
-//! Fewer bits than 8: levels are doubled.
+TEST(HDPStereo_ImageLevels, bright_pairs_stay)
+{
+    RNG rng(55);
+    for (int white = 0; white <= 100; white += 10) // percent of the pixels
+    {
+        SCOPED_TRACE(testing::Message() << white << " percent");
+        Mat image(40, 50, CV_16UC1);
+        for (int i = 0; i < (int)image.total(); ++i)
+            image.at<ushort>(i / 50, i % 50) =
+                (ushort)(i % 100 < white ? rng.uniform(1020, 1024) : rng.uniform(0, 255));
+        const double brightness = hdp::findBrightness(image, image);
+        EXPECT_NEAR(expectedBrightness(image, image), brightness, 1. / 64);
+        EXPECT_EQ(white <= 50 ? 4 : 1, brightness);
+    }
+}
+
+//! Levels of 0 to 1 that are doubled below a knee, and above it on a line to white
+double doubledBelow(double knee, double level)
+{
+    if (2 * level <= knee)
+        return 2 * level;
+    return knee >= 1 ? 1 : 1 - (1 - level) * (1 - knee) / (1 - knee / 2);
+}
+
 TEST(HDPStereo_ImageLevels, of_dark_images)
 {
     RNG rng(54);
     for (int type : { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 })
-        for (int bits : { 7, 6 })
+        for (double brightness : { 1., 1.015625, 1.5, 1.984375, 2., 2.25, 3.75, 4. })
         {
-            SCOPED_TRACE(testing::Message() << "type " << type << ", " << bits << " bits");
-            const int factor = 256 >> bits, colors = std::min(CV_MAT_CN(type), 3);
-            const Mat image = randomImage(rng, Size(37, 9), type, (2 << bits) - 1); // some are too bright
+            SCOPED_TRACE(testing::Message() << "type " << type << ", brightness " << brightness);
+            const auto expected = [&](double level) { // of 256
+                const double once = doubledBelow(std::min(brightness - 1, 1.), level / 256);
+                return std::min(256 * doubledBelow(std::max(brightness / 2 - 1, 0.), once), 255.75);
+            };
+            const int colors = std::min(CV_MAT_CN(type), 3);
+            const Mat image = randomImage(rng, Size(37, 9), type, type == CV_16UC1 ? 4096 : 256);
+            const int bits = type == CV_16UC1 ? 12 : 8;
             Mat buffer, grey;
-            const Mat bytes = hdp::byteLevels(image, bits, buffer);
+            const Mat bytes = hdp::byteLevels(image, bits, buffer, brightness);
             ASSERT_EQ(colors, bytes.channels());
-            hdp::greyLevels(image, bits, grey);
+            hdp::greyLevels(image, bits, grey, brightness);
             Mat_<double> exact;
             if (type == CV_16UC1)
-                image.convertTo(exact, CV_64F);
+                image.convertTo(exact, CV_64F, 1. / 16);
             else
                 exact = oracle::exactGrey(image);
             for (int y = 0; y < image.rows; ++y)
@@ -169,11 +221,10 @@ TEST(HDPStereo_ImageLevels, of_dark_images)
                 {
                     for (int i = 0; i < colors; ++i)
                     {
-                        const int level =
-                            type == CV_16UC1 ? image.at<ushort>(y, x) : image.ptr(y)[x * image.channels() + i];
-                        ASSERT_EQ(std::min(factor * level, 255), bytes.ptr(y)[x * colors + i]);
+                        const double level = type == CV_16UC1 ? exact(y, x) : image.ptr(y)[x * image.channels() + i];
+                        ASSERT_NEAR(expected(level), bytes.ptr(y)[x * colors + i] + 0.625, 0.63);
                     }
-                    ASSERT_NEAR(std::min(4 * factor * exact(y, x), 1023.), grey.at<ushort>(y, x), 0.51);
+                    ASSERT_NEAR(4 * expected(exact(y, x)), grey.at<ushort>(y, x) + (type == CV_16UC1 ? 1. : 0.5), 1.01);
                 }
         }
 }
@@ -321,6 +372,52 @@ TEST(HDPStereo_ImageTypes, dark_pairs_are_brightened)
             EXPECT_NEAR(aligned(bright.light, darkness * level) / darkness, aligned(dark.light, level), 1e-9);
         }
     }
+}
+
+//! Percentage of wrong pixels in a dark pair of faint texture, beside a square of highlights that takes a share of it.
+//! level: of the highlights; 0: texture of 120 to 239
+double errorBesideHighlights(HDPTreeMatcher& matcher, int seed, double share, int level)
+{
+    const int candidates = 32, margin = 8;
+    const SyntheticPair pair = makeSyntheticPair(Size(320, 240), candidates, seed);
+    Mat left = (pair.left * 0.08 + Scalar::all(83)) * 0.3, right = (pair.right * 0.08 + Scalar::all(83)) * 0.3, map;
+    const int side = cvRound(std::sqrt(share * left.total())), most = cvRound(std::sqrt(0.05 * left.total()));
+    const Point corner(120 + 10 * (seed % 5), 60 + 9 * (seed % 7)), moved(candidates / 2, 0);
+    RNG rng(seed);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            left.at<Vec3b>(corner + Point(x, y)) = right.at<Vec3b>(corner + Point(x, y) - moved) =
+                Vec3b::all((uchar)(level > 0 ? level : rng.uniform(120, 240)));
+    match(matcher, left, right).convertTo(map, CV_32F, 1. / 16);
+    Mat counts(left.size(), CV_8U, Scalar(255));
+    counts(Rect(corner.x - candidates - margin, corner.y - margin, most + candidates + 2 * margin, most + 2 * margin))
+        .setTo(0);
+    return 100. * cv::countNonZero((cv::abs(map - pair.truth) >= 1) & counts) / cv::countNonZero(counts);
+}
+
+//! The larger highlights are, the less is brightened: no size changes much. White ones do not matter.
+TEST(HDPStereo_SlowImageTypes, highlights_in_dark_pairs)
+{
+    const int seeds = 4;
+    for (int preset : { +HDPTreeMatcher::PRESET_FAST, +HDPTreeMatcher::PRESET_QUALITY })
+        for (int level : { 255, 0 })
+        {
+            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32, preset);
+            double first = 0, before = 0;
+            for (double percent : { 0., 0.5, 0.75, 0.8, 0.9, 1., 1.5, 2., 2.5, 3., 3.5, 4., 4.5, 5. })
+            {
+                SCOPED_TRACE(testing::Message() << "preset " << preset << ", level " << level << ", " << percent);
+                double error = 0;
+                for (int seed = 0; seed < seeds; ++seed)
+                    error += errorBesideHighlights(*matcher, 60 + seed, percent / 100, level) / seeds;
+                if (percent == 0)
+                    first = before = error;
+                const double limit = level == 255 ? 0.1 * first : 100;
+                EXPECT_NEAR(first, error, limit);
+                EXPECT_NEAR(before, error, 1.5);
+                before = error;
+            }
+        }
 }
 
 //! A frame of a video is as bright as it is by itself, and still joined with the one before.

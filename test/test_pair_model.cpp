@@ -74,7 +74,7 @@ PairModel makeUnusualModel()
     model.noise = 1. / 7;
     model.noiseLayer = 1;
     model.bits = 12;
-    model.brightness = 4;
+    model.brightness = 2.59375;
     model.leftBlockStart = 3;
     model.leftBlockStep = 1. / 3;
     model.rightBlockStart = 5;
@@ -186,7 +186,7 @@ TEST(HDPStereo_PairModel, levels_of_a_tile)
         PairModel model;
         {
             hdp::LevelFindings levels;
-            levels.brightening = 1;
+            levels.brightness = 2.25;
             levels.leftBlocks.begin = 3;
             levels.rightBlocks.begin = 6;
             levels.leftBlocks.step = levels.rightBlocks.step = 5;
@@ -357,7 +357,8 @@ TEST(HDPStereo_PairModel, bad_values)
         { "noiseLayer", [](PairModel& m) { m.noiseLayer = 16; } },
         { "bits", [](PairModel& m) { m.bits = 17; } },
         { "bits", [](PairModel& m) { m.depth = CV_8U; } },
-        { "brightness", [](PairModel& m) { m.brightness = 3; } },
+        { "brightness", [](PairModel& m) { m.brightness = 4.5; } },
+        { "brightness", [=](PairModel& m) { m.brightness = nan; } },
         { "leftBlockStart", [](PairModel& m) { m.leftBlockStart = 8; } },
         { "leftBlockStep", [=](PairModel& m) { m.leftBlockStep = nan; } },
         { "rightBlockStart", [](PairModel& m) { m.rightBlockStart = -1; } },

@@ -19,16 +19,6 @@ Mat moved(const Mat& image, int extension, int shift)
     return result;
 }
 
-//! How often the levels of a pair can be doubled, up to twice, with all of its pixels but one in 128 below white
-int expectedBrightening(const Mat& left, const Mat& right)
-{
-    for (int doubled = 2; doubled > 0; --doubled)
-        if ((countNonZero(left >= (1024 >> doubled)) + countNonZero(right >= (1024 >> doubled))) * 64 <=
-            (int)left.total())
-            return doubled;
-    return 0;
-}
-
 //! A picture whose levels are below a limit
 Mat darkImage(RNG& rng, Size size, int type, int levels)
 {
@@ -52,23 +42,24 @@ TEST(HDPStereo_PairPyramids, layers_of_both_images)
         const Mat extendedLeft = moved(left, plan.extension, 0);
         const Mat extendedRight = moved(right, plan.extension, plan.minDisparity);
 
-        int bits = hdp::countBits(left, right), brightening = 0;
+        const int bits = hdp::countBits(left, right);
+        double brightness = 1;
         Mat grey[2], buffer[2];
         hdp::greyLevels(extendedLeft, bits, grey[0]);
         hdp::greyLevels(extendedRight, bits, grey[1]);
         if (plan.isCensus)
-            brightening = hdp::countUnusedBits(grey[0], grey[1]);
-        bits -= brightening;
-        hdp::greyLevels(extendedLeft, bits, grey[0]);
-        hdp::greyLevels(extendedRight, bits, grey[1]);
-        Mat guide = hdp::byteLevels(extendedLeft, bits, buffer[0]).clone();
+            brightness = hdp::findBrightness(grey[0], grey[1]);
+        hdp::greyLevels(extendedLeft, bits, grey[0], brightness);
+        hdp::greyLevels(extendedRight, bits, grey[1], brightness);
+        Mat guide = hdp::byteLevels(extendedLeft, bits, buffer[0], brightness).clone();
         Mat costs[2] = { plan.isCensus ? grey[0] : guide,
-                         plan.isCensus ? grey[1] : hdp::byteLevels(extendedRight, bits, buffer[1]).clone() };
+                         plan.isCensus ? grey[1]
+                                       : hdp::byteLevels(extendedRight, bits, buffer[1], brightness).clone() };
 
         hdp::PairPyramids pyramids;
         std::vector<hdp::LayerImages> images;
         hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, pyramids, images);
-        EXPECT_EQ(brightening, pyramids.levels.brightening);
+        EXPECT_EQ(brightness, pyramids.levels.brightness);
         ASSERT_EQ((size_t)plan.layers, images.size());
         for (const hdp::LayerImages& layer : images)
         {
@@ -80,28 +71,6 @@ TEST(HDPStereo_PairPyramids, layers_of_both_images)
             costs[1] = oracle::halve(costs[1]);
         }
     }
-}
-
-TEST(HDPStereo_PairPyramids, unused_bits)
-{
-    RNG rng(53);
-    int seen[3] = { 0, 0, 0 };
-    for (int round = 0; round < 60; ++round)
-    {
-        const Size size(rng.uniform(10, 60), rng.uniform(10, 60));
-        const int levels = rng.uniform(1, 5) * 255;
-        Mat grey[2];
-        for (Mat& image : grey)
-        {
-            image = randomImage(rng, size, CV_16UC1, levels);
-            for (int lamps = rng.uniform(0, 20); lamps > 0; --lamps)
-                image.at<ushort>(rng.uniform(0, size.height), rng.uniform(0, size.width)) = 1023;
-        }
-        const int expected = expectedBrightening(grey[0], grey[1]);
-        EXPECT_EQ(expected, hdp::countUnusedBits(grey[0], grey[1])) << "round " << round;
-        ++seen[expected];
-    }
-    EXPECT_TRUE(seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
 }
 
 }} // namespace opencv_test

@@ -14,16 +14,20 @@ namespace {
 
 const int side = BlockGrid::side;
 
-HDP_TUNABLE(int, rowsThatTell, 32, "rows", "that are looked at: more cost time and find the same blocks");
+HDP_TUNABLE(int, linesThatTell, 32, "rows or columns", "that are looked at: more cost time and find the same blocks");
 HDP_TUNABLE(double, flatChange, 0.5, "grey levels", "maximum from pixel to pixel beside a step: more is texture");
 HDP_TUNABLE(int, maxStep, 20, "grey levels", "larger ones are edges of the scene, however strong the compression is");
-HDP_TUNABLE(double, minRatio, 5, "mean of the steps inside blocks",
-            "of the mean step between them: less finds blocks by chance, more overlooks weak ones");
+HDP_TUNABLE(
+    double, minRatio, 4.5, "mean of the steps inside blocks",
+    "of the mean step between them, up to which there are none: smoothing of weak ones costs more than it saves");
+HDP_TUNABLE(double, sureRatio, 6, "mean of the steps inside blocks", "of that from which they are surely blocks");
+HDP_TUNABLE(double, downWeight, 1.5, "factor",
+            "of the ratio of rows, which are only to confirm the columns: more confirms contours, less loses blocks");
 HDP_TUNABLE(int, minSteps, 64, "steps", "between blocks, for a mean: fewer find blocks by chance");
 HDP_TUNABLE(int, smoothedSteps, 4, "mean steps between blocks",
             "that are taken away: larger ones are edges of the scene");
 
-//! Adds what a row's pixels tell of the steps before them, by columns.
+//! Adds what the pixels of a row or column tell of the steps before them.
 void addSteps(const ushort* row, int width, ushort* steps, ushort* counts)
 {
     const ushort maxChange = (ushort)(flatChange * greyScale), max = (ushort)(maxStep * greyScale);
@@ -62,34 +66,71 @@ void smoothSteps(const BlockGrid& grid, Mat& grey)
     });
 }
 
-} // namespace
-
-BlockGrid findBlocks(const Mat& grey)
+/** Some rows of an image, or some columns as rows. They begin in all places of a block: blocks of compression are where
+they are in all of them, but slanted contours are not. */
+Mat someLines(const Mat& grey, bool areColumns)
 {
-    const int rows = std::min<int>(grey.rows, rowsThatTell);
-    std::vector<ushort> steps(grey.cols), counts(grey.cols);
-    for (int i = 0; i < rows; ++i)
-        addSteps(grey.ptr<ushort>((2 * i + 1) * grey.rows / (2 * rows)), grey.cols, steps.data(), counts.data());
+    const int all = areColumns ? grey.cols : grey.rows, count = std::min<int>(all, linesThatTell);
+    Mat lines(count, areColumns ? grey.rows : grey.cols, CV_16U);
+    for (int i = 0; i < count; ++i)
+    {
+        const int line = std::min((2 * i + 1) * all / (2 * count) / side * side + i % side, all - 1);
+        if (areColumns)
+            Mat(grey.col(line).t()).copyTo(lines.row(i));
+        else
+            grey.row(line).copyTo(lines.row(i));
+    }
+    return lines;
+}
+
+//! One in eight, which are larger than the others
+struct Steps
+{
+    int begin = 0;
+    double mean = 0, ratio = 0; // of the mean of the others
+};
+
+Steps findSteps(const Mat& lines)
+{
+    const double leastStep = 1. / 64; // of the others, if they are as good as none
+    std::vector<ushort> steps(lines.cols), counts(lines.cols);
+    for (int i = 0; i < lines.rows; ++i)
+        addSteps(lines.ptr<ushort>(i), lines.cols, steps.data(), counts.data());
 
     int sums[side] = {}, numbers[side] = {}, sum = 0, number = 0;
-    for (int x = 0; x < grey.cols; ++x)
+    for (int x = 0; x < lines.cols; ++x)
     {
         sums[x % side] += steps[x];
         numbers[x % side] += counts[x];
         sum += steps[x];
         number += counts[x];
     }
-    BlockGrid grid;
+    Steps found;
     for (int i = 0; i < side; ++i)
     {
-        const double step = sums[i] / (double)std::max(numbers[i], 1),
-                     others = (sum - sums[i]) / (double)std::max(number - numbers[i], 1);
-        if (numbers[i] >= minSteps && step >= minRatio * others)
+        const double mean = sums[i] / (double)std::max(numbers[i], 1),
+                     others = (sum - sums[i]) / (double)std::max(number - numbers[i], 1),
+                     ratio = mean / std::max(others, leastStep);
+        if (numbers[i] >= minSteps && ratio > found.ratio)
         {
-            grid.begin = i;
-            grid.step = step;
+            found.begin = i;
+            found.mean = mean;
+            found.ratio = ratio;
         }
     }
+    return found;
+}
+
+} // namespace
+
+BlockGrid findBlocks(const Mat& grey)
+{
+    const Steps across = findSteps(someLines(grey, false)), down = findSteps(someLines(grey, true));
+    const double share =
+        clamped((std::min(across.ratio, downWeight * down.ratio) - minRatio) / (sureRatio - minRatio), 0., 1.);
+    BlockGrid grid;
+    grid.begin = across.begin;
+    grid.step = share * across.mean;
     return grid;
 }
 

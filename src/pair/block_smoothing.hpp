@@ -15,13 +15,17 @@ struct BlockGrid
     {
         side = 8
     };
-    int begin = 0;   // the first column that begins a block, less than side
-    double step = 0; // mean step from block to block where both are flat, in the units of the levels; 0: none are found
+    int begin = 0; // the first column that begins a block, less than side
+    double step =
+        0; // mean step from block to block where both are flat, less if it is not sure that they are blocks, in
+           // the units of the levels; 0: none are found
 };
 
 /** Finds the blocks that strong compression makes visible. Where what remains of a block is flat, levels change between
 blocks alone: the mean of small steps between flat pixels is several times as large at one column in eight as at the
-others. Some rows tell.
+others, and at one row in eight. The contours of a faint slope are so in one direction at most. The ratio of columns, or
+1.5 times that of rows if that is less, tells how sure it is: from 6 on, the step of the grid is the mean one, down to
+4.5 a part of it, and less is smoothed. Some rows and columns tell.
 @param grey See greyLevels().
 @return The grid. */
 CV_EXPORTS BlockGrid findBlocks(const Mat& grey);

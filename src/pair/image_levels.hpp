@@ -19,28 +19,40 @@ again, if more than one pixel in 1024 has a level of 128 or more.
 @param share Of the pixels that count; the others are black. */
 CV_EXPORTS int countBits(const Mat& left, const Mat& right, double share = 1);
 
-/** The colours or grey levels of an image in 8 bits, the upper ones of those in use. If fewer than 8 are in use, levels
-are doubled as often; what is brighter then is white.
+/** The colours or grey levels of an image in 8 bits, the upper ones of those in use.
 @param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
-@param bits See countBits(); of a dark pair, less countUnusedBits().
+@param bits See countBits().
 @param buffer Memory for the result.
+@param brightness See greyLevels().
 @return CV_8UC1 or CV_8UC3: the image itself, if it is that. */
-CV_EXPORTS Mat byteLevels(const Mat& image, int bits, Mat& buffer);
+CV_EXPORTS Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness = 1);
 
 /** Grey levels 0.299 R + 0.587 G + 0.114 B in 1 / greyScale of a level: the upper 10 of the bits in use, if there are
 more than 8. Means of many pixels tell faint texture apart that 8 bits lose: the census cost of the coarse layers lives
 on it.
-@param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
-@param bits See byteLevels().
-@param grey Receives CV_16UC1. */
-CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey);
 
-/** How many upper bits a dark pair leaves unused: the maximum, up to 2, with which all pixels but one in 128 are below
-white when their levels are doubled as often. As few are lamps and what they shine on. More than 2 would make noise look
-like texture.
+A brightness of 2 or 4 doubles levels once or twice; what is brighter then is white. One between doubles, the last time,
+dark levels alone: below the knee, which is the share b - 1 of white for b < 2 and b / 2 - 1 for b > 2. Those above it
+are on the line from there to white. So the levels depend on the brightness without a jump.
+@param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
+@param bits See countBits().
+@param grey Receives CV_16UC1.
+@param brightness 1 to 4. */
+CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey, double brightness = 1);
+
+/** What a dark pair is brightened by, see greyLevels(). Its levels are doubled, once or twice, if not more than one
+pixel in 128 becomes white by that: as few are lamps and what they shine on. If more than one in 16 would, they are a
+part of the scene, and it is left out. Between the two, the more would become white, the less a pair is brightened.
+What is white already has nothing to lose, and does not count as far as it is no more than what stays dark. More than
+two doublings would make noise look like texture.
 @param left,right See greyLevels().
-@param share See countBits(). */
-CV_EXPORTS int countUnusedBits(const Mat& left, const Mat& right, double share = 1);
+@param share See countBits().
+@return 1 to 4. */
+CV_EXPORTS double findBrightness(const Mat& left, const Mat& right, double share = 1);
+
+/** The power of two that is about a brightness, for what is found in a brightened pair and told in levels of the
+images. It can be divided by and multiplied with again without a rest: a model of the pair gives the same map. */
+inline int roundedBrightness(double brightness) { return brightness < 1.5 ? 1 : brightness < 3 ? 2 : 4; }
 
 }}} // namespace cv::stereo::hdp
 

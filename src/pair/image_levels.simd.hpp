@@ -9,7 +9,7 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! Grey levels of BGR pixels, doubled some times, see greyLevels(). channels: 3, or 4 with alpha.
+//! Grey levels of BGR pixels, doubled some times and not cut off, see greyLevels(). channels: 3, or 4 with alpha.
 void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
@@ -18,12 +18,12 @@ namespace {
 
 template <int channels> void greyRow(const uchar* pixels, int width, int times, ushort* levels)
 {
-    const unsigned shift = 14 - times, half = 1u << (shift - 1), white = whiteLevel;
+    const unsigned shift = 14 - times, half = 1u << (shift - 1);
     static_assert(65536 / greyScale == 1 << 14, "The weights are in 1 / 65536.");
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const uchar* bgr = pixels + channels * x;
-        levels[x] = (ushort)std::min((7471u * bgr[0] + 38470u * bgr[1] + 19595u * bgr[2] + half) >> shift, white);
+        levels[x] = (ushort)((7471u * bgr[0] + 38470u * bgr[1] + 19595u * bgr[2] + half) >> shift);
     }
 }
 

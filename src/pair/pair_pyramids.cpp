@@ -63,17 +63,17 @@ void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, doubl
 {
     LevelFindings& found = pyramids.levels;
     Mat &leftLevels = pyramids.leftLevels, &rightLevels = pyramids.rightLevels;
-    const auto convert = [&](int bits) {
-        greyLevels(left, bits, leftLevels);
-        greyLevels(right, bits, rightLevels);
+    const auto convert = [&] {
+        greyLevels(left, found.bits, leftLevels, found.brightness);
+        greyLevels(right, found.bits, rightLevels, found.brightness);
     };
-    convert(found.bits - found.brightening);
+    convert();
     if (!isKnown)
     {
-        found.brightening =
-            countUnusedBits(blackened(leftLevels, masks.left), blackened(rightLevels, masks.right), share);
-        if (found.brightening > 0)
-            convert(found.bits - found.brightening);
+        found.brightness =
+            findBrightness(blackened(leftLevels, masks.left), blackened(rightLevels, masks.right), share);
+        if (found.brightness > 1)
+            convert();
     }
     if (!plan.smoothsBlocks)
         return;
@@ -110,7 +110,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
     if (!given)
         levels.bits = countBits(blackened(left, masks.left), blackened(right, masks.right), share);
     if (!plan.isCensus)
-        levels.brightening = 0;
+        levels.brightness = 1;
     if (plan.isCensus)
     {
         const PairMasks moved = masks.isEmpty() ? masks : PairMasks({ pyramids.leftMask[0], pyramids.rightMask[0] });
@@ -120,8 +120,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
     }
     else
         buildPyramid({ byteLevels(shifted, levels.bits, pyramids.rightBytes) }, layers, pyramids.right);
-    const int bits = levels.bits - levels.brightening;
-    buildPyramid({ byteLevels(extended, bits, pyramids.leftBytes) }, layers, pyramids.left);
+    buildPyramid({ byteLevels(extended, levels.bits, pyramids.leftBytes, levels.brightness) }, layers, pyramids.left);
     images.resize(layers);
     for (int layer = 0; layer < layers; ++layer)
     {

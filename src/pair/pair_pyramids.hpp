@@ -29,7 +29,7 @@ struct LayerImages
 struct LevelFindings
 {
     int bits = 8;                      // in use, see countBits()
-    int brightening = 0;               // how often the levels of the pair are doubled
+    double brightness = 1;             // what the levels are brightened by, see greyLevels()
     BlockGrid leftBlocks, rightBlocks; // of JPEG compression
 };
 
@@ -53,7 +53,7 @@ struct PyramidPlan
 };
 
 /** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,
-see countUnusedBits(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well
+see findBrightness(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well
 exposed.
 @param left CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param right Of the same size and type.

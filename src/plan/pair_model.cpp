@@ -5,6 +5,7 @@
 #include "pair_model.hpp"
 
 #include "../base/grey_levels.hpp"
+#include "../pair/image_levels.hpp"
 #include "../scanlines/sparse_matches.hpp"
 
 #include <cmath>
@@ -37,7 +38,7 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("noise", m.noise, isStep(m.noise), notNegative);
     visit("noiseLayer", m.noiseLayer, m.noiseLayer >= 0 && m.noiseLayer <= 15, "0..15");
     visit("bits", m.bits, m.bits >= 8 && m.bits <= (m.depth == CV_8U ? 8 : 16), "8..16, and 8 for CV_8U");
-    visit("brightness", m.brightness, m.brightness == 1 || m.brightness == 2 || m.brightness == 4, "1, 2 or 4");
+    visit("brightness", m.brightness, m.brightness >= 1 && m.brightness <= 4, "1..4");
     visit("leftBlockStart", m.leftBlockStart, m.leftBlockStart >= 0 && m.leftBlockStart < BlockGrid::side, "0..7");
     visit("leftBlockStep", m.leftBlockStep, isStep(m.leftBlockStep), notNegative);
     visit("rightBlockStart", m.rightBlockStart, m.rightBlockStart >= 0 && m.rightBlockStart < BlockGrid::side, "0..7");
@@ -244,11 +245,10 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     given.alignment.frame = ImageFrame(wholeSize(model, size) + Size(plan.extension, 0));
     if (!given.isGiven)
         return given;
-    const int brightness = plan.isCensus ? model.brightness : 1;
     LevelFindings& levels = given.levels;
     levels.bits = model.bits;
-    while (1 << levels.brightening < brightness)
-        ++levels.brightening;
+    levels.brightness = plan.isCensus ? model.brightness : 1;
+    const int brightness = roundedBrightness(levels.brightness);
     const double unit = greyScale * brightness;
     levels.leftBlocks.begin = blockStart(model.leftBlockStart - model.x + plan.extension);
     levels.leftBlocks.step = model.leftBlockStep * unit;
@@ -274,8 +274,9 @@ PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisp
                       const PairFindings& findings)
 {
     PairModel model;
-    const double unit = greyScale << levels.brightening;
-    const LightModel light = findings.light.scaled(1. / (1 << levels.brightening));
+    const int brightness = roundedBrightness(levels.brightness);
+    const double unit = greyScale * brightness;
+    const LightModel light = findings.light.scaled(1. / brightness);
     model.width = model.tileWidth = size.width;
     model.height = model.tileHeight = size.height;
     model.depth = depth;
@@ -286,10 +287,10 @@ PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisp
     model.areRowsMoved = findings.hasRows;
     model.light.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
     model.isLightChanged = findings.hasLight;
-    model.noise = findings.noise.deviation / (1 << levels.brightening);
+    model.noise = findings.noise.deviation / brightness;
     model.noiseLayer = findings.noise.layer;
     model.bits = levels.bits;
-    model.brightness = 1 << levels.brightening;
+    model.brightness = levels.brightness;
     model.leftBlockStart = blockStart(levels.leftBlocks.begin - plan.extension);
     model.leftBlockStep = levels.leftBlocks.step / unit;
     model.rightBlockStart = blockStart(levels.rightBlocks.begin - plan.extension - plan.minDisparity);

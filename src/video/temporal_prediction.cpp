@@ -62,7 +62,7 @@ void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
 
 /** The pyramid of this frame as the exposure of the last one would show it: levels of the same mean and deviation, if
 they are not about the same. They are only compared, so it need not be exact. */
-const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const std::vector<Mat>& now, int brightening,
+const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const std::vector<Mat>& now, double brightness,
                                         std::vector<Mat>& exposed)
 {
     Scalar meanBefore, deviationBefore, mean, deviation;
@@ -71,7 +71,7 @@ const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const std::vect
     const double gain = deviationBefore[0] / std::max(deviation[0], 1.), offset = meanBefore[0] - gain * mean[0];
     const bool isSame = std::abs(gain - 1) < sameGain && std::abs(meanBefore[0] - mean[0]) < sameMean;
     const bool isDark =
-        deviationBefore[0] < (minDeviation << last.brightening) || deviation[0] < (minDeviation << brightening);
+        deviationBefore[0] < (minDeviation * last.brightness) || deviation[0] < (minDeviation * brightness);
     if (isSame || isDark || gain > maxGain || gain * maxGain < 1)
         return now;
     exposed.resize(now.size());
@@ -132,7 +132,7 @@ bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const Frame
             change += std::abs(now.ptr(y)[x] - before.ptr(at.y)[at.x]);
             contrast += std::abs(now.ptr(y)[x] - mean);
         }
-    return 100 * known < cutKnown * (int64)now.total() || contrast < (cutContrast * known << last.brightening) ||
+    return 100 * known < cutKnown * (int64)now.total() || contrast < (cutContrast * known * last.brightness) ||
            (change > cutNoise * known && 100 * change > cutShare * contrast);
 }
 
@@ -220,19 +220,19 @@ void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
 
 } // namespace
 
-void predictFrame(const Mat& left, const FrameKey& key, int brightening, const FrameMemory& last, VideoScratch& scratch,
-                  FramePrediction& p)
+void predictFrame(const Mat& left, const FrameKey& key, double brightness, const FrameMemory& last,
+                  VideoScratch& scratch, FramePrediction& p)
 {
     p.verdict = FIRST;
     p.key = key;
-    p.brightening = brightening;
+    p.brightness = brightness;
     p.motion = CameraMotion();
     if (std::min(left.cols, left.rows) < cell)
         return;
     buildGrey(left, scratch.halved, p.grey);
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
-    const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, brightening, scratch.exposed);
+    const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, brightness, scratch.exposed);
     p.motion = findMotion(last, exposed, scratch.points);
     const std::vector<Mat>& grey = (int)scratch.points.size() < exposurePoints ? p.grey : exposed;
     if (p.motion.error > noMotion * cell)

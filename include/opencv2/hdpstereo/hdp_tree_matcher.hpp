@@ -88,7 +88,8 @@ time; two matchers never share state. Its buffers are kept for the next pair. cl
 These are as few, 8 to 16, as are enough for all but one in 1024 pixels of the pair; what is brighter, such as
 highlights and defective pixels, is white. So images of 8 bits times 2^k give the same map as without the
 factor, unless they are dark: darker ones gain contrast. With COST_CENSUS, a dark pair of any type is brightened, by a
-factor of 2 or 4 that leaves all but one in 128 pixels below white. Findings are about the levels of the images.
+factor of 2 or 4 if not more than one pixel in 128 becomes white by that, and less and less up to one in 16. Findings
+are about the levels of the images.
 CV_32FC1 is scaled to CV_16UC1, by one scale for both images: the darkest pixel that counts is black and the brightest
 white, one in 1024 being left out at each end. Pixels that are not finite have no data, as if masked. Findings are then
 about these levels.

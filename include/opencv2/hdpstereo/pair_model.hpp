@@ -85,8 +85,10 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     CV_PROP_RW double noise;   //!< as HDPTreeMatcher::Findings::noise, of noiseLayer: finite, >= 0
     CV_PROP_RW int noiseLayer; //!< the layer in which it was measured, 0..15; 0 is the image
 
-    CV_PROP_RW int bits;       //!< that levels of CV_16U have: 8..16. For CV_8U 8
-    CV_PROP_RW int brightness; //!< what a dark pair is brightened by, for HDPTreeMatcher::COST_CENSUS: 1, 2 or 4
+    CV_PROP_RW int bits; //!< that levels of CV_16U have: 8..16. For CV_8U 8
+    //! What the dark levels of a dark pair are brightened by, for HDPTreeMatcher::COST_CENSUS: 1..4. From 1 to 2 and
+    //! from 2 to 4, ever fewer of the bright levels are held back.
+    CV_PROP_RW double brightness;
 
     //! First column, 0..7, of a block of JPEG compression, and the mean step between blocks in grey levels of 0 to 255,
     //! finite, >= 0; 0: there are none in this image, and nothing is smoothed in either. See Params::noiseThreshold.
