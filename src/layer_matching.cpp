@@ -7,6 +7,7 @@
 #include "base/grey_levels.hpp"
 #include "base/tunable.hpp"
 #include "forest/disparity_prediction.hpp"
+#include "forest/repeated_surfaces.hpp"
 #include "forest/tree_planes.hpp"
 #include "pair/disparity_ranges.hpp"
 #include "map/edge_vote.hpp"
@@ -160,6 +161,8 @@ private:
         if (plan_.prefersLastFrame)
             preferPredicted(shared_.predicted, true, volume);
         const bool hasPlanes = plan_.trees.prefersPlanes && volume.isUniform; // which ranges may change
+        if (hasPlanes)
+            preferLargestSurfaces(own_.census, volume);
         const bool isPredicted = hasPlanes && plan_.prefersLastFrame;
         if (isPredicted)
             predictWinners(shared_.predicted, volume, result_.winners); // good enough for planes

@@ -1,0 +1,403 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "repeated_surfaces.hpp"
+
+#include "../base/tunable.hpp"
+#include "../base/vectorized.hpp"
+#include <numeric>
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+HDP_TUNABLE(int, fitRise, 12, "cost", "above the lowest one of the pixel: candidates up to it fit");
+HDP_TUNABLE(int, barrierRise, 24, "cost", "above the lowest one: what is between two runs; less splits what is noisy");
+HDP_TUNABLE(int, widestRun, 6, "candidates", "beyond the first one, of runs that may join: wider ones tell nothing");
+HDP_TUNABLE(int, maxStep, 1, "halves of a candidate", "between runs of a surface: more joins the surface behind");
+HDP_TUNABLE(int, minPiece, 20, "pixels", "of connected runs: smaller ones are noise");
+HDP_TUNABLE(int, maxGap, 16, "pixels", "without runs, that surfaces go on beyond: as the inside of a brick");
+HDP_TUNABLE(int, minPixels, 100, "pixels", "of a surface, and of an area: smaller ones are noise");
+HDP_TUNABLE(int, sampleStep, 4, "pixels", "between those that tell whether anything repeats");
+HDP_TUNABLE(double, minRepeated, 0.05, "share of these pixels", "that repeat: less is found in any pair");
+HDP_TUNABLE(int, minContrast, 20, "grey levels", "within a period: what is bare repeats itself by chance");
+HDP_TUNABLE(int, maxDifference, 12, "grey levels", "between pixels that repeat each other");
+HDP_TUNABLE(int, penalty, 32, "cost", "of candidates of other surfaces: more than the large penalty may save");
+
+//! Successive candidates that fit
+struct Run
+{
+    int first, last;
+    int centre; // of its lowest costs, in halves of a candidate
+};
+
+//! Where candidates fit
+struct Fit
+{
+    int first, last;
+    int lowest; // cost
+    bool hasBarrier;
+};
+
+Fit fitOf(const uchar* costs, int count)
+{
+    uchar lowest = UCHAR_MAX, highest = 0;
+    HDP_VECTORIZED for (int k = 0; k < count; ++k) lowest = std::min(lowest, costs[k]);
+    const short limit = (short)(lowest + fitRise), end = (short)count;
+    short first = end, last = 0;
+    HDP_VECTORIZED for (short k = 0; k < end; ++k)
+    {
+        const bool fits = costs[k] <= limit;
+        first = std::min(first, fits ? k : end);
+        last = std::max(last, fits ? k : (short)0);
+    }
+    HDP_VECTORIZED for (int k = first; k < last; ++k) highest = std::max(highest, costs[k]);
+    const Fit fit = { first, last, lowest, highest >= lowest + barrierRise };
+    return fit;
+}
+
+void addRuns(const uchar* costs, const Fit& fit, std::vector<Run>& runs)
+{
+    bool isOpen = false;
+    int lowest = 0, from = 0;
+    for (int k = fit.first; k <= fit.last; ++k)
+    {
+        if (costs[k] > fit.lowest + fitRise)
+        {
+            isOpen &= costs[k] < fit.lowest + barrierRise;
+            continue;
+        }
+        if (!isOpen)
+            runs.push_back({ k, k, 2 * k });
+        if (!isOpen || costs[k] < lowest)
+        {
+            lowest = costs[k];
+            from = k;
+        }
+        isOpen = true;
+        runs.back().last = k;
+        if (costs[k] == lowest)
+            runs.back().centre = from + k;
+    }
+}
+
+//! Sets of connected elements, of which the first one stands for all
+class Sets
+{
+public:
+    explicit Sets(size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), 0); }
+    int find(int element)
+    {
+        while (parents_[element] != element)
+            element = parents_[element] = parents_[parents_[element]];
+        return element;
+    }
+    void join(int a, int b)
+    {
+        a = find(a);
+        b = find(b);
+        parents_[std::max(a, b)] = std::min(a, b);
+    }
+
+private:
+    std::vector<int> parents_;
+};
+
+class RepeatedSurfaces
+{
+public:
+    RepeatedSurfaces(const CensusCost& own, CostVolume& volume)
+        : own_(own), volume_(volume), width_(volume.size.width), pixels_(volume.size.area())
+    {
+    }
+
+    int prefer()
+    {
+        if (!looksRepeated())
+            return 0;
+        fits_.resize(pixels_);
+        firsts_.resize(pixels_ + 1);
+        findFits();
+        joinRuns();
+        int count = 0;
+        for (const std::vector<int>& area : findAreas())
+            if ((int)area.size() >= minPixels)
+            {
+                preferLargest(area);
+                count += (int)area.size();
+            }
+        return count;
+    }
+
+private:
+    void findFits()
+    {
+        const int count = volume_.of(0).interval.size();
+        parallel_for_(Range(0, volume_.size.height), [&](const Range& rows) {
+            for (int i = rows.start * width_; i < rows.end * width_; ++i)
+                fits_[i] = fitOf(costsOf(i), count);
+        });
+    }
+
+    //! Whether enough of some pixels have several runs, and repeat in the left image: most pairs need no more.
+    bool looksRepeated() const
+    {
+        const int count = volume_.of(0).interval.size();
+        int samples = 0, repeated = 0;
+        std::vector<Run> runs;
+        for (int y = sampleStep / 2; y < volume_.size.height; y += sampleStep)
+            for (int x = sampleStep / 2; x < width_; x += sampleStep, ++samples)
+            {
+                const int i = y * width_ + x;
+                const Fit fit = fitOf(costsOf(i), count);
+                if (!fit.hasBarrier)
+                    continue;
+                runs.clear();
+                addRuns(costsOf(i), fit, runs);
+                int periods = 0;
+                for (size_t a = 1; a < runs.size() && periods == 0; ++a)
+                    periods = periodsAlike(i, runs[a].centre - runs[a - 1].centre);
+                repeated += periods > 0;
+            }
+        return repeated > minRepeated * samples;
+    }
+
+    //! Periods of so many halves of a candidate that are whole pixels, if the pixel repeats beside it by them, or 0
+    int periodsAlike(int pixel, int gap) const
+    {
+        const int unit = 2 * volume_.steps; // halves of a candidate per pixel
+        int periods = gap;
+        while (periods % unit != 0)
+            periods += gap;
+        periods /= unit;
+        return isAlike(pixel, periods) || isAlike(pixel, -periods) ? periods : 0;
+    }
+
+    //! From runs to surfaces. What noise leaves out, or has no texture, does not part them.
+    void joinRuns()
+    {
+        for (int i = 0; i < pixels_; ++i)
+        {
+            addRuns(costsOf(i), fits_[i], runs_);
+            firsts_[i + 1] = (int)runs_.size();
+        }
+        sizes_.resize(runs_.size());
+        surfaces_.resize(runs_.size());
+        std::iota(surfaces_.begin(), surfaces_.end(), 0);
+        Sets joined(runs_.size());
+        joinNeighbours(joined);
+        keepLarge(joined, minPiece);
+        joinAcrossGaps(joined);
+        keepLarge(joined, minPixels);
+        isCounted_.assign(surfaces_.size(), 0);
+    }
+
+    void joinNeighbours(Sets& joined) const
+    {
+        for (int i = 0; i < pixels_; ++i)
+        {
+            if ((i + 1) % width_ != 0)
+                joinPixels(i, i + 1, joined);
+            if (i + width_ < pixels_)
+                joinPixels(i, i + width_, joined);
+        }
+    }
+
+    //! From pixels with several runs to the next ones in the row and in the column that have the same surface
+    void joinAcrossGaps(Sets& joined) const
+    {
+        for (int i = 0; i < pixels_; ++i)
+            for (int a = firsts_[i]; isRepeated(i) && a < firsts_[i + 1]; ++a)
+            {
+                const int x = i % width_, y = i / width_;
+                joinNext(i, a, -1, std::min(x, +maxGap), joined);
+                joinNext(i, a, 1, std::min(width_ - 1 - x, +maxGap), joined);
+                joinNext(i, a, -width_, std::min(y, +maxGap), joined);
+                joinNext(i, a, width_, std::min(volume_.size.height - 1 - y, +maxGap), joined);
+            }
+    }
+
+    void joinNext(int pixel, int run, int step, int farthest, Sets& joined) const
+    {
+        for (int k = 0, q = pixel + step; k < farthest; ++k, q += step)
+            for (int a = firsts_[q]; a < firsts_[q + 1]; ++a)
+                if (areNear(runs_[a], runs_[run]))
+                    return joined.join(surfaces_[a], surfaces_[run]);
+    }
+
+    //! Leaves out the runs of small surfaces.
+    void keepLarge(Sets& joined, int least)
+    {
+        std::fill(sizes_.begin(), sizes_.end(), 0);
+        for (int& surface : surfaces_)
+        {
+            surface = joined.find(surface);
+            ++sizes_[surface];
+        }
+        int kept = 0;
+        for (int i = 0, a = 0; i < pixels_; ++i)
+        {
+            const int end = firsts_[i + 1];
+            firsts_[i] = kept;
+            for (; a < end; ++a)
+                if (sizes_[surfaces_[a]] >= least)
+                {
+                    runs_[kept] = runs_[a];
+                    surfaces_[kept++] = surfaces_[a];
+                }
+        }
+        firsts_[pixels_] = kept;
+        surfaces_.resize(kept);
+        std::fill(sizes_.begin(), sizes_.end(), 0);
+    }
+
+    void joinPixels(int p, int q, Sets& joined) const
+    {
+        for (int a = firsts_[p], b = firsts_[q]; a < firsts_[p + 1] && b < firsts_[q + 1];)
+        {
+            if (areNear(runs_[a], runs_[b]))
+                joined.join(surfaces_[a], surfaces_[b]);
+            runs_[a].centre <= runs_[b].centre ? ++a : ++b;
+        }
+    }
+
+    static bool areNear(const Run& a, const Run& b)
+    {
+        return std::abs(a.centre - b.centre) <= maxStep && std::max(a.last - a.first, b.last - b.first) <= widestRun;
+    }
+
+    bool isRepeated(int pixel) const { return firsts_[pixel + 1] - firsts_[pixel] > 1; }
+
+    //! Pixels with several surfaces, together if they have some in common: not only if they touch, as the corners of
+    //! a grid do not
+    std::vector<std::vector<int>> findAreas() const
+    {
+        Sets joined(sizes_.size());
+        for (int i = 0; i < pixels_; ++i)
+            for (int a = firsts_[i] + 1; a < firsts_[i + 1]; ++a)
+                joined.join(surfaces_[a - 1], surfaces_[a]);
+        std::vector<int> numbers(sizes_.size(), -1);
+        std::vector<std::vector<int>> areas;
+        for (int i = 0; i < pixels_; ++i)
+        {
+            if (!isRepeated(i))
+                continue;
+            int& number = numbers[joined.find(surfaces_[firsts_[i]])];
+            if (number < 0)
+            {
+                number = (int)areas.size();
+                areas.push_back(std::vector<int>());
+            }
+            areas[number].push_back(i);
+        }
+        return areas;
+    }
+
+    void preferLargest(const std::vector<int>& area)
+    {
+        for (int i : area)
+            for (int a = firsts_[i]; a < firsts_[i + 1]; ++a)
+                count(i, a);
+        for (int i : area)
+        {
+            int best = firsts_[i];
+            for (int a = best + 1; a < firsts_[i + 1]; ++a)
+                if (sizes_[surfaces_[a]] > sizes_[surfaces_[best]])
+                    best = a;
+            raiseOthers(costsOf(i), volume_.of(i).interval.size(), runs_[best]);
+        }
+        for (int i : area)
+            for (int a = firsts_[i]; a < firsts_[i + 1]; ++a)
+                sizes_[surfaces_[a]] = 0;
+    }
+
+    //! A run of a pixel with several ones, and what is beside it
+    void count(int pixel, int run)
+    {
+        const int gaps[] = { run > firsts_[pixel] ? runs_[run].centre - runs_[run - 1].centre : 0,
+                             run + 1 < firsts_[pixel + 1] ? runs_[run + 1].centre - runs_[run].centre : 0 };
+        for (int gap : gaps)
+        {
+            const int periods = gap > 0 ? periodsAlike(pixel, gap) : 0;
+            if (periods == 0)
+                continue;
+            const int period = gap / (2 * volume_.steps);
+            ++sizes_[surfaces_[run]];
+            countBeside(pixel, run, 1, period, periods);
+            countBeside(pixel, run, -1, period, periods);
+            return;
+        }
+    }
+
+    //! The last period before the pattern ends, where a pixel has no other surface. Not what is behind the pattern: it
+    //! does not repeat it.
+    void countBeside(int pixel, int run, int step, int period, int periods)
+    {
+        const int row = pixel / width_;
+        int end = pixel + step;
+        for (int k = 0; k < period && end >= 0 && end / width_ == row; ++k, end += step)
+            if (isRepeated(end))
+                return;
+        for (int q = pixel + step; q != end; q += step)
+        {
+            const int own = firsts_[q];
+            if (own == firsts_[q + 1] || surfaces_[own] != surfaces_[run] || isCounted_[own] ||
+                !isAlike(q, -step * periods))
+                continue;
+            isCounted_[own] = 1;
+            ++sizes_[surfaces_[run]];
+        }
+    }
+
+    //! Whether a pixel and those above and below are like those at a distance in the row, and others in between are not
+    bool isAlike(int pixel, int distance) const
+    {
+        const int x = pixel % width_, y = pixel / width_;
+        if (x + distance < 0 || x + distance >= width_)
+            return false;
+        int darkest = UCHAR_MAX, brightest = 0;
+        for (int k = std::min(distance, 0); k <= std::max(distance, 0); ++k)
+        {
+            const int level = own_.leftPixels(y)[4 * (x + k) + CensusCost::greyByte];
+            darkest = std::min(darkest, level);
+            brightest = std::max(brightest, level);
+        }
+        bool alike = brightest - darkest >= minContrast;
+        for (int row = std::max(y - 1, 0); row <= std::min(y + 1, volume_.size.height - 1); ++row)
+        {
+            const uchar* const grey = own_.leftPixels(row) + CensusCost::greyByte;
+            alike &= std::abs(grey[4 * x] - grey[4 * (x + distance)]) <= maxDifference;
+        }
+        return alike;
+    }
+
+    static void raiseOthers(uchar* costs, int count, const Run& run)
+    {
+        for (int k = 0; k < count; ++k)
+            if (k < run.first - 1 || k > run.last + 1)
+                costs[k] = (uchar)std::min(costs[k] + penalty, +UCHAR_MAX);
+    }
+
+    uchar* costsOf(int pixel) const { return &volume_.costs[volume_.of(pixel).start()]; }
+
+    const CensusCost& own_;
+    CostVolume& volume_;
+    const int width_, pixels_;
+    std::vector<Fit> fits_;
+    std::vector<Run> runs_;
+    std::vector<int> firsts_;   // by pixel: of runs
+    std::vector<int> surfaces_; // of runs
+    std::vector<int> sizes_;    // of surfaces, in the area that is looked at
+    std::vector<uchar> isCounted_;
+};
+
+} // namespace
+
+int preferLargestSurfaces(const CensusCost& own, CostVolume& volume)
+{
+    CV_DbgAssert(volume.isUniform);
+    return RepeatedSurfaces(own, volume).prefer();
+}
+
+}}} // namespace cv::stereo::hdp
