@@ -290,14 +290,19 @@ TEST(HDPStereo_SlowRowAlignment, finds_what_was_done)
     for (size_t i = 0; i < sizeof models / sizeof *models; ++i)
         for (const double noise : { 0., 8. })
         {
-            SCOPED_TRACE(format("model %d, noise %.0f", (int)i, noise));
+            const int rounds = noise > 0 ? 4 : 1; // one noise is luck
+            double error = 0;
             RNG rng(i);
-            Mat left = pair.left.clone(), right = misalign(pair.right, models[i]);
-            addNoise(left, noise, rng);
-            addNoise(right, noise, rng);
-            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, presets[i % 4]);
-            match(*matcher, left, right);
-            EXPECT_LE(distance(models[i], foundBy(*matcher), left.size()), noise > 0 ? 0.2 : 0.1);
+            for (int round = 0; round < rounds; ++round)
+            {
+                Mat left = pair.left.clone(), right = misalign(pair.right, models[i]);
+                addNoise(left, noise, rng);
+                addNoise(right, noise, rng);
+                const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, presets[i % 4]);
+                match(*matcher, left, right);
+                error += distance(models[i], foundBy(*matcher), left.size()) / rounds;
+            }
+            EXPECT_LE(error, noise > 0 ? 0.23 : 0.1) << "model " << i << ", noise " << noise;
         }
 }
 
