@@ -30,7 +30,9 @@ public:
         else
         {
             const bool isCamera = !name.empty() && name.find_first_not_of("0123456789") == String::npos;
-            if (isCamera ? !capture_.open(std::atoi(name.c_str())) : !capture_.open(name))
+            const bool isFile = name.find_first_of("%!:") == String::npos; // no pattern, pipeline or address
+            if (isCamera ? !capture_.open(std::atoi(name.c_str()))
+                         : (isFile && !utils::fs::exists(name)) || !capture_.open(name))
                 CV_Error(Error::StsError, "cannot open the " + String(isCamera ? "camera " : "source ") + name);
         }
     }
