@@ -379,6 +379,7 @@ int main(int argc, char** argv)
     return runProgram(
         argc, argv, KEYS + TUNABLE_KEYS,
         "What temporal prediction is worth on videos of rectified stereo pairs: errors (D1), flicker and time.\n"
+        "Area is that under the sparsification curve of the confidence, over the least that there could be.\n"
         "Flicker is the mean change of the disparity from frame to frame where the left image, smoothed, changes by\n"
         "less than 3 levels of 255. The last half of the frames counts. Of variants, all frames do; the worst frame is "
         "the\n"

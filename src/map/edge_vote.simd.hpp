@@ -83,6 +83,9 @@ inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort n
     return farVotes > nearVotes && !isInBar(rows, x, surfaces.middle) ? farthest : own;
 }
 
+CV_ALWAYS_INLINE ushort largestOfThree(const ushort* v) { return std::max(std::max(v[0], v[2]), v[1]); }
+CV_ALWAYS_INLINE ushort smallestOfThree(const ushort* v) { return std::min(std::min(v[0], v[2]), v[1]); }
+
 } // namespace
 
 void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* far, ushort* voted)
@@ -105,15 +108,15 @@ void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* f
         ushort hasStep = 0;
         HDP_VECTORIZED for (int x = begin; x < end; ++x)
         {
-            const ushort nearest = std::max(std::max(near[x], near[x + 2]), near[x + 1]);
-            const ushort farthest = std::min(std::min(far[x], far[x + 2]), far[x + 1]);
+            const ushort nearest = largestOfThree(near + x);
+            const ushort farthest = smallestOfThree(far + x);
             voted[x] = own[x];
             hasStep |= (ushort)((ushort)(nearest - farthest) > minStep);
         }
         for (int x = begin; x < end && hasStep; ++x)
         {
-            const ushort nearest = std::max(std::max(near[x], near[x + 2]), near[x + 1]);
-            const ushort farthest = std::min(std::min(far[x], far[x + 2]), far[x + 1]);
+            const ushort nearest = largestOfThree(near + x);
+            const ushort farthest = smallestOfThree(far + x);
             if (nearest - farthest > minStep)
                 voted[x] = voteAt(rows, rule, x, nearest, farthest);
         }

@@ -16,9 +16,9 @@ struct BlockGrid
         side = 8
     };
     int begin = 0; // the first column that begins a block, less than side
-    double step =
-        0; // mean step from block to block where both are flat, less if it is not sure that they are blocks, in
-           // the units of the levels; 0: none are found
+    // Mean step from block to block where both are flat, less if it is not sure that they are blocks, in the units of
+    // the levels; 0: none are found
+    double step = 0;
 };
 
 /** Finds the blocks that strong compression makes visible. Where what remains of a block is flat, levels change between

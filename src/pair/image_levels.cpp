@@ -91,6 +91,14 @@ int countBits(const Mat& left, const Mat& right, double share)
 Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
 {
     const int times = minBits - bits + doublingsOf(brightness);
+    Mat colors = image;
+    if (image.channels() == 4)
+    {
+        cvtColor(image, buffer, COLOR_BGRA2BGR);
+        colors = buffer;
+    }
+    if (image.depth() == CV_8U && times == 0)
+        return colors;
     const std::vector<ushort> curve = brightnessCurve(brightness);
     if (image.depth() == CV_16U)
     {
@@ -102,14 +110,6 @@ Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
         });
         return buffer;
     }
-    Mat colors = image;
-    if (image.channels() == 4)
-    {
-        cvtColor(image, buffer, COLOR_BGRA2BGR);
-        colors = buffer;
-    }
-    if (times == 0)
-        return colors;
     buffer.create(colors.size(), colors.type());
     convertRows<uchar, uchar>(colors, buffer, [&](const uchar* pixels, uchar* levels, int width) {
         for (int i = 0; i < width * colors.channels(); ++i)
@@ -121,12 +121,11 @@ Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
 void greyLevels(const Mat& image, int bits, Mat& grey, double brightness)
 {
     const int times = minBits - bits + doublingsOf(brightness), channels = image.channels();
-    const std::vector<ushort> curve = brightnessCurve(brightness);
-    const int largest = (int)curve.size() - 1;
+    const int largest = (whiteEnd << doublingsOf(brightness)) - 1;
+    const std::vector<ushort> curve = brightness > 1 ? brightnessCurve(brightness) : std::vector<ushort>();
     const auto bend = [&](ushort* levels, int width) {
-        if (brightness > 1)
-            for (int x = 0; x < width; ++x)
-                levels[x] = curve[levels[x]];
+        for (int x = 0; x < width && !curve.empty(); ++x)
+            levels[x] = curve[levels[x]];
     };
     grey.create(image.size(), CV_16U);
     if (image.depth() == CV_16U)
