@@ -141,8 +141,8 @@ private:
     void growForest()
     {
         shared_.forestLayer = plan_.layer;
-        buildForest(guide(), own_.pixelIntv, *in_.pair.treeStrategy, plan_.trees.beta, plan_.trees.linksTrees,
-                    shared_.forestBuffers, shared_.forest);
+        const JoinerParams params(plan_.trees.beta, plan_.trees.linksTrees, plan_.trees.stripeRows, plan_.frame);
+        buildForest(guide(), own_.pixelIntv, *in_.pair.treeStrategy, params, shared_.forestBuffers, shared_.forest);
     }
 
     //! Scanlines over the means of the costs in the layer's trees; none if these contradict the last frame.

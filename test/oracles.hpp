@@ -443,8 +443,10 @@ struct Forest
     std::vector<int> joined; // edges 2 * p (to the right of p) and 2 * p + 1 (below p), ascending
 };
 
-//! Section 3.2: Kruskal's algorithm with a strategy's Rule 1 and 2 and DT-Rules 1 and 2. pixelIntv: CV_16UC2.
-inline Forest buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link)
+//! Section 3.2: Kruskal's algorithm with a strategy's Rule 1 and 2 and DT-Rules 1 and 2. pixelIntv: CV_16UC2. Edges
+//! between stripes of rows, the first of which has firstRow of a larger image, come last, but not in the second pass.
+inline Forest buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link,
+                          int stripeRows = 0, int firstRow = 0)
 {
     const int width = image.cols, pixels = image.cols * image.rows;
     Forest forest;
@@ -469,11 +471,17 @@ inline Forest buildForest(const Mat& image, const Mat& pixelIntv, const TreeStra
             edges.push_back(e);
     }
     strategy.orderEdges(edgeWeights(image), edges); // Rule 1
+    const auto isInside = [&](int e) {
+        const int row = e / 2 / width + firstRow;
+        return stripeRows == 0 || !strategy.ordersByWeight() || e % 2 == 0 || (row + 1) % stripeRows != 0;
+    };
+    std::vector<int> insideFirst = edges;
+    std::stable_partition(insideFirst.begin(), insideFirst.end(), isInside);
 
     for (int pass = 0; pass < (link && strategy.linksTrees() ? 2 : 1); ++pass)
-        for (size_t i = 0; i < edges.size(); ++i)
+        for (int edge : pass == 0 ? insideFirst : edges)
         {
-            const int p = edges[i] / 2, q = edges[i] % 2 == 0 ? p + 1 : p + width;
+            const int p = edge / 2, q = edge % 2 == 0 ? p + 1 : p + width;
             if (forest.treeOf[p] == forest.treeOf[q])
                 continue;
             Tree &a = forest.trees[forest.treeOf[p]], &b = forest.trees[forest.treeOf[q]];
@@ -497,7 +505,7 @@ inline Forest buildForest(const Mat& image, const Mat& pixelIntv, const TreeStra
             b.pixels.clear();
             forest.neighbours[p].push_back(std::make_pair(q, weight));
             forest.neighbours[q].push_back(std::make_pair(p, weight));
-            forest.joined.push_back(edges[i]);
+            forest.joined.push_back(edge);
         }
     std::sort(forest.joined.begin(), forest.joined.end());
     return forest;

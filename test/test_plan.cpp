@@ -275,6 +275,8 @@ TEST(HDPStereo_Plan, methods_of_the_presets)
             EXPECT_EQ(below[preset], plan.layers[i].method) << preset;
         }
         EXPECT_EQ(preset == M::PRESET_ULTRAFAST, plan.finest().layer == 1);
+        EXPECT_EQ(0, plan.top().trees.stripeRows) << "bare surfaces need trees as large as they are";
+        EXPECT_EQ(preset == M::PRESET_TREE, plan.finest().trees.stripeRows > 0) << "those of the paper have no stripes";
     }
 }
 

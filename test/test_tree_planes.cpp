@@ -21,8 +21,8 @@ struct Layer
     explicit Layer(const Mat& colors, int steps = 1) : disparity(colors.size(), CV_16U, Scalar(0))
     {
         hdp::ForestBuffers buffers;
-        hdp::buildForest(colors, Mat(colors.size(), CV_16UC2, Scalar(0, candidates - 1)), *createSegmentTree(), 0.6,
-                         false, buffers, forest);
+        hdp::buildForest(colors, Mat(colors.size(), CV_16UC2, Scalar(0, candidates - 1)), *createSegmentTree(),
+                         { 0.6, false }, buffers, forest);
         volume.create(forest);
         volume.steps = steps;
         hdp::TreeWalk walk;

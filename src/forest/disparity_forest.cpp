@@ -6,15 +6,16 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link,
+void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, const JoinerParams& params,
                  ForestBuffers& buffers, DisparityForest& forest)
 {
     forest.trees.clear(); // those of other links must not be walked if the strategy throws
     weighEdges(image, forest.weights);
     forest.links.create(image.size(), CV_8U);
     forest.links.setTo(Scalar::all(0));
-    joinTrees(strategy, forest.weights, pixelIntv, beta, link && strategy.linksTrees(), buffers.trees, buffers.stripes,
-              forest.links);
+    JoinerParams joined = params;
+    joined.link &= strategy.linksTrees();
+    joinTrees(strategy, forest.weights, pixelIntv, joined, buffers.trees, buffers.stripes, forest.links);
     const std::vector<GrowingTrees::Node>& nodes = buffers.trees.nodes;
     for (size_t i = 0; i < nodes.size(); ++i)
         if (nodes[i].parent < 0)

@@ -35,12 +35,11 @@ struct ForestBuffers
 @param image CV_8UC1 or CV_8UC3, the image that gives the edge weights.
 @param pixelIntv CV_16UC2 of its size.
 @param strategy Rule 1 and Rule 2.
-@param beta Threshold of DT-Rule 2.
-@param link Whether to join what Rule 2 left apart, by a second pass without it.
+@param params See joinTrees(); trees are linked if the strategy says so, too.
 @param buffers Memory to work in.
 @param forest The result. */
-CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta,
-                            bool link, ForestBuffers& buffers, DisparityForest& forest);
+CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy,
+                            const JoinerParams& params, ForestBuffers& buffers, DisparityForest& forest);
 
 //! R_l of the paper's Table 1: mean over the pixels of |TreeIntv| / numDisparities.
 CV_EXPORTS double searchRatio(const DisparityForest& forest, int numDisparities);

@@ -203,52 +203,92 @@ void orderEdges(const TreeStrategy& strategy, const Mat& weights, JoinerStripe& 
         CV_Error(Error::StsBadArg, "treeStrategy: orderEdges must leave a permutation of the edges");
 }
 
+//! The stripes of an image whose trees are joined first
+std::vector<Range> stripesOf(const ImageFrame& frame, int height, int stripeRows)
+{
+    std::vector<Range> stripes;
+    for (int start = 0; start < height; start = stripes.back().end)
+        stripes.push_back(Range(start, std::min(start + stripeRows - (start + frame.origin.y) % stripeRows, height)));
+    return stripes;
+}
+
+//! The edges between stripes, by number
+void selectAcross(const Mat& weights, const Mat& pixelIntv, const std::vector<Range>& stripes, std::vector<int>& edges)
+{
+    std::vector<int> two; // rows of a border
+    for (size_t s = 1; s < stripes.size(); ++s)
+    {
+        const int row = stripes[s].start;
+        selectEdges(weights, pixelIntv, Range(row - 1, row + 1), false, two);
+        for (int edge : two)
+            if ((edge & 1) && firstPixel(edge) / weights.cols == row - 1)
+                edges.push_back(edge);
+    }
+}
+
+//! As many stripes as threads make use of
+std::vector<Range> stripesOf(int height)
+{
+    const int count = std::max(std::min({ getNumThreads(), +maxStripes, height / minStripeRows }), 1);
+    std::vector<Range> stripes;
+    for (int s = 0; s < count; ++s)
+        stripes.push_back(Range((int)((int64)height * s / count), (int)((int64)height * (s + 1) / count)));
+    return stripes;
+}
+
 } // namespace
 
-void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixelIntv, double beta, bool link,
+void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixelIntv, const JoinerParams& params,
                GrowingTrees& trees, std::vector<JoinerStripe>& stripes, Mat& links)
 {
-    const int height = pixelIntv.rows;
+    const Range all(0, pixelIntv.rows);
     trees.nodes.resize(pixelIntv.total());
     trees.maxWeights.resize(pixelIntv.total());
-    // The number of threads decides how fast it goes, not what comes out. Other orders are not those of a stripe.
-    const int maxCount = strategy.ordersByWeight() ? std::min(getNumThreads(), +maxStripes) : 1;
-    const int count = std::max(std::min(maxCount, height / minStripeRows), 1);
-    stripes.resize(count + 1);
-    parallel_for_(Range(0, count), [&](const Range& range) {
-        for (int s = range.start; s < range.end; ++s)
+    // Other orders than by weight are not those of a stripe.
+    const bool isOrdered = strategy.ordersByWeight(), areFirst = isOrdered && params.stripeRows > 0;
+    const std::vector<Range> rows = areFirst    ? stripesOf(params.frame, all.end, params.stripeRows)
+                                    : isOrdered ? stripesOf(all.end)
+                                                : std::vector<Range>(1, all);
+    const int count = (int)rows.size(), tasks = std::min(count, std::max(getNumThreads(), 1));
+    if ((int)stripes.size() < tasks + 1)
+        stripes.resize(tasks + 1);
+    parallel_for_(Range(0, tasks), [&](const Range& range) {
+        for (int task = range.start; task < range.end; ++task)
         {
-            JoinerStripe& stripe = stripes[s];
-            const Range rows((int)((int64)height * s / count), (int)((int64)height * (s + 1) / count));
+            JoinerStripe& stripe = stripes[task];
             stripe.undecidedEdges.clear();
             stripe.frozenRoots.clear();
-            startTrees(pixelIntv, rows, trees);
-            selectEdges(weights, pixelIntv, rows, stripe.edges);
-            orderEdges(strategy, weights, stripe);
-            StripeJoiner(&strategy, weights, beta, rows, trees, stripe, links).tryEdges(stripe.edges);
+            for (int s = count * task / tasks; s < count * (task + 1) / tasks; ++s)
+            {
+                startTrees(pixelIntv, rows[s], trees);
+                selectEdges(weights, pixelIntv, rows[s], !areFirst, stripe.edges);
+                orderEdges(strategy, weights, stripe);
+                StripeJoiner(&strategy, weights, params.beta, rows[s], trees, stripe, links).tryEdges(stripe.edges);
+            }
         }
     });
 
-    const Range all(0, height);
-    JoinerStripe& whole = stripes[count];
+    JoinerStripe& whole = stripes[tasks];
     whole.edges.clear();
-    for (int s = 0; s < count; ++s)
+    for (int task = 0; task < tasks; ++task)
     {
-        const JoinerStripe& stripe = stripes[s];
+        const JoinerStripe& stripe = stripes[task];
         whole.edges.insert(whole.edges.end(), stripe.undecidedEdges.begin(), stripe.undecidedEdges.end());
         for (int root : stripe.frozenRoots)
             trees.nodes[root].parent += frozenMark;
     }
+    if (areFirst)
+        selectAcross(weights, pixelIntv, rows, whole.edges);
     sortByWeight(weights, whole.edges, whole.sorted); // those of one weight are by number already
-    StripeJoiner(&strategy, weights, beta, all, trees, whole, links).tryEdges(whole.edges);
-    if (!link)
+    StripeJoiner(&strategy, weights, params.beta, all, trees, whole, links).tryEdges(whole.edges);
+    if (!params.link)
         return;
     if (count > 1)
     {
-        selectEdges(weights, pixelIntv, all, stripes[0].edges);
+        selectEdges(weights, pixelIntv, all, true, stripes[0].edges);
         sortByWeight(weights, stripes[0].edges, whole.sorted);
     }
-    StripeJoiner(nullptr, weights, beta, all, trees, whole, links).tryEdges(stripes[0].edges);
+    StripeJoiner(nullptr, weights, params.beta, all, trees, whole, links).tryEdges(stripes[0].edges);
 }
 
 }}} // namespace cv::stereo::hdp

@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_TREE_JOINER_HPP
 
 #include "../base/disparity_units.hpp"
+#include "../base/image_frame.hpp"
 #include "tree_strategy.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -21,7 +22,7 @@ struct GrowingTrees
     std::vector<uchar> maxWeights; // by root: TreeState::maxWeight
 };
 
-//! Memory of joinTrees() for a stripe of rows
+//! Memory of a thread of joinTrees() for the stripe that it works on
 struct JoinerStripe
 {
     std::vector<int> edges;          // in the order in which they are tried
@@ -30,18 +31,32 @@ struct JoinerStripe
     std::vector<int> frozenRoots;    // of the trees that must not grow until then
 };
 
+//! How trees are joined
+struct JoinerParams
+{
+    double beta;      // threshold of DT-Rule 2
+    bool link;        // whether to join what Rule 2 left apart, by a second pass without it
+    int stripeRows;   // of stripes whose edges come first, unless it is 0
+    ImageFrame frame; // where it lies in a larger image, if it is a tile of one: its stripes are those of that
+
+    JoinerParams(double beta_, bool link_, int stripeRows_ = 0, const ImageFrame& frame_ = ImageFrame())
+        : beta(beta_), link(link_), stripeRows(stripeRows_), frame(frame_)
+    {
+    }
+};
+
 /** Kruskal's algorithm: tries one edge after the other in the order of Rule 1, and joins the trees at its ends if Rule
 2 and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the image side by side; the trees and their
-roots are those of trying one edge after the other, for any number of stripes.
+roots are those of trying one edge after the other, for any number of stripes. With stripeRows, these stripes, which fit
+into a cache, are what counts: the edges between them are tried last.
 @param strategy Rule 1 and Rule 2.
 @param weights From weighEdges().
 @param pixelIntv CV_16UC2 of the same size.
-@param beta Threshold of DT-Rule 2.
-@param link Whether to join what Rule 2 left apart, by a second pass without it.
+@param params The rest.
 @param trees Receives the trees.
 @param stripes Memory to work in.
 @param links CV_8UC1 zeros of the same size; receives the bits of TreeLink. */
-void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixelIntv, double beta, bool link,
+void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixelIntv, const JoinerParams& params,
                GrowingTrees& trees, std::vector<JoinerStripe>& stripes, Mat& links);
 
 }}} // namespace cv::stereo::hdp

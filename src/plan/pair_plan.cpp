@@ -32,6 +32,9 @@ HDP_TUNABLE(int, coarseLayer, 2, "layer",
 HDP_TUNABLE(double, meanGamma, 0.2, "gamma of the trees' sums",
             "of means that scanlines get, on the first two layers: these carry costs farther by themselves, "
             "and more blurs borders; less on coarser layers, where each step goes farther");
+HDP_TUNABLE(int, treeStripeRows, 32, "rows",
+            "of the stripes in which trees are joined first, below the top layer: more do not fit into a cache, fewer "
+            "leave more to do between them");
 HDP_TUNABLE(double, meanP1, 0.5, "P1",
             "means are smoother than costs: more flattens slanted surfaces, less keeps noise");
 HDP_TUNABLE(double, meanP2, 1.3, "P2",
@@ -177,6 +180,7 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
         trees.beta = p.beta != M::AUTO ? p.beta : isLarge(size) ? 0.6 : 0.95;
     }
     trees.linksTrees = !p.usePrediction;
+    trees.stripeRows = layer.method == TREE_SCANLINES && !layer.isTop ? +treeStripeRows : 0;
     trees.gamma = layer.method == TREE_SCANLINES ? p.gamma * meanGamma / std::max(layer.layer, 1) : p.gamma;
     trees.prefersPlanes = layer.method == TREE_SCANLINES && layer.isTop;
     if (p.useNonLocalRefinement && predictsIntervals(p))
