@@ -248,13 +248,12 @@ private:
         clock_.run("disparity prediction", [&] {
             findSparseMatches(own_.census, in_.images.left.size(), plan_.numDisparities, own_.sparseMatches);
         });
-        for (const ScanlinePass& pass : plan_.passes)
+        for (const ScanlinePenalties& penalties : plan_.passes)
         {
-            predictPass(&pass == &plan_.passes.front());
+            predictPass(&penalties == &plan_.passes.front());
             clock_.run("cost aggregation", [&] {
                 aggregateScanlines(own_.census, in_.images.left, plan_.frame, plan_.numDisparities, plan_.maxDisparity,
-                                   own_.windows, pass.penalties, pass.hasFromBelow, shared_.scanlines, result_.winners,
-                                   own_.residual);
+                                   own_.windows, penalties, shared_.scanlines, result_.winners, own_.residual);
             });
             correctWinners();
             if (plan_.fillsOcclusions)
@@ -274,7 +273,8 @@ private:
             const WindowPrediction prediction = { isFirst ? in_.upper->disparity : own_.halved,
                                                   isFirst ? in_.upper->winners : own_.halvedWinners,
                                                   own_.sparseMatches };
-            findOtherSurfaces(prediction, own_.census, plan_.numDisparities, own_.surfaceBuffers, own_.others);
+            findOtherSurfaces(prediction, plan_.comparesSurfaces ? &own_.census : nullptr, plan_.numDisparities,
+                              own_.surfaceBuffers, own_.others);
             predictWindows(prediction.upper, own_.others, plan_.numDisparities, own_.windows);
             if (plan_.hasIntervals)
                 restrictWindows(intervals(), plan_.numDisparities, own_.windows);

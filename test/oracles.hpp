@@ -717,12 +717,10 @@ class Scanlines
 public:
     //! left, right: grey levels in quarters; windows: CandidateWindow, one for every 2 x 2 pixels.
     Scanlines(const Mat& left, const Mat& right, int blockSize, int numDisparities, int largest, const Mat& windows,
-              const hdp::ScanlinePenalties& penalties, bool hasFromBelow,
-              const hdp::PairMasks& masks = hdp::PairMasks())
+              const hdp::ScanlinePenalties& penalties, const hdp::PairMasks& masks = hdp::PairMasks())
         : left_(left), right_(right), census_(left, right, blockSize), size_(left.size()),
           numDisparities_(numDisparities), largest_(largest), windows_(windows), small_(penalties.small),
-          large_(penalties.large), edgeSlope_(penalties.edgeSlope), prior_(penalties.prior),
-          hasFromBelow_(hasFromBelow), masks_(masks)
+          large_(penalties.large), edgeSlope_(penalties.edgeSlope), prior_(penalties.prior), masks_(masks)
     {
     }
 
@@ -737,7 +735,7 @@ public:
         {
             const int first = firstRow(i, stripes), end = i + 1 < stripes ? firstRow(i + 1, stripes) : size_.height;
             std::vector<std::vector<Costs>> below(size_.height + 1, std::vector<Costs>(size_.width));
-            for (int y = std::min(end + 16, size_.height) - 1; hasFromBelow_ && y >= first; --y)
+            for (int y = std::min(end + 16, size_.height) - 1; y >= first; --y)
                 for (int x = 0; x < size_.width; ++x)
                     below[y][x] = follow(Point(x, y), Point(x, y + 1), below[y + 1][x]);
             std::vector<Costs> above(size_.width);
@@ -839,10 +837,7 @@ private:
         residual = (uchar)pixelCost(p, d[i]);
         double offset = 0;
         if (i > 0 && i + 1 < d.size() && d[i - 1] == d[i] - 1 && d[i + 1] == d[i] + 1)
-        {
-            const double count = hasFromBelow_ ? 4 : 3; // of directions
-            offset = fraction(sums[i - 1] - sums[i], sums[i + 1] - sums[i], 15 * count, 25 * count);
-        }
+            offset = fraction(sums[i - 1] - sums[i], sums[i + 1] - sums[i], 60, 100);
         return (ushort)std::min(std::max(16 * d[i] + cvRound(16 * offset), 0), largest_);
     }
 
@@ -852,7 +847,6 @@ private:
     int numDisparities_, largest_;
     Mat windows_;
     int small_, large_, edgeSlope_, prior_;
-    const bool hasFromBelow_;
     const hdp::PairMasks masks_;
 };
 

@@ -24,13 +24,14 @@ inline std::string textOf(const hdp::LayerPlan& p)
          << p.trees.stripeRows << " gamma " << p.trees.gamma << " planes " << p.trees.prefersPlanes << " refinement "
          << p.trees.refinementGamma << "\n  volume " << p.volumePenalties.small << " " << p.volumePenalties.large << " "
          << p.volumePenalties.gamma << "\n  passes";
-    for (const hdp::ScanlinePass& pass : p.passes)
-        text << " [" << pass.penalties.small << " " << pass.penalties.large << " slope " << pass.penalties.edgeSlope
-             << " prior " << pass.penalties.prior << " from below " << pass.hasFromBelow << "]";
+    for (const hdp::ScanlinePenalties& pass : p.passes)
+        text << " [" << pass.small << " " << pass.large << " slope " << pass.edgeSlope << " prior " << pass.prior
+             << "]";
     text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
          << p.fillsOcclusions << " intervals " << p.hasIntervals << " joins prior " << p.joinsPrior
          << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " x " << p.medianPasses
-         << " thin structures " << p.restoresThinStructures << " votes " << p.votesAtEdges << "\n";
+         << " thin structures " << p.restoresThinStructures << " compares surfaces " << p.comparesSurfaces << " votes "
+         << p.votesAtEdges << "\n";
     return text.str();
 }
 

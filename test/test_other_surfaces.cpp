@@ -109,7 +109,7 @@ TEST(HDPStereo_OtherSurfaces, rule)
 {
     RNG rng(60);
     hdp::SurfaceBuffers buffers;
-    Mat others;
+    Mat others, usual;
     int changed = 0;
     for (int blockSize : { 7, 5, 3 })
         for (const Size& size : { Size(3, 2), Size(8, 3), Size(70, 41), Size(161, 36) })
@@ -123,16 +123,18 @@ TEST(HDPStereo_OtherSurfaces, rule)
                 const Layer layer(rng, prediction.upper, size, numDisparities);
                 hdp::CensusCost cost;
                 cost.prepare(layer.left, layer.right, numDisparities, blockSize);
-                hdp::findOtherSurfaces(prediction.forStage(), cost, numDisparities, buffers, others);
+                hdp::findOtherSurfaces(prediction.forStage(), &cost, numDisparities, buffers, others);
                 ASSERT_EQ(upperSize, others.size());
                 ASSERT_EQ(CV_16UC1, others.type());
+                hdp::findOtherSurfaces(prediction.forStage(), nullptr, numDisparities, buffers, usual);
                 const oracle::CensusCost census(layer.left, layer.right, blockSize);
                 for (int y = 0; y < upperSize.height; ++y)
                     for (int x = 0; x < upperSize.width; ++x)
                     {
                         ASSERT_EQ(otherSurface(prediction, layer, census, y, x), others.at<ushort>(y, x))
                             << "y " << y << " x " << x;
-                        changed += others.at<ushort>(y, x) != oracle::usualSurface(prediction, y, x);
+                        ASSERT_EQ(oracle::usualSurface(prediction, y, x), usual.at<ushort>(y, x));
+                        changed += others.at<ushort>(y, x) != usual.at<ushort>(y, x);
                     }
             }
     EXPECT_GT(changed, 100) << "nothing is tested where all surfaces are the usual ones";
@@ -156,7 +158,7 @@ TEST(HDPStereo_OtherSurfaces, census_decides_between_two)
     cost.prepare(left, right, numDisparities, 7);
     hdp::SurfaceBuffers buffers;
     Mat others;
-    hdp::findOtherSurfaces(prediction.forStage(), cost, numDisparities, buffers, others);
+    hdp::findOtherSurfaces(prediction.forStage(), &cost, numDisparities, buffers, others);
     EXPECT_EQ(front * scale, oracle::usualSurface(prediction, 10, 32 - 1)) << "the farthest one";
     EXPECT_EQ(back * scale, others.at<ushort>(10, 30));
 }

@@ -273,6 +273,7 @@ TEST(HDPStereo_Plan, methods_of_the_presets)
         {
             EXPECT_EQ(plan.layers[i - 1].layer - 1, plan.layers[i].layer);
             EXPECT_EQ(below[preset], plan.layers[i].method) << preset;
+            EXPECT_EQ(plan.layers[i].isFinest, plan.layers[i].comparesSurfaces) << "coarser layers gain nothing";
         }
         EXPECT_EQ(preset == M::PRESET_ULTRAFAST, plan.finest().layer == 1);
         EXPECT_EQ(0, plan.top().trees.stripeRows) << "bare surfaces need trees as large as they are";
@@ -301,7 +302,7 @@ TEST(HDPStereo_Plan, adapts_to_noise)
     EXPECT_LT(some.finest().cost.tolerance, much.finest().cost.tolerance);
     EXPECT_FALSE(some.top().smoothsGuide);
     EXPECT_TRUE(much.top().smoothsGuide) << "above the threshold";
-    EXPECT_GT(some.finest().passes[0].penalties.edgeSlope, much.finest().passes[0].penalties.edgeSlope);
+    EXPECT_GT(some.finest().passes[0].edgeSlope, much.finest().passes[0].edgeSlope);
     EXPECT_EQ(hdp::CensusCost::mostTolerance + 0, hdp::adapt(plan, withNoise(1e4), single).finest().cost.tolerance);
 
     MatcherParameters p = parametersOf(M::PRESET_FAST);

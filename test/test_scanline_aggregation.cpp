@@ -57,7 +57,8 @@ struct Layer
         const Mat matches(1, 1, CV_16UC1, Scalar(hdp::SparseMatches::noMatch));
         const hdp::WindowPrediction prediction = { upper, upper, matches };
         Mat others;
-        hdp::findOtherSurfaces(prediction, cost(), numDisparities, buffers, others);
+        const hdp::CensusCost usualCost = cost();
+        hdp::findOtherSurfaces(prediction, &usualCost, numDisparities, buffers, others);
         hdp::predictWindows(upper, others, numDisparities, windows);
     }
 
@@ -84,12 +85,12 @@ struct Layer
     }
 
     //! Disparities beside residuals
-    Mat expected(const hdp::ScanlinePenalties& penalties, bool hasFromBelow) const
+    Mat expected(const hdp::ScanlinePenalties& penalties) const
     {
         Mat residual;
-        const Mat disparity = oracle::Scanlines(left, right, blockSize, numDisparities, largest(), windows, penalties,
-                                                hasFromBelow, masks)
-                                  .match(residual);
+        const Mat disparity =
+            oracle::Scanlines(left, right, blockSize, numDisparities, largest(), windows, penalties, masks)
+                .match(residual);
         return beside(disparity, residual);
     }
 
@@ -102,21 +103,19 @@ struct Layer
     }
 };
 
-Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, bool hasFromBelow,
-              hdp::ScanlineBuffers& buffers)
+Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::ScanlineBuffers& buffers)
 {
     Mat disparity, residual;
     hdp::aggregateScanlines(layer.cost(), layer.left, hdp::ImageFrame(layer.left.size()), layer.numDisparities,
-                            layer.largest(), layer.windows, penalties, hasFromBelow, buffers, disparity, residual);
+                            layer.largest(), layer.windows, penalties, buffers, disparity, residual);
     return Layer::beside(disparity, residual);
 }
 
 const hdp::ScanlinePenalties usualPenalties = { 18, 60, 3, 1 };
 
-void expectFormula(const Layer& layer, const hdp::ScanlinePenalties& penalties, bool hasFromBelow,
-                   hdp::ScanlineBuffers& buffers)
+void expectFormula(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::ScanlineBuffers& buffers)
 {
-    expectIdentical(layer.expected(penalties, hasFromBelow), aggregate(layer, penalties, hasFromBelow, buffers));
+    expectIdentical(layer.expected(penalties), aggregate(layer, penalties, buffers));
 }
 
 typedef testing::TestWithParam<int> HDPStereo_ScanlineAggregation; // blockSize
@@ -131,11 +130,9 @@ TEST_P(HDPStereo_ScanlineAggregation, formula_in_small_images)
         {
             SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
             Layer layer(rng, size, numDisparities, GetParam());
-            for (bool hasFromBelow : { false, true })
-                expectFormula(layer, usualPenalties, hasFromBelow, buffers);
+            expectFormula(layer, usualPenalties, buffers);
             layer.mask(rng);
-            for (bool hasFromBelow : { false, true })
-                expectFormula(layer, usualPenalties, hasFromBelow, buffers);
+            expectFormula(layer, usualPenalties, buffers);
         }
 }
 
@@ -149,7 +146,7 @@ TEST_P(HDPStereo_ScanlineAggregation, formula_in_stripes)
         {
             SCOPED_TRACE(testing::Message() << size << ", " << numDisparities << " disparities");
             const Layer layer(rng, size, numDisparities, GetParam());
-            expectFormula(layer, usualPenalties, numDisparities > 9, buffers);
+            expectFormula(layer, usualPenalties, buffers);
         }
 }
 
@@ -163,13 +160,11 @@ TEST_P(HDPStereo_ScanlineAggregation, any_penalties)
     for (int numDisparities : { 3, 14, 33 })
     {
         const Layer layer(rng, Size(61, 38), numDisparities, GetParam());
-        bool hasFromBelow = numDisparities == 14;
         for (const hdp::ScanlinePenalties& p : penalties)
         {
-            hasFromBelow = !hasFromBelow;
             SCOPED_TRACE(testing::Message() << numDisparities << " disparities, " << p.small << ", " << p.large << ", "
                                             << p.edgeSlope << ", " << p.prior);
-            expectFormula(layer, p, hasFromBelow, buffers);
+            expectFormula(layer, p, buffers);
         }
     }
 }
@@ -187,21 +182,13 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
             if (numDisparities > 5)
                 layer.mask(rng);
             const hdp::CensusCost cost = layer.cost();
-            for (bool hasFromBelow : { false, true })
-            {
-                const float directions = hasFromBelow ? 4 : 3;
-                const hdp::ScanlineProblem problem = {
-                    &cost,          &layer.left,     size,
-                    numDisparities, layer.largest(), &layer.windows,
-                    usualPenalties, hasFromBelow,    { 15 * directions, 25 * directions }
-                };
-                const hdp::ScanlineStripe stripe = { Range(0, size.height), Range(0, size.height) };
-                std::vector<uchar> followed((size.height + 1) * hdp::ScanlineScratch::followedBytes(size.width));
-                Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
-                hdp::opt_emulated::aggregateStripe(problem, stripe, scratch, followed.data(), disparity, residual);
-                expectIdentical(aggregate(layer, usualPenalties, hasFromBelow, buffers),
-                                Layer::beside(disparity, residual));
-            }
+            const hdp::ScanlineProblem problem = { &cost,           &layer.left,    size,           numDisparities,
+                                                   layer.largest(), &layer.windows, usualPenalties, { 60, 100 } };
+            const hdp::ScanlineStripe stripe = { Range(0, size.height), Range(0, size.height) };
+            std::vector<uchar> followed((size.height + 1) * hdp::ScanlineScratch::followedBytes(size.width));
+            Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
+            hdp::opt_emulated::aggregateStripe(problem, stripe, scratch, followed.data(), disparity, residual);
+            expectIdentical(aggregate(layer, usualPenalties, buffers), Layer::beside(disparity, residual));
         }
 }
 

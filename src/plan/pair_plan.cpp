@@ -196,16 +196,12 @@ VolumePenalties planVolume(const MatcherParameters& p, int steps)
     return { cvRound(scale * meanP1 * p.P1 / steps), std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
 }
 
-//! The direction from below costs half as much as the others together: at full size it waits for the second pass.
-std::vector<ScanlinePass> planPasses(const MatcherParameters& p, const LayerPlan& layer)
+//! A pass before another one would gain nothing on coarser layers.
+std::vector<ScanlinePenalties> planPasses(const MatcherParameters& p, bool isFinest)
 {
-    std::vector<ScanlinePass> passes;
-    for (int i = 0; i < p.scanlinePasses; ++i)
-    {
-        const ScanlinePenalties penalties = { p.P1, p.P2, layer.isFinest ? finestSlope : usualSlope,
-                                              i == 0 ? firstPrior : laterPrior };
-        passes.push_back({ penalties, layer.layer > 0 || i > 0 });
-    }
+    std::vector<ScanlinePenalties> passes;
+    for (int i = 0; i < (isFinest ? p.scanlinePasses : 1); ++i)
+        passes.push_back({ p.P1, p.P2, isFinest ? finestSlope : usualSlope, i == 0 ? firstPrior : laterPrior });
     return passes;
 }
 
@@ -225,13 +221,14 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     if (plan.seesBelow)
         plan.numDisparities = layerDisparities(p.numDisparities, layer - 1, false);
     if (plan.method == WINDOW_SCANLINES)
-        plan.passes = planPasses(p, plan);
+        plan.passes = planPasses(p, plan.isFinest);
     else
         plan.smoothsGuide = p.useMedianPrefilter;
     if (plan.method == TREE_SUMS || plan.method == TREE_SCANLINES)
         plan.trees = planTrees(p, plan, size);
     if (hasVolume)
         plan.volumePenalties = planVolume(p, plan.steps());
+    plan.comparesSurfaces = plan.isFinest;
     plan.fillsOcclusions = p.fillOcclusions;
     // As in the authors' program; the paper says that nothing is refined.
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
@@ -320,8 +317,8 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
         if (!plan.alignment.isNoisy(findings.noise))
             continue;
         layer.smoothsGuide |= layer.method != WINDOW_SCANLINES;
-        for (ScanlinePass& pass : layer.passes)
-            pass.penalties.edgeSlope = usualSlope;
+        for (ScanlinePenalties& penalties : layer.passes)
+            penalties.edgeSlope = usualSlope;
     }
     LayerPlan& top = adapted.layers.front();
     top.checksLastFrame = video.verdict == CONTINUED && top.method == TREE_SCANLINES;

@@ -63,13 +63,6 @@ struct TreePlan
     double refinementGamma = 0; // of the non-local refinement; 0: none
 };
 
-//! A pass of the scanlines over windows
-struct ScanlinePass
-{
-    ScanlinePenalties penalties;
-    bool hasFromBelow; // whether there is a fourth direction
-};
-
 //! What is done on a layer
 struct LayerPlan
 {
@@ -85,11 +78,12 @@ struct LayerPlan
     LayerMethod method = TREE_SUMS;
     TreePlan trees;
     VolumePenalties volumePenalties = { 0, 0, 0 };
-    std::vector<ScanlinePass> passes;
-    bool hasIntervals = false;     // whether pixels have candidates of their own
-    bool joinsPrior = false;       // whether winners are joined with what is known beforehand
-    bool checksLastFrame = false;  // whether the pair's own costs may refuse the last frame
-    bool prefersLastFrame = false; // whether what the last frame predicts has lower costs
+    std::vector<ScanlinePenalties> passes; // of scanlines over windows
+    bool comparesSurfaces = false;         // whether the cost decides which other surface is in a window
+    bool hasIntervals = false;             // whether pixels have candidates of their own
+    bool joinsPrior = false;               // whether winners are joined with what is known beforehand
+    bool checksLastFrame = false;          // whether the pair's own costs may refuse the last frame
+    bool prefersLastFrame = false;         // whether what the last frame predicts has lower costs
     bool fillsOcclusions = false;
     bool joinsLastFrame = false;
     int medianSize = 0, medianPasses = 1; // of the median over the winners; size 0: none

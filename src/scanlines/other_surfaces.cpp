@@ -109,11 +109,12 @@ unsigned rivalsOf(int here, int usual, const SurfaceList& list)
 class SurfaceRows
 {
 public:
-    SurfaceRows(const WindowPrediction& prediction, const CensusCost& cost, int numDisparities, SurfaceBuffers& buffers,
+    SurfaceRows(const WindowPrediction& prediction, const CensusCost* cost, int numDisparities, SurfaceBuffers& buffers,
                 Mat& others)
         : prediction_(prediction), maps_{ prediction.upper, prediction.unfiltered }, cost_(cost),
           numDisparities_(numDisparities), buffers_(buffers), others_(others), width_(prediction.upper.cols),
-          height_(prediction.upper.rows), hasWindows_(std::min(cost.size().width, cost.size().height) >= window)
+          height_(prediction.upper.rows),
+          comparesCosts_(cost && std::min(cost->size().width, cost->size().height) >= window)
     {
     }
 
@@ -148,7 +149,7 @@ public:
                 spreadMatches(sparse.ptr<ushort>(squareRow), sparse.cols, matches);
                 dispatched::findUsualSurfaces(rowOf(0, y), rowOf(1, y), matches.data(), width_, others_.ptr<ushort>(y));
             }
-            if (hasWindows_)
+            if (comparesCosts_)
                 findSteps(i, blocks);
             for (int block : blocks)
                 chooseInBlock(i, block);
@@ -204,7 +205,7 @@ private:
                 i % 2 < columns ? rivalsOf(here(y + i / 2, x + i % 2), other(y + i / 2, x + i % 2), list) : 0;
         if (!all)
             return;
-        const WindowCosts ofSurfaces(cost_, numDisparities_, y, x);
+        const WindowCosts ofSurfaces(*cost_, numDisparities_, y, x);
         int costs[OtherSurface::listed];
         for (int i = 0; i < list.count; i += 2)
             ofSurfaces.evaluate(list.surfaces[i], list.surfaces[std::min(i + 1, list.count - 1)], costs + i);
@@ -237,17 +238,17 @@ private:
     const Mat maps_[2];
     // Not Mat::ones(): the first thread with an expression sets them up, in OpenCV, which ThreadSanitizer does not see.
     const Mat kernel_ = Mat(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U, Scalar(1));
-    const CensusCost& cost_;
+    const CensusCost* const cost_;
     const int numDisparities_;
     SurfaceBuffers& buffers_;
     Mat& others_;
     const int width_, height_;
-    const bool hasWindows_;
+    const bool comparesCosts_;
 };
 
 } // namespace
 
-void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost& cost, int numDisparities,
+void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost* cost, int numDisparities,
                        SurfaceBuffers& buffers, Mat& others)
 {
     const Size size = prediction.upper.size(), blocks((size.width + side - 1) / side, (size.height + side - 1) / side);
@@ -259,7 +260,8 @@ void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost& cos
     buffers.blocks.create(blocks, CV_16UC4);
     others.create(size, CV_16U);
     SurfaceRows all(prediction, cost, numDisparities, buffers, others);
-    parallel_for_(Range(0, blocks.height), [&](const Range& blockRows) { all.findExtremes(blockRows); });
+    if (cost)
+        parallel_for_(Range(0, blocks.height), [&](const Range& blockRows) { all.findExtremes(blockRows); });
     const int stripes = std::max(1, std::min<int>(maxStripes, blocks.height / minStripeHeight));
     parallel_for_(Range(0, stripes), [&](const Range& range) {
         for (int i = range.start; i < range.end; ++i)

@@ -56,14 +56,14 @@ Another one takes the place of the usual one if it is apart from this, too, and 
 if its cost is less by more than a bit per pixel. The usual one costs what the first listed surface does that it is not
 apart from, if there is one. The cost of a surface is the lowest one of the eight candidates around it, summed over the
 4 x 4 pixels of the layer that the pixel's group of 2 x 2 stands for, or the nearest ones in the image, at most 255. The
-first one of the lowest cost wins. Layers smaller than the window have the usual ones.
+first one of the lowest cost wins. Without a cost, and on layers smaller than the window, all are the usual ones.
 @param prediction What to find them in.
-@param cost The layer's census cost.
+@param cost The layer's census cost, or none.
 @param numDisparities Of the layer.
 @param buffers Memory to work in.
 @param others Receives CV_16UC1 of the size of the layer above, in 1 / subpixelScale pixel of the layer: the other
 surface, or the pixel's own disparity if there is none. */
-CV_EXPORTS void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost& cost, int numDisparities,
+CV_EXPORTS void findOtherSurfaces(const WindowPrediction& prediction, const CensusCost* cost, int numDisparities,
                                   SurfaceBuffers& buffers, Mat& others);
 
 }}} // namespace cv::stereo::hdp

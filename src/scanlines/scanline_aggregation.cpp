@@ -75,14 +75,12 @@ void ScanlineScratch::prepare(int width, int numDisparities)
 }
 
 void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFrame& frame, int numDisparities,
-                        int maxDisparity, const Mat& windows, const ScanlinePenalties& penalties, bool hasFromBelow,
+                        int maxDisparity, const Mat& windows, const ScanlinePenalties& penalties,
                         ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
     const Size size = left.size();
-    const float directions = hasFromBelow ? 4 : 3;
-    const MinimumShape shape = { (float)bluntSlope * directions, (float)sharpSlope * directions };
-    const ScanlineProblem problem = { &cost,    &left,     size,         numDisparities, maxDisparity,
-                                      &windows, penalties, hasFromBelow, shape };
+    const MinimumShape shape = { 4 * (float)bluntSlope, 4 * (float)sharpSlope };
+    const ScanlineProblem problem = { &cost, &left, size, numDisparities, maxDisparity, &windows, penalties, shape };
     const std::vector<Range> stripes = stripesOf(frame, size.height);
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);
@@ -94,8 +92,7 @@ void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFram
             const Range rows = stripes[i];
             const Range reach(std::max(rows.start - warmUpRows, 0), std::min(rows.end + warmUpRows, size.height));
             const ScanlineStripe stripe = { rows, reach };
-            if (hasFromBelow)
-                followed.create((rows.size() + 1) / 2 * 2, (int)ScanlineScratch::followedBytes(size.width), CV_8U);
+            followed.create((rows.size() + 1) / 2 * 2, (int)ScanlineScratch::followedBytes(size.width), CV_8U);
             dispatched::aggregateStripe(problem, stripe, buffers.stripes[i], followed.data, disparity, residual);
         }
     });

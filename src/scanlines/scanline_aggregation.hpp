@@ -51,7 +51,6 @@ struct ScanlineProblem
     int maxDisparity; // of a map
     const Mat* windows;
     ScanlinePenalties penalties;
-    bool hasFromBelow; // a fourth direction
     MinimumShape shape;
 
     //! Candidates of a window that are inside the range or beside its ends
@@ -107,9 +106,9 @@ struct ScanlineBuffers
     std::vector<ScanlineScratch> stripes;
 };
 
-/** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching with the
-three directions that one sweep over the rows can do, from the left, from the right and from above, and with that from
-below, which takes a second one. The cost of candidate d is
+/** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching from the
+left, from the right and from above, in one sweep over the rows, and from below, in one before it. The cost of candidate
+d is
 
 C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 23) / 4) + floor(prior * |d - predicted| / 2),
 
@@ -123,8 +122,7 @@ where candidates that q does not have count m + large(p, q). d - 1 and d + 1 sta
 in the window of p: those that p does not have are left out, and the last one of its first run and the first one of the
 second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less
 its own minimum, at most 255, the first of them if there are several; its sum and those of the candidates beside it, if
-p has disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction(): its limits grow with the number of
-directions.
+p has disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction().
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
 start anew some rows before each of them. A tile has those of the image that it lies in.
@@ -136,13 +134,12 @@ start anew some rows before each of them. A tile has those of the image that it 
 its disparity is not.
 @param windows From predictWindows().
 @param penalties The penalties.
-@param hasFromBelow Whether there is the direction from below.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
 CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFrame& frame, int numDisparities,
                                    int maxDisparity, const Mat& windows, const ScanlinePenalties& penalties,
-                                   bool hasFromBelow, ScanlineBuffers& buffers, Mat& disparity, Mat& residual);
+                                   ScanlineBuffers& buffers, Mat& disparity, Mat& residual);
 
 }}} // namespace cv::stereo::hdp
 

@@ -20,7 +20,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param problem The layer.
 @param stripe Its rows.
 @param scratch Memory to work in.
-@param followed The same, ScanlineScratch::followedBytes() for each row; not used without a direction from below.
+@param followed The same, ScanlineScratch::followedBytes() for each row.
 @param disparity As in aggregateScanlines().
 @param residual As in aggregateScanlines(). */
 void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
@@ -81,7 +81,7 @@ public:
     }
 
     //! All directions and the winners of a block of rows, y to end - 1 at most; fromBelow: what a sweep upward has
-    //! stored, if there is one
+    //! stored
     void run(int y, int end, const uchar* fromBelow, Mat& disparity, Mat& residual)
     {
         enterRows(y, false);
@@ -325,10 +325,9 @@ private:
             {
                 const ByteLanes cost = ByteLanes::load(costs + column * lanes);
                 const ByteLanes fromLeft = advance(h, cost, toRight[column]);
-                ByteLanes sum = fromLeft + ByteLanes::load(directions + column * lanes) +
-                                fromAbove(cost, toNext[column], t, column, before[column]);
-                if (fromBelow)
-                    sum = sum + loadFromBelow(fromBelow, t, column);
+                const ByteLanes sum = fromLeft + ByteLanes::load(directions + column * lanes) +
+                                      fromAbove(cost, toNext[column], t, column, before[column]) +
+                                      loadFromBelow(fromBelow, t, column);
                 takeWinners(sum, t, column, costs + column * lanes);
             }
             if (t + 1 < groups)
@@ -421,19 +420,16 @@ private:
 void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
                      uchar* followed, Mat& disparity, Mat& residual)
 {
-    const int block = ByteLanes::groups, width = problem.size.width;
+    const int block = ByteLanes::groups;
     const Range &rows = stripe.rows, &reach = stripe.reach;
     const auto ofBlock = [&](int y) {
-        return problem.hasFromBelow ? followed + (y - rows.start) * ScanlineScratch::followedBytes(width) : nullptr;
+        return followed + (y - rows.start) * ScanlineScratch::followedBytes(problem.size.width);
     };
-    if (problem.hasFromBelow)
-    {
-        scratch.prepare(width, problem.numDisparities);
-        Sweep upward(problem, true, scratch);
-        for (int y = (reach.end + 1) / 2 * 2 - block; y >= rows.start; y -= block)
-            upward.follow(y + block - 1, y < rows.end ? ofBlock(y) : nullptr);
-    }
-    scratch.prepare(width, problem.numDisparities);
+    scratch.prepare(problem.size.width, problem.numDisparities);
+    Sweep upward(problem, true, scratch);
+    for (int y = (reach.end + 1) / 2 * 2 - block; y >= rows.start; y -= block)
+        upward.follow(y + block - 1, y < rows.end ? ofBlock(y) : nullptr);
+    scratch.prepare(problem.size.width, problem.numDisparities);
     Sweep downward(problem, false, scratch);
     for (int y = reach.start; y < rows.start; y += block)
         downward.follow(y, nullptr);

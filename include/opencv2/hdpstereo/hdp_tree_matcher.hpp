@@ -370,7 +370,7 @@ public:
         census, 0..100. All: 65. */
         CV_PROP_RW int P2;
 
-        /** @brief Number of passes of AGGREGATION_SCANLINES over each layer.
+        /** @brief Number of passes of AGGREGATION_SCANLINES over the finest layer; coarser ones have one.
 
         The first pass searches around the disparities of the layer above, each other one around those of the pass
         before. 1..4. QUALITY: 2, others: 1. */
