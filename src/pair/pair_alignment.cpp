@@ -6,24 +6,19 @@
 
 #include "image_levels.hpp"
 #include "image_pyramid.hpp"
+#include "noise_smoothing.hpp"
 #include "../base/tunable.hpp"
-
-#include "opencv2/imgproc.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(double, smoothingDeviation, 0.5, "pixels",
-            "of a noisy pair's Gaussian: more loses texture, less keeps noise");
 HDP_TUNABLE(int, maxCorners, 500, "corners", "one per cell of a grid: more cost time, fewer leave gaps in models");
 
-//! Both images by a small Gaussian
 void smooth(LayerImages& images, LayerImages& smoothed)
 {
-    const double deviation = smoothingDeviation;
-    GaussianBlur(images.left, smoothed.left, Size(3, 3), deviation, deviation, BORDER_REPLICATE);
-    GaussianBlur(images.right, smoothed.right, Size(3, 3), deviation, deviation, BORDER_REPLICATE);
+    smoothNoise(images.left, smoothed.left);
+    smoothNoise(images.right, smoothed.right);
     images.left = smoothed.left;
     images.right = smoothed.right;
 }
