@@ -152,13 +152,20 @@ fetch_tarball()
             grep -F "/opencv_${upstream//+/%2b}.orig.tar.xz'"
     ) || true
     say "Fetching OpenCV's source, ${tarball##*/}, from Debian's archive${size:+ ($((size / 1000000)) MB)}"
-    if [ -z "${uri:-}" ] ||
-        ! /usr/lib/apt/apt-helper "${options[@]}" download-file "${uri//\'/}" "$tarball.part" "$hash" >>"$apt/log" 2>&1; then
+    # What a release has that has come of age may have moved; the hash tells that it is the same.
+    uri=${uri//\'/}
+    if [ -z "$uri" ] || ! { apt_download "$uri" || apt_download "http://archive.debian.org/debian/${uri#*/debian/}"; }; then
         grep -E '^(Err:|  |W: Failed)' "$apt/log" | tail -n 2 >&2 || true
         say "Could NOT fetch it: no network? (all of the messages: $apt/log)"
         return 1
     fi
     mv "$tarball.part" "$tarball"
+}
+
+# apt_download URI: to $tarball.part, for fetch_tarball.
+apt_download()
+{
+    /usr/lib/apt/apt-helper "${options[@]}" download-file "$1" "$tarball.part" "$hash" >>"$apt/log" 2>&1
 }
 
 # unpack_tarball DIRECTORY [PATTERN...]: the files of these names, or all. They keep their times: nothing is built anew.
