@@ -72,10 +72,9 @@ void weighEdges(const Mat& image, Mat& weights)
     });
 }
 
-void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, bool hasAcross, std::vector<int>& edges)
+void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges)
 {
-    const int width = weights.cols, begin = hasAcross ? std::max(rows.start - 1, 0) : rows.start;
-    const int end = hasAcross ? weights.rows : rows.end; // of the rows that edges lead to
+    const int width = weights.cols, begin = std::max(rows.start - 1, 0);
     edges.resize((size_t)(rows.end - begin) * width * 2);
     size_t count = 0;
     for (int y = begin; y < rows.end; ++y)
@@ -83,7 +82,7 @@ void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, bo
         const uchar* weight = weights.ptr(y);
         const DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
         const DisparityInterval* next = pixelIntv.ptr<DisparityInterval>(std::min(y + 1, weights.rows - 1));
-        const bool hasRight = y >= rows.start, hasBelow = y + 1 < end;
+        const bool hasRight = y >= rows.start, hasBelow = y + 1 < weights.rows;
         for (int x = 0; x < width; ++x) // without branches, which would often be mispredicted
         {
             const int edge = 2 * (y * width + x), right = std::min(x + 1, width - 1);

@@ -33,13 +33,8 @@ struct TreeLink
 //! paper has the difference of intensities. weights: CV_8UC2, weights.ptr()[e] is that of edge e; 0 at the border.
 void weighEdges(const Mat& image, Mat& weights);
 
-/** The edges of some rows that DT-Rule 1 keeps, by number.
-@param weights From weighEdges().
-@param pixelIntv CV_16UC2 of the same size.
-@param rows The rows.
-@param hasAcross Whether those into them and out of them, from the row above and to the one below, are among these.
-@param edges The result. */
-void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, bool hasAcross, std::vector<int>& edges);
+//! The edges of some rows that DT-Rule 1 keeps, by number; and those from the row above into them.
+void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges);
 
 //! Sorts edges by ascending weight; those of one weight stay in the order given. sorted: memory to work in.
 void sortByWeight(const Mat& weights, std::vector<int>& edges, std::vector<int>& sorted);

@@ -22,16 +22,16 @@ bool isFrozen(int parentOfRoot) { return parentOfRoot < -frozenMark; }
 
 An edge to another stripe is left undecided, and freezes its tree: from its turn on, what the tree would be joined with
 is not known. An edge to a frozen tree is left undecided, too, and freezes the other tree. So each decision sees the
-same trees as without stripes. */
+same trees as without stripes. Where stripes come first, nothing is frozen, and only edges between them are left. */
 class StripeJoiner
 {
 public:
-    //! rule2: none if every edge may join; rows: of the stripe; links: continuous
-    StripeJoiner(const TreeStrategy* rule2, const Mat& weights, double beta, const Range& rows, GrowingTrees& trees,
-                 JoinerStripe& stripe, Mat& links)
+    //! rule2: none if every edge may join; rows: of the stripe; freezes: unless stripes come first; links: continuous
+    StripeJoiner(const TreeStrategy* rule2, const Mat& weights, double beta, const Range& rows, bool freezes,
+                 GrowingTrees& trees, JoinerStripe& stripe, Mat& links)
         : rule2_(rule2), unitesIntervals_(!rule2 || rule2->unitesIntervals()), weights_(weights.ptr()), beta_(beta),
           width_(links.cols), begin_(rows.start * width_), end_(rows.end * width_), nodes_(trees.nodes.data()),
-          maxWeights_(trees.maxWeights.data()), links_(links.ptr()), stripe_(stripe)
+          maxWeights_(trees.maxWeights.data()), links_(links.ptr()), freezes_(freezes), stripe_(stripe)
     {
     }
 
@@ -95,6 +95,8 @@ private:
 
     void freezeTree(int pixel)
     {
+        if (!freezes_)
+            return;
         const int root = findRoot(pixel);
         if (!isFrozen(nodes_[root].parent))
         {
@@ -162,6 +164,7 @@ private:
     Node* const nodes_;
     uchar* const maxWeights_;
     uchar* const links_;
+    const bool freezes_;
     JoinerStripe& stripe_;
 };
 
@@ -212,20 +215,6 @@ std::vector<Range> stripesOf(const ImageFrame& frame, int height, int stripeRows
     return stripes;
 }
 
-//! The edges between stripes, by number
-void selectAcross(const Mat& weights, const Mat& pixelIntv, const std::vector<Range>& stripes, std::vector<int>& edges)
-{
-    std::vector<int> two; // rows of a border
-    for (size_t s = 1; s < stripes.size(); ++s)
-    {
-        const int row = stripes[s].start;
-        selectEdges(weights, pixelIntv, Range(row - 1, row + 1), false, two);
-        for (int edge : two)
-            if ((edge & 1) && firstPixel(edge) / weights.cols == row - 1)
-                edges.push_back(edge);
-    }
-}
-
 //! As many stripes as threads make use of
 std::vector<Range> stripesOf(int height)
 {
@@ -261,9 +250,10 @@ void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixe
             for (int s = count * task / tasks; s < count * (task + 1) / tasks; ++s)
             {
                 startTrees(pixelIntv, rows[s], trees);
-                selectEdges(weights, pixelIntv, rows[s], !areFirst, stripe.edges);
+                selectEdges(weights, pixelIntv, rows[s], stripe.edges);
                 orderEdges(strategy, weights, stripe);
-                StripeJoiner(&strategy, weights, params.beta, rows[s], trees, stripe, links).tryEdges(stripe.edges);
+                StripeJoiner(&strategy, weights, params.beta, rows[s], !areFirst, trees, stripe, links)
+                    .tryEdges(stripe.edges);
             }
         }
     });
@@ -277,18 +267,16 @@ void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixe
         for (int root : stripe.frozenRoots)
             trees.nodes[root].parent += frozenMark;
     }
-    if (areFirst)
-        selectAcross(weights, pixelIntv, rows, whole.edges);
     sortByWeight(weights, whole.edges, whole.sorted); // those of one weight are by number already
-    StripeJoiner(&strategy, weights, params.beta, all, trees, whole, links).tryEdges(whole.edges);
+    StripeJoiner(&strategy, weights, params.beta, all, false, trees, whole, links).tryEdges(whole.edges);
     if (!params.link)
         return;
     if (count > 1)
     {
-        selectEdges(weights, pixelIntv, all, true, stripes[0].edges);
+        selectEdges(weights, pixelIntv, all, stripes[0].edges);
         sortByWeight(weights, stripes[0].edges, whole.sorted);
     }
-    StripeJoiner(nullptr, weights, params.beta, all, trees, whole, links).tryEdges(stripes[0].edges);
+    StripeJoiner(nullptr, weights, params.beta, all, false, trees, whole, links).tryEdges(stripes[0].edges);
 }
 
 }}} // namespace cv::stereo::hdp

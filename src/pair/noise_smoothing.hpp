@@ -8,9 +8,9 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-/** A Gaussian of half a pixel, over 3 x 3 pixels, for the images of a noisy pair. Of what a row or a column is mixed of,
-27 / 256 are a pixel's neighbour on either side; the sum is rounded once. cv::GaussianBlur() does the same to numbers of 16
-bits in several times as long.
+/** A Gaussian of half a pixel, over 3 x 3 pixels, for the images of a noisy pair. Of what a row or a column is mixed
+of, 27 / 256 are a pixel's neighbour on either side; the sum is rounded once. cv::GaussianBlur() does the same to
+numbers of 16 bits in several times as long.
 @param image CV_16UC1, values up to 1023; its border is repeated.
 @param smoothed Receives the result, another image. */
 CV_EXPORTS void smoothNoise(const Mat& image, Mat& smoothed);
