@@ -345,7 +345,7 @@ void setParameter(Input& input, HDPTreeMatcher& m)
     };
     HDPTreeMatcher::Params params = m.getParams();
     change(m, [&] {
-        switch (input.ConsumeIntegralInRange(0, 41))
+        switch (input.ConsumeIntegralInRange(0, 40))
         {
         case 0:
             return m.setMinDisparity(input.ConsumeBool() ? anyInt(input) : input.ConsumeIntegralInRange(-200, 200));
@@ -400,54 +400,51 @@ void setParameter(Input& input, HDPTreeMatcher& m)
             params.disparityMedianSize = input.ConsumeBool() ? oddUpTo(7) : upTo(5);
             break;
         case 22:
-            params.disparityMedianPasses = upTo(8);
-            break;
-        case 23:
             params.matchingCost = upTo(1);
             break;
-        case 24:
+        case 23:
             params.disparityPrior = upTo(1);
             break;
-        case 25:
+        case 24:
             params.intervalMargin = upTo(64);
             break;
-        case 26:
+        case 25:
             params.useSubpixel = input.ConsumeBool();
             break;
-        case 27:
+        case 26:
             params.aggregation = upTo(2);
             break;
-        case 28:
+        case 27:
             params.P1 = upTo(100);
             break;
-        case 29:
+        case 28:
             params.finestLayer = upTo(15);
             break;
-        case 30:
+        case 29:
             params.scanlinePasses = upTo(4);
             break;
-        case 31:
+        case 30:
             return m.setDisparityDepth(input.ConsumeBool() ? CV_32F : anyInt(input));
-        case 32:
+        case 31:
             params.fillOcclusions = input.ConsumeBool();
             break;
-        case 33:
+        case 32:
             params.P2 = upTo(100);
             break;
-        case 34:
+        case 33:
             params.maxTopDisparities = upTo(100);
             break;
-        case 35:
+        case 34:
             params.topAggregation = upTo(2);
             break;
-        case 36:
+        case 35:
             return m.setMaxRowOffset(upTo(100));
-        case 37:
+        case 36:
             return m.setUseLightAlignment(input.ConsumeBool());
-        case 38:
+        case 37:
             return m.setNoiseThreshold(anyDouble(input));
+        case 38:
         case 39:
-        case 40:
             return m.setUseTemporalPrediction(input.ConsumeBool());
         default:
             params.useNonLocalRefinement = input.ConsumeBool();

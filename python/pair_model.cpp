@@ -93,8 +93,8 @@ with addedColumns more on the left.)doc");
              py::arg("tileWidth"), py::arg("tileHeight"), R"doc(
 Returns the model for a part of the images.
 
-x, y: first column and row of the tile in the whole images: multiples of 24 * 2^(layers - 2), or compute() raises
-ValueError. 384 is one for up to 6 layers.
+x, y: first column and row of the tile in the whole images: multiples of 2^(layers - 1), or compute() raises
+ValueError. 32 is one for up to 6 layers.
 tileWidth, tileHeight: of the tile, > 0.
 
 Raises ValueError if the model is empty, or the tile not inside of the images.)doc");

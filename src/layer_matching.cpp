@@ -16,7 +16,6 @@
 #include "map/occlusion_filling.hpp"
 #include "map/thin_structures.hpp"
 #include "paper/nonlocal_refinement.hpp"
-#include "scanlines/sparse_matches.hpp"
 #include "video/temporal_prior.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -48,6 +47,8 @@ public:
             matchCosts();
         else if (plan_.method == WINDOW_SCANLINES)
             matchWindows();
+        else if (plan_.method == RANGE_SCANLINES)
+            matchRange();
         else if (!matchTrees())
             return CONTRADICTED;
         if (plan_.trees.refinementGamma > 0)
@@ -217,6 +218,19 @@ private:
         finishWinners();
     }
 
+    //! Scanlines over all candidates, which are those of the layer below
+    void matchRange()
+    {
+        result_.searchRatio = 1;
+        clock_.run("cost aggregation", [&] {
+            weighEdges(guide(), own_.edgeWeights);
+            aggregateRange(*in_.below, plan_.frame, plan_.numDisparities, in_.upper->disparity, own_.edgeWeights,
+                           plan_.hasIntervals ? own_.candidateIntervals : Mat(), plan_.rangePenalties,
+                           shared_.rangeScanlines, result_.winners);
+        });
+        finishWinners();
+    }
+
     //! The last candidate of a layer with fractions may be beyond the range.
     void finishWinners()
     {
@@ -245,9 +259,6 @@ private:
     {
         const double windowed = std::min<double>(CandidateWindow::candidates, plan_.numDisparities);
         result_.searchRatio = windowed / plan_.numDisparities;
-        clock_.run("disparity prediction", [&] {
-            findSparseMatches(own_.census, in_.images.left.size(), plan_.numDisparities, own_.sparseMatches);
-        });
         for (const ScanlinePenalties& penalties : plan_.passes)
         {
             predictPass(&penalties == &plan_.passes.front());
@@ -271,10 +282,8 @@ private:
             });
         clock_.run("disparity prediction", [&] {
             const WindowPrediction prediction = { isFirst ? in_.upper->disparity : own_.halved,
-                                                  isFirst ? in_.upper->winners : own_.halvedWinners,
-                                                  own_.sparseMatches };
-            findOtherSurfaces(prediction, plan_.comparesSurfaces ? &own_.census : nullptr, plan_.numDisparities,
-                              own_.surfaceBuffers, own_.others);
+                                                  isFirst ? in_.upper->winners : own_.halvedWinners };
+            findOtherSurfaces(prediction, own_.surfaceBuffers, own_.others);
             predictWindows(prediction.upper, own_.others, plan_.numDisparities, own_.windows);
             if (plan_.hasIntervals)
                 restrictWindows(intervals(), plan_.numDisparities, own_.windows);
@@ -338,11 +347,6 @@ private:
         if (plan_.medianSize == 0)
             return result_.winners.copyTo(result_.disparity);
         medianDisparity(result_.winners, plan_.medianSize, result_.disparity);
-        for (int pass = 1; pass < plan_.medianPasses; ++pass)
-        {
-            swap(result_.disparity, own_.filtered);
-            medianDisparity(own_.filtered, plan_.medianSize, result_.disparity);
-        }
         if (plan_.restoresThinStructures)
             restoreThinStructures(result_.winners, result_.disparity);
         if (plan_.votesAtEdges)

@@ -45,7 +45,7 @@ struct LayerScratch
     Mat pixelIntv;                       // PixelIntv, section 3.1
     Mat candidateIntervals;              // of the pixels, if the candidates are those of the layer below
     SurfaceBuffers surfaceBuffers;       // memory of findOtherSurfaces()
-    Mat sparseMatches, others, windows;  // what the windows of scanlines are predicted from; the windows
+    Mat others, windows;                 // what the windows of scanlines are predicted from; the windows
     Mat filtered, halved, halvedWinners; // what a pass of scanlines leaves to the next one
     Mat votingLevels;                    // grey levels of a pair with masks
     Mat residual;                        // costs of the winners
@@ -77,6 +77,7 @@ struct SharedScratch
     TwoLayerCost volumeCost;
     CostVolume volume;
     VolumeScanlineBuffers volumeScanlines;
+    RangeBuffers rangeScanlines;
     VideoScratch video;
     Mat predicted;     // disparities of the top layer, by the last frame
     FrameMemory frame; // what the finest layer leaves to the next frame of a video

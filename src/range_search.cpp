@@ -28,7 +28,7 @@ HDP_TUNABLE(double, farReach, 1.5, "share of the corners' range",
             "that is searched before it: more cost time and errors");
 HDP_TUNABLE(double, nearReach, 1.5, "share of the corners' range", "that is searched behind it");
 HDP_TUNABLE(double, leastReach, 0.1, "share of the width", "that is searched behind it at least");
-HDP_TUNABLE(double, minConfidence, 20, "confidence", "of disparities that count: less believes errors");
+HDP_TUNABLE(double, minConfidence, 25, "confidence", "of disparities that count: less believes errors");
 HDP_TUNABLE(int, speckleSize, 50, "pixels", "of regions that do not count: fewer believe errors");
 HDP_TUNABLE(double, leftOut, 0.0005, "share of the disparities", "at each end that may be wrong");
 

@@ -15,6 +15,7 @@
 #include "../src/forest/disparity_prediction.hpp"
 #include "../src/forest/tree_walk.hpp"
 #include "../src/scanlines/scanline_aggregation.hpp"
+#include "../src/scanlines/range_scanlines.hpp"
 #include "../src/scanlines/volume_scanlines.hpp"
 
 namespace opencv_test { namespace oracle {
@@ -177,19 +178,6 @@ private:
     Mat left_, right_;
     int radius_, tolerance_;
 };
-
-//! How many of the census's comparisons find a darker pixel, in some pixels of a row
-inline int countDarker(const Mat& image, int radius, int y, const Range& columns)
-{
-    int count = 0;
-    for (int x = columns.start; x < columns.end; ++x)
-        for (int dy = -radius; dy <= radius; ++dy)
-            for (int dx = -radius; dx <= radius; ++dx)
-                if ((dx + dy) % 2 != 0 &&
-                    image.at<ushort>(clamped(y + dy, image.rows), clamped(x + dx, image.cols)) < image.at<ushort>(y, x))
-                    ++count;
-    return count;
-}
 
 //! ELAS's support points by direct search.
 class SupportPoints
@@ -663,42 +651,6 @@ inline Mat restoreThinStructures(const Mat& unfiltered, const Mat& filtered)
     return result;
 }
 
-//! Unique matches of single points by direct search, see findSparseMatches().
-inline Mat findSparseMatches(const Mat& left, const Mat& right, int blockSize, int numDisparities)
-{
-    const CensusCost census(left, right, blockSize);
-    Mat result((left.rows + 23) / 24, (left.cols + 23) / 24, CV_16UC1, Scalar(0xffff));
-    for (int i = 0; i < result.rows; ++i)
-        for (int j = 0; j < result.cols; ++j)
-        {
-            const int x = 24 * j + 12, y = std::min(24 * i + 12, left.rows - 1);
-            if (x + 7 >= left.cols)
-                continue;
-            std::vector<int> costs;
-            for (int d = 0; d < numDisparities && d <= x - 7; ++d)
-            {
-                costs.push_back(0);
-                for (int u = x - 7; u <= x + 7; ++u)
-                    costs[d] = std::min(costs[d] + census(y, u, d), 255);
-            }
-            if (costs.empty() ||
-                4 * countDarker(left, blockSize / 2, y, Range(x - 7, x + 8)) < 15 * (blockSize * blockSize / 2))
-                continue;
-            const int best = (int)(std::min_element(costs.begin(), costs.end()) - costs.begin());
-            bool isUnique = costs.size() > 1;
-            int rivals = 0;
-            for (int d = 0; d < (int)costs.size(); ++d)
-                if (std::abs(d - best) > 2)
-                {
-                    ++rivals;
-                    isUnique = isUnique && 2 * costs[best] < costs[d];
-                }
-            if (isUnique && rivals > 0)
-                result.at<ushort>(i, j) = (ushort)(16 * best);
-        }
-    return result;
-}
-
 //! The fraction of a winner's disparity, see hdp::winnerFraction(). before, after: what the sums beside it have more
 inline double fraction(int before, int after, double blunt, double sharp)
 {
@@ -922,6 +874,108 @@ inline Mat volumeDisparity(const Mat_<uchar>& costs, const Mat& weights, const M
     }
     return disparity;
 }
+
+//! What aggregateRange() has of a layer, by direct computation
+struct RangeLayer
+{
+    Mat left, right; // of the layer below
+    int blockSize, candidates;
+    Mat upper, weights, intervals;
+    hdp::PairMasks masks; // of the layer below
+
+    //! stripes: rows, and those that the vertical directions are followed over
+    Mat disparity(const hdp::RangePenalties& penalties, const std::vector<hdp::ScanlineStripe>& stripes) const
+    {
+        const Mat_<int> all = costs(penalties);
+        Mat_<int> sums = excess(all, weights, penalties, Point(-1, 0)) + excess(all, weights, penalties, Point(1, 0));
+        const int width = weights.cols;
+        for (const hdp::ScanlineStripe& stripe : stripes)
+            for (const Point& step : { Point(0, -1), Point(0, 1) })
+            {
+                const Range reach = stripe.reach, rows = stripe.rows;
+                const Mat_<int> costsOfReach = all.rowRange(reach.start * width, reach.end * width);
+                const Mat_<int> found = excess(costsOfReach, weights.rowRange(reach), penalties, step);
+                sums.rowRange(rows.start * width, rows.end * width) +=
+                    found.rowRange((rows.start - reach.start) * width, (rows.end - reach.start) * width);
+            }
+        return winners(cv::min(sums, 255));
+    }
+
+private:
+    //! C(p, h): rows pixels, columns candidates
+    Mat_<int> costs(const hdp::RangePenalties& penalties) const
+    {
+        const CensusCost census(left, right, blockSize);
+        Mat_<int> all(weights.size().area(), candidates, 255);
+        const auto ofBelow = [&](int y, int x, int h) {
+            const int cost = census(y, x, h);
+            if (masks.isEmpty())
+                return cost;
+            const bool hasMatch = masks.right.at<uchar>(y, clamped(x - h, right.cols)) >= 128;
+            return masks.left.at<uchar>(y, x) < 128 ? 0 : hasMatch ? cost : std::min(cost, +hdp::CostLimits::ordinary);
+        };
+        for (int y = 0; y < weights.rows; ++y)
+            for (int x = 0; x < weights.cols; ++x)
+            {
+                const double above = upper.at<ushort>(clamped(y / 2, upper.rows), clamped(x / 2, upper.cols)) / 16.;
+                const int predicted = std::min(cvFloor(4 * above + 0.5), candidates);
+                const Vec2w own = intervals.empty() ? Vec2w(0, (ushort)(candidates - 1)) : intervals.at<Vec2w>(y, x);
+                for (int h = own[0]; h <= own[1]; ++h)
+                    all(y * weights.cols + x, h) =
+                        ofBelow(2 * y, 2 * x, h) + ofBelow(2 * y + 1, 2 * x + 1, h) +
+                        std::min(std::abs(h - predicted) / penalties.priorDistance, penalties.maxPrior);
+            }
+        return all;
+    }
+
+    //! L of a direction, from the pixel that is step away, less its minimum
+    static Mat_<int> excess(const Mat_<int>& costs, const Mat& weights, const hdp::RangePenalties& penalties,
+                            Point step)
+    {
+        const Size size = weights.size();
+        const auto sum = [](int a, int b) { return std::min(a + b, 255); };
+        Mat_<int> all = costs.clone();
+        for (int i = 0; i < size.area(); ++i)
+        {
+            const int p = step.x + step.y < 0 ? i : size.area() - 1 - i; // after the pixel before
+            const Point here(p % size.width, p / size.width), before = here + step;
+            if (!Rect(Point(), size).contains(before))
+                continue;
+            const int* of = all[before.y * size.width + before.x];
+            const int least = *std::min_element(of, of + costs.cols);
+            const Point edge(std::min(here.x, before.x), std::min(here.y, before.y));
+            const int w = weights.at<Vec2b>(edge)[step.x == 0];
+            const int large = std::max(penalties.small, cvRound(penalties.large * std::exp(-w / penalties.gamma)));
+            for (int h = 0; h < costs.cols; ++h)
+            {
+                int best = std::min(of[h], sum(least, large));
+                for (int other : { h - 1, h + 1 })
+                    if (0 <= other && other < costs.cols)
+                        best = std::min(best, sum(of[other], penalties.small));
+                all(p, h) = sum(costs(p, h), best - least);
+            }
+        }
+        for (int p = 0; p < all.rows; ++p)
+            all.row(p) -= *std::min_element(all[p], all[p] + all.cols);
+        return all;
+    }
+
+    Mat winners(const Mat_<int>& sums) const
+    {
+        Mat disparity(weights.size(), CV_16UC1);
+        for (int p = 0; p < sums.rows; ++p)
+        {
+            const int* sum = sums[p];
+            const int k = (int)(std::min_element(sum, sum + candidates) - sum), last = candidates - 1;
+            const int after = k < last ? sum[k + 1] - sum[k] : 0, before = k > 0 ? sum[k - 1] - sum[k] : 0;
+            const int rise = k > 0 ? before : std::max(after, sum[2] - sum[1]);
+            const int descent = k < last ? after : std::max(before, sum[last - 2] - sum[last - 1]);
+            const double offset = fraction(rise, descent, 8 * 4 * 2, 14 * 4 * 2);
+            disparity.at<ushort>(p / weights.cols, p % weights.cols) = (ushort)((16 * k + cvRound(16 * offset)) / 2);
+        }
+        return disparity;
+    }
+};
 
 //! The disparities of a layer from those above: bilinear over the four pixels above that are nearest, those outside of
 //! the image being the nearest inside. Where one of them is off by more than a pixel, the nearest one stands for it.

@@ -23,15 +23,16 @@ inline std::string textOf(const hdp::LayerPlan& p)
          << p.trees.margin << " beta " << p.trees.beta << " links " << p.trees.linksTrees << " stripes "
          << p.trees.stripeRows << " gamma " << p.trees.gamma << " planes " << p.trees.prefersPlanes << " refinement "
          << p.trees.refinementGamma << "\n  volume " << p.volumePenalties.small << " " << p.volumePenalties.large << " "
-         << p.volumePenalties.gamma << "\n  passes";
+         << p.volumePenalties.gamma << " range " << p.rangePenalties.small << " " << p.rangePenalties.large << " "
+         << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " " << p.rangePenalties.maxPrior
+         << "\n  passes";
     for (const hdp::ScanlinePenalties& pass : p.passes)
         text << " [" << pass.small << " " << pass.large << " slope " << pass.edgeSlope << " prior " << pass.prior
              << "]";
     text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
          << p.fillsOcclusions << " intervals " << p.hasIntervals << " joins prior " << p.joinsPrior
-         << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " x " << p.medianPasses
-         << " thin structures " << p.restoresThinStructures << " compares surfaces " << p.comparesSurfaces << " votes "
-         << p.votesAtEdges << "\n";
+         << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " thin structures "
+         << p.restoresThinStructures << " votes " << p.votesAtEdges << "\n";
     return text.str();
 }
 

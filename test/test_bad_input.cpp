@@ -139,8 +139,6 @@ TEST(HDPStereo_BadInput, setters)
     }
     for (int bad : { 1, 2, 4, 6, 8, 9, 31, -2, -3, INT_MAX, INT_MIN })
         expectBadValue(inParams([bad](Params& p) { p.disparityMedianSize = bad; }), "disparityMedianSize");
-    for (int bad : { 0, -1, 9, INT_MAX, INT_MIN })
-        expectBadValue(inParams([bad](Params& p) { p.disparityMedianPasses = bad; }), "disparityMedianPasses");
     for (int bad : { -1, 2, INT_MAX, INT_MIN })
     {
         expectBadValue(inParams([bad](Params& p) { p.matchingCost = bad; }), "matchingCost");

@@ -14,19 +14,19 @@ using hdp::CandidateWindow;
 const int scale = 16;
 
 //! The other surfaces of a layer without a census
-Mat usualSurfaces(const Prediction& prediction)
+Mat otherSurfaces(const Prediction& prediction)
 {
     Mat others(prediction.upper.size(), CV_16UC1);
     for (int y = 0; y < others.rows; ++y)
         for (int x = 0; x < others.cols; ++x)
-            others.at<ushort>(y, x) = (ushort)oracle::usualSurface(prediction, y, x);
+            others.at<ushort>(y, x) = (ushort)oracle::otherSurface(prediction, y, x);
     return others;
 }
 
 Mat predict(const Prediction& prediction, int numDisparities)
 {
     Mat windows(7, 2, CV_16UC4);
-    hdp::predictWindows(prediction.upper, usualSurfaces(prediction), numDisparities, windows);
+    hdp::predictWindows(prediction.upper, otherSurfaces(prediction), numDisparities, windows);
     return windows;
 }
 
@@ -50,7 +50,7 @@ void expectWindows(const Prediction& prediction, int numDisparities)
         for (int x = 0; x < upper.cols; ++x)
         {
             const CandidateWindow& w = windows.ptr<CandidateWindow>(y)[x];
-            const int own = 2 * upper.at<ushort>(y, x), other = oracle::usualSurface(prediction, y, x);
+            const int own = 2 * upper.at<ushort>(y, x), other = oracle::otherSurface(prediction, y, x);
             SCOPED_TRACE(testing::Message() << "y " << y << " x " << x << ": runs from " << w.first[0] << " and "
                                             << w.first[1] << ", own " << own / 16. << ", beyond " << other / 16.);
             for (int run = 0; run < CandidateWindow::runs; ++run)
@@ -92,7 +92,7 @@ TEST(HDPStereo_CandidateWindows, properties)
                              << size << ", " << numDisparities << " disparities, patches of " << patch);
                 Prediction prediction(patchesAbove(rng, size, numDisparities, patch));
                 expectWindows(prediction, numDisparities);
-                prediction.addThinStructuresAndMatches(rng, numDisparities);
+                prediction.addThinStructures(rng, numDisparities);
                 expectWindows(prediction, numDisparities);
             }
 }

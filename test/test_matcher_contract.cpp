@@ -71,7 +71,6 @@ TEST(HDPStereo_MatcherContract, defaults)
     EXPECT_EQ(2, params.gradientTruncation);
     EXPECT_EQ(0.11, params.colorWeight);
     EXPECT_EQ(HDPTreeMatcher::AUTO, params.disparityMedianSize);
-    EXPECT_EQ(1, params.disparityMedianPasses);
     EXPECT_EQ((int)HDPTreeMatcher::COST_COLOR_GRADIENT, params.matchingCost);
     EXPECT_EQ((int)HDPTreeMatcher::PRIOR_SUPPORT_POINTS, params.disparityPrior);
     EXPECT_EQ(0, params.intervalMargin);
@@ -144,7 +143,6 @@ TEST(HDPStereo_MatcherContract, setters_and_getters)
     EXPECT_KEEPS_FIELD(matcher, gradientTruncation, 0., 7.5, 255.);
     EXPECT_KEEPS_FIELD(matcher, colorWeight, 0., 0.5, 1.);
     EXPECT_KEEPS_FIELD(matcher, disparityMedianSize, 0, 3, 5, 7, (int)HDPTreeMatcher::AUTO);
-    EXPECT_KEEPS_FIELD(matcher, disparityMedianPasses, 8, 2, 1);
     EXPECT_KEEPS_FIELD(matcher, matchingCost, (int)HDPTreeMatcher::COST_CENSUS,
                        (int)HDPTreeMatcher::COST_COLOR_GRADIENT);
     EXPECT_KEEPS_FIELD(matcher, disparityPrior, (int)HDPTreeMatcher::PRIOR_UPPER_LAYER,
@@ -239,7 +237,6 @@ const Change commonChanges[] = {
     { "numLayers", inParams([](Params& p) { p.numLayers = 1; }) },
     { "gamma", inParams([](Params& p) { p.gamma = 5; }) },
     { "disparityMedianSize", inParams([](Params& p) { p.disparityMedianSize = 0; }) },
-    { "disparityMedianPasses", inParams([](Params& p) { p.disparityMedianPasses = 4; }) },
     { "useSubpixel", inParams([](Params& p) { p.useSubpixel = !p.useSubpixel; }) },
     { "finestLayer", inParams([](Params& p) { p.finestLayer = 1 - p.finestLayer; }) },
     { "maxTopDisparities", inParams([](Params& p) {
@@ -327,23 +324,14 @@ TEST(HDPStereo_MatcherContract, median_passes_are_medians_of_medians)
             change(*matcher, [&](Params& p) {
                 p.useSubpixel = useSubpixel;
                 p.disparityMedianSize = 0;
-                p.disparityMedianPasses = 3; // of nothing
             });
             const Mat unfiltered = match(*matcher, pair.left, pair.right);
-            change(*matcher, [&](Params& p) { p.disparityMedianPasses = 1; });
-            expectIdentical(unfiltered, match(*matcher, pair.left, pair.right));
 
             Mat expected;
             unfiltered.convertTo(expected, CV_16U);
+            oracle::median(expected, size).convertTo(expected, CV_16S);
             change(*matcher, [&](Params& p) { p.disparityMedianSize = size; });
-            for (int passes = 1; passes <= 8; ++passes)
-            {
-                expected = oracle::median(expected, size);
-                Mat expectedDisparity;
-                expected.convertTo(expectedDisparity, CV_16S);
-                change(*matcher, [&](Params& p) { p.disparityMedianPasses = passes; });
-                expectIdentical(expectedDisparity, match(*matcher, pair.left, pair.right));
-            }
+            expectIdentical(expected, match(*matcher, pair.left, pair.right));
         }
 }
 
@@ -868,10 +856,12 @@ TEST(HDPStereo_MatcherContract, layers_of_an_image)
             const int layers = hdp::chooseLayers(numDisparities, matcher->getParams().numLayers,
                                                  matcher->getParams().maxTopDisparities, 16);
             std::vector<double> ratios, ofLayers(layers, 1.);
-            for (int layer = 0; layer < layers - 1; ++layer) // 16 candidates
-                ofLayers[layer] = layer < matcher->getParams().finestLayer
-                                      ? 0
-                                      : std::min(1., 16. / (cvCeil((numDisparities - 1) / std::pow(2., layer)) + 1));
+            const int finest = matcher->getParams().finestLayer;
+            for (int layer = 0; layer < layers - 1; ++layer) // 16 candidates, or all while there are few
+            {
+                const int all = cvCeil((numDisparities - 1) / std::pow(2., layer)) + 1;
+                ofLayers[layer] = layer < finest ? 0 : layer > finest && all <= 65 ? 1 : std::min(1., 16. / all);
+            }
             match(*matcher, image, image);
             ratios = matcher->getFindings().searchRatios;
             EXPECT_EQ(ofLayers, ratios);

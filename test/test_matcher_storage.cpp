@@ -36,7 +36,6 @@ Ptr<HDPTreeMatcher> createUnusualMatcher()
         p.gradientTruncation = 3.25;
         p.colorWeight = 0.25;
         p.disparityMedianSize = 3;
-        p.disparityMedianPasses = 4;
         p.matchingCost = HDPTreeMatcher::COST_CENSUS;
         p.disparityPrior = HDPTreeMatcher::PRIOR_UPPER_LAYER;
         p.intervalMargin = 2;
@@ -94,7 +93,6 @@ TEST(HDPStereo_MatcherStorage, write_and_read)
             EXPECT_EQ(3.25, params.gradientTruncation);
             EXPECT_EQ(0.25, params.colorWeight);
             EXPECT_EQ(3, params.disparityMedianSize);
-            EXPECT_EQ(4, params.disparityMedianPasses);
             EXPECT_EQ((int)HDPTreeMatcher::COST_CENSUS, params.matchingCost);
             EXPECT_EQ((int)HDPTreeMatcher::PRIOR_UPPER_LAYER, params.disparityPrior);
             EXPECT_EQ(2, params.intervalMargin);
@@ -248,7 +246,6 @@ TEST(HDPStereo_MatcherStorage, hostile_values)
         { "maxRowOffset", { "-1", "-2147483648", "1.5", 0 } },
         { "noiseThreshold", { "-1.", "-1e-3", ".Nan", ".Inf", 0 } },
         { "disparityMedianSize", { "1", "2", "-2", "4", "9", "2147483647", 0 } },
-        { "disparityMedianPasses", { "0", "-1", "9", "2147483647", "1.5", 0 } },
         { "matchingCost", { "-1", "2", "2147483647", "0.5", 0 } },
         { "disparityPrior", { "-1", "2", "2147483647", "0.5", 0 } },
         { "intervalMargin", { "-1", "65", "2147483647", "0.5", 0 } },
@@ -308,8 +305,7 @@ TEST(HDPStereo_MatcherStorage, missing_keys)
 //! A file that knows nothing of the parameters that later versions have means the paper's system.
 TEST(HDPStereo_MatcherStorage, file_of_the_first_version)
 {
-    const char* const added[] = { "disparityMedianPasses",
-                                  "matchingCost",
+    const char* const added[] = { "matchingCost",
                                   "disparityPrior",
                                   "intervalMargin",
                                   "useSubpixel",

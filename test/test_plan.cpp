@@ -35,7 +35,6 @@ void withTreeSums(MatcherParameters& p) { p.aggregation = p.topAggregation = M::
 void withTreesBelow(MatcherParameters& p) { p.aggregation = M::AGGREGATION_TREES; }
 void withColorGradient(MatcherParameters& p) { p = parametersOf(M::PRESET_PAPER); }
 void withCensus(MatcherParameters& p) { p.matchingCost = M::COST_CENSUS; }
-void withoutMedian(MatcherParameters& p) { p.disparityMedianSize = 0; }
 void withoutSpeckleFilter(MatcherParameters& p) { p.speckleWindowSize = 0; }
 
 struct Row
@@ -85,7 +84,6 @@ const Row withoutEffect[] = {
       } },
     { "census: blockSize above 7", withCensus,
       [](MatcherParameters& p) { p.blockSize = p.blockSize >= 7 ? 21 : p.blockSize; } },
-    { "no median: its passes", withoutMedian, [](MatcherParameters& p) { p.disparityMedianPasses = 3; } },
     { "no speckle filter: speckleRange", withoutSpeckleFilter, [](MatcherParameters& p) { p.speckleRange = 3; } },
     { "disp12MaxDiff below 1 and a depth", keep, [](MatcherParameters& p) { p.disparityDepth = CV_32F; } },
 };
@@ -130,7 +128,6 @@ const Row withEffect[] = {
     { "gradientTruncation", withColorGradient, [](MatcherParameters& p) { p.gradientTruncation = 3; } },
     { "colorWeight", withColorGradient, [](MatcherParameters& p) { p.colorWeight = 0.5; } },
     { "disparityMedianSize", keep, [](MatcherParameters& p) { p.disparityMedianSize = 3; } },
-    { "disparityMedianPasses", keep, [](MatcherParameters& p) { p.disparityMedianPasses = 3; } },
     { "matchingCost", withTreesBelow,
       [](MatcherParameters& p) {
           p.fillOcclusions = false;
@@ -263,21 +260,41 @@ TEST(HDPStereo_Plan, methods_of_the_presets)
 {
     const hdp::LayerMethod tops[] = { hdp::TREE_SUMS, hdp::TREE_SCANLINES, hdp::TREE_SCANLINES, hdp::TREE_SCANLINES,
                                       hdp::TREE_SCANLINES };
-    const hdp::LayerMethod below[] = { hdp::TREE_SUMS, hdp::WINDOW_SCANLINES, hdp::WINDOW_SCANLINES,
-                                       hdp::WINDOW_SCANLINES, hdp::TREE_SCANLINES };
+    const hdp::LayerMethod finest[] = { hdp::TREE_SUMS, hdp::WINDOW_SCANLINES, hdp::WINDOW_SCANLINES,
+                                        hdp::WINDOW_SCANLINES, hdp::TREE_SCANLINES };
     for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
     {
         const PairPlan plan = hdp::plan(parametersOf(preset), imageSize, CV_8UC3);
         EXPECT_EQ(tops[preset], plan.top().method) << preset;
+        EXPECT_EQ(finest[preset], plan.finest().method) << preset;
         for (size_t i = 1; i < plan.layers.size(); ++i)
-        {
             EXPECT_EQ(plan.layers[i - 1].layer - 1, plan.layers[i].layer);
-            EXPECT_EQ(below[preset], plan.layers[i].method) << preset;
-            EXPECT_EQ(plan.layers[i].isFinest, plan.layers[i].comparesSurfaces) << "coarser layers gain nothing";
-        }
         EXPECT_EQ(preset == M::PRESET_ULTRAFAST, plan.finest().layer == 1);
         EXPECT_EQ(0, plan.top().trees.stripeRows) << "bare surfaces need trees as large as they are";
         EXPECT_EQ(preset == M::PRESET_TREE, plan.finest().trees.stripeRows > 0) << "those of the paper have no stripes";
+    }
+}
+
+//! Between the top layer and the finest one: all candidates while there are few, in halves of a pixel
+TEST(HDPStereo_Plan, whole_range_of_coarse_layers)
+{
+    for (int numDisparities : { 64, 128, 129, 256, 600 })
+    {
+        MatcherParameters p = parametersOf(M::PRESET_FAST);
+        p.numDisparities = numDisparities;
+        const PairPlan plan = hdp::plan(p, Size(1280, 960), CV_8UC3);
+        ASSERT_LE(3u, plan.layers.size());
+        for (size_t i = 1; i < plan.layers.size(); ++i)
+        {
+            const hdp::LayerPlan& layer = plan.layers[i];
+            const int disparities =
+                ((numDisparities - 1) >> layer.layer) + 2; // with one for the fraction of the last one
+            const bool isWhole = !layer.isFinest && disparities <= 66;
+            EXPECT_EQ(isWhole ? hdp::RANGE_SCANLINES : hdp::WINDOW_SCANLINES, layer.method) << numDisparities;
+            EXPECT_EQ(isWhole, layer.seesBelow) << "where the candidates are those of the layer below";
+            EXPECT_EQ(isWhole, layer.passes.empty());
+            EXPECT_EQ(isWhole, layer.rangePenalties.large > layer.rangePenalties.small);
+        }
     }
 }
 

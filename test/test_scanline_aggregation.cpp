@@ -10,7 +10,6 @@
 #include "oracles.hpp"
 #include "../src/scanlines/scanline_aggregation.hpp"
 #include "../src/scanlines/other_surfaces.hpp"
-#include "../src/scanlines/sparse_matches.hpp"
 
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_END
@@ -54,11 +53,9 @@ struct Layer
                             right.at<ushort>(y, x - d) = left.at<ushort>(y, x);
             }
         hdp::SurfaceBuffers buffers;
-        const Mat matches(1, 1, CV_16UC1, Scalar(hdp::SparseMatches::noMatch));
-        const hdp::WindowPrediction prediction = { upper, upper, matches };
+        const hdp::WindowPrediction prediction = { upper, upper };
         Mat others;
-        const hdp::CensusCost usualCost = cost();
-        hdp::findOtherSurfaces(prediction, &usualCost, numDisparities, buffers, others);
+        hdp::findOtherSurfaces(prediction, buffers, others);
         hdp::predictWindows(upper, others, numDisparities, windows);
     }
 

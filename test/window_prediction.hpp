@@ -6,7 +6,6 @@
 
 #include "test_precomp.hpp"
 #include "../src/scanlines/other_surfaces.hpp"
-#include "../src/scanlines/sparse_matches.hpp"
 
 namespace opencv_test {
 
@@ -29,36 +28,21 @@ inline Mat patchesAbove(RNG& rng, Size size, int numDisparities, int patch)
 //! What is known of a layer
 struct Prediction
 {
-    Mat upper, unfiltered, matches;
+    Mat upper, unfiltered;
 
-    //! Without matches of its own
-    explicit Prediction(const Mat& upper_)
-        : upper(upper_), unfiltered(upper_.clone()),
-          matches((2 * upper.rows + 23) / 24, (2 * upper.cols + 23) / 24, CV_16UC1, Scalar(+noMatch))
-    {
-    }
+    explicit Prediction(const Mat& upper_) : upper(upper_), unfiltered(upper_.clone()) {}
 
-    //! Single pixels that the median removed, and matches of the layer itself here and there
-    void addThinStructuresAndMatches(RNG& rng, int numDisparities)
+    //! Single pixels that the median removed
+    void addThinStructures(RNG& rng, int numDisparities)
     {
         const int scale = 16, largest = (numDisparities - 1) * scale;
         for (int y = 0; y < unfiltered.rows; ++y)
             for (int x = 0; x < unfiltered.cols; ++x)
                 if (rng.uniform(0, 30) == 0)
                     unfiltered.at<ushort>(y, x) = (ushort)rng.uniform(0, largest / 2 + 1);
-        for (int y = 0; y < matches.rows; ++y)
-            for (int x = 0; x < matches.cols; ++x)
-                if (rng.uniform(0, 2) == 0)
-                    matches.at<ushort>(y, x) = (ushort)(scale * rng.uniform(0, numDisparities));
     }
 
-    ushort matchAt(int y, int x) const { return matches.at<ushort>(y / 12, x / 12); }
-    hdp::WindowPrediction forStage() const { return { upper, unfiltered, matches }; }
-
-    enum
-    {
-        noMatch = hdp::SparseMatches::noMatch
-    };
+    hdp::WindowPrediction forStage() const { return { upper, unfiltered }; }
 };
 
 namespace oracle {
@@ -77,12 +61,11 @@ inline int farthest(const Mat& upper, int y, int x, int own)
     return result;
 }
 
-//! The usual other surface, or the pixel's own
-inline int usualSurface(const Prediction& prediction, int y, int x)
+//! The other surface, or the pixel's own
+inline int otherSurface(const Prediction& prediction, int y, int x)
 {
-    const int own = 2 * prediction.upper.at<ushort>(y, x), match = prediction.matchAt(y, x);
-    const int sources[] = { 2 * prediction.unfiltered.at<ushort>(y, x), match != Prediction::noMatch ? match : own,
-                            2 * farthest(prediction.upper, y, x, own / 2),
+    const int own = 2 * prediction.upper.at<ushort>(y, x);
+    const int sources[] = { 2 * prediction.unfiltered.at<ushort>(y, x), 2 * farthest(prediction.upper, y, x, own / 2),
                             2 * farthest(prediction.unfiltered, y, x, own / 2) };
     for (int other : sources)
         if (std::abs(other - own) >= 5 * 16)

@@ -78,7 +78,6 @@ static std::vector<Variant> variantsOf(int preset)
     std::vector<Variant> variants(1, { "PRESET_FAST", [](M&) {}, 0, 0, 0 });
     add<int>(variants, "blockSize", &P::blockSize, { 3, 5 });
     add<int>(variants, "disparityMedianSize", &P::disparityMedianSize, { 0, 3, 7 });
-    add<int>(variants, "disparityMedianPasses", &P::disparityMedianPasses, { 2 });
     add<double>(variants, "gamma", &P::gamma, { 10, 40 });
     add<bool>(variants, "fillOcclusions", &P::fillOcclusions, { false });
     add<bool>(variants, "useSubpixel", &P::useSubpixel, { false });

@@ -244,6 +244,26 @@ struct ByteLanes
 #endif
     }
 
+    //! The smallest lane of all
+    int lowest() const
+    {
+#if HDP_LANES_AVX2
+        const __m128i half = _mm_min_epu8(_mm256_castsi256_si128(v.val), _mm256_extracti128_si256(v.val, 1));
+        return _mm_cvtsi128_si32(_mm_minpos_epu16(_mm_min_epu8(half, _mm_srli_epi16(half, 8)))) & 255;
+#elif HDP_LANES_SSE4
+        return _mm_cvtsi128_si32(_mm_minpos_epu16(_mm_min_epu8(v.val, _mm_srli_epi16(v.val, 8)))) & 255;
+#else
+        return v_reduce_min(v);
+#endif
+    }
+
+    //! The first lane that is that of b; -1 if there is none
+    int firstEqual(const ByteLanes& b) const
+    {
+        const Vector isEqual = equals(b);
+        return v_check_any(isEqual) ? v_scan_forward(isEqual) : -1;
+    }
+
     //! The first of the smallest lanes of each group
     void findMinimum(unsigned* lanes) const
     {

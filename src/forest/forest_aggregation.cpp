@@ -134,39 +134,11 @@ struct Aggregation
     }
 };
 
-//! Lends each thread its scratch memory.
-class ScratchLoan
-{
-public:
-    ScratchLoan(AggregationBuffers& buffers, std::mutex& mutex) : buffers_(buffers), mutex_(mutex)
-    {
-        std::lock_guard<std::mutex> lock(mutex_);
-        if (buffers_.idle.empty())
-            scratch_.reset(new AggregationScratch);
-        else
-        {
-            scratch_ = std::move(buffers_.idle.back());
-            buffers_.idle.pop_back();
-        }
-    }
-    ~ScratchLoan()
-    {
-        std::lock_guard<std::mutex> lock(mutex_);
-        buffers_.idle.push_back(std::move(scratch_));
-    }
-    AggregationScratch& operator*() const { return *scratch_; }
-
-private:
-    AggregationBuffers& buffers_;
-    std::mutex& mutex_;
-    std::unique_ptr<AggregationScratch> scratch_;
-};
-
 //! A large tree with many candidates: groups of them side by side
 void processLarge(const Aggregation& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
 {
     std::mutex mutex;
-    ScratchLoan result(buffers, mutex);
+    ScratchLoan<AggregationScratch> result(buffers.idle, mutex);
     TreeWalk& walk = (*result).walk;
     walkTree(aggregation.forest, tree, walk);
     const Range candidates = aggregation.problem.candidates(walk, tree);
@@ -182,7 +154,7 @@ void processLarge(const Aggregation& aggregation, const DisparityTree& tree, Agg
     std::vector<std::vector<RunWinner>>& groups = buffers.groups;
     groups.resize(maxGroups);
     const auto takeGroups = [&](const Range& range) {
-        ScratchLoan scratch(buffers, mutex);
+        ScratchLoan<AggregationScratch> scratch(buffers.idle, mutex);
         for (int g = range.start; g < range.end; ++g)
             aggregation.takeWinners(walk, tree.size, Range(firstOf(g), firstOf(g + 1)), (*scratch).costs, groups[g]);
     };
@@ -227,7 +199,7 @@ void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, con
 
     std::mutex mutex;
     parallel_for_(Range(0, (int)tasks.size()), [&](const Range& range) {
-        ScratchLoan scratch(buffers, mutex);
+        ScratchLoan<AggregationScratch> scratch(buffers.idle, mutex);
         for (int i = range.start; i < range.end; ++i)
             for (int t = tasks[i].start; t < tasks[i].end; ++t)
                 processSmall(forest.trees[t], *scratch);
@@ -300,7 +272,7 @@ struct MeanAggregation
     void processLarge(const DisparityTree& tree, AggregationBuffers& buffers) const
     {
         std::mutex mutex;
-        ScratchLoan whole(buffers, mutex);
+        ScratchLoan<AggregationScratch> whole(buffers.idle, mutex);
         const TreeWalk& walk = (*whole).walk;
         walkTree(forest, tree, (*whole).walk);
         volume.place(forest, numberOf(tree), walk.pixels.data());
@@ -309,7 +281,7 @@ struct MeanAggregation
         const int lanes = countLanes(end - first, tree.size);
         const int runs = (end - first + lanes - 1) / lanes, groups = std::min(runs, maxGroups);
         const auto takeGroups = [&](const Range& range) {
-            ScratchLoan scratch(buffers, mutex);
+            ScratchLoan<AggregationScratch> scratch(buffers.idle, mutex);
             for (int i = runs * range.start / groups; i < runs * range.end / groups; ++i)
             {
                 const Range run(first + i * lanes, std::min(first + (i + 1) * lanes, end));

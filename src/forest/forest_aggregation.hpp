@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
 #define OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
 
-#include <memory>
+#include "../base/scratch_pool.hpp"
 #include "cost_volume.hpp"
 #include "tree_walk.hpp"
 
@@ -72,7 +72,7 @@ struct AggregationScratch
 
 struct AggregationBuffers
 {
-    std::vector<std::unique_ptr<AggregationScratch>> idle;
+    ScratchPool<AggregationScratch> idle;
     std::vector<std::vector<RunWinner>> groups; // of a large tree's candidates
 };
 

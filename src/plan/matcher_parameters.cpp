@@ -73,7 +73,6 @@ template <typename Parameters, typename Visitor> void visitParams(Parameters& p,
     const int side = p.disparityMedianSize;
     visit("disparityMedianSize", p.disparityMedianSize,
           side == M::AUTO || side == 0 || side == 3 || side == 5 || side == 7, "0, 3, 5, 7 or AUTO");
-    visit("disparityMedianPasses", p.disparityMedianPasses, isIn(p.disparityMedianPasses, 1, 8), "in 1..8");
     visit("fillOcclusions", p.fillOcclusions);
     visit("useNonLocalRefinement", p.useNonLocalRefinement);
 }
@@ -190,7 +189,6 @@ HDPTreeMatcher::Params::Params(int preset)
 
     useSubpixel = !isPaper;
     disparityMedianSize = isPaper ? (int)AUTO : isQuality ? 7 : 5;
-    disparityMedianPasses = isQuality ? 2 : 1;
     fillOcclusions = !isPaper;
     useNonLocalRefinement = false;
 }

@@ -6,7 +6,6 @@
 
 #include "../base/grey_levels.hpp"
 #include "../pair/image_levels.hpp"
-#include "../scanlines/sparse_matches.hpp"
 
 #include <cmath>
 
@@ -231,10 +230,9 @@ void checkPairModelOf(const PairModel& model, Size size, int type, int layers)
     if (std::min(size.width, size.height) < least)
         CV_Error(Error::StsOutOfRange, format("left must have %d x %d pixels or more for %d layers, not %d x %d", least,
                                               least, layers, size.width, size.height));
-    const int step = std::max(least, (int)SparseMatches::spacing << std::max(layers - 2, 0)); // of the coarsest grid
-    if (model.x % step != 0 || model.y % step != 0)
+    if (model.x % least != 0 || model.y % least != 0)
         CV_Error(Error::StsOutOfRange, format("PairModel: x and y must be multiples of %d for %d layers, not %d and %d",
-                                              step, layers, model.x, model.y));
+                                              least, layers, model.x, model.y));
 }
 
 GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size)

@@ -48,6 +48,16 @@ HDP_TUNABLE(
     double, rangeBeta, 0.9, "share of the hull",
     "by which ranges of the caller overlap in a tree: more makes small trees, less searches what none may have");
 
+// Scanlines over all candidates
+HDP_TUNABLE(int, mostRangeDisparities, 65, "disparities",
+            "of layers that are matched over the whole range: more take longer, fewer lose surfaces at their borders");
+HDP_TUNABLE(double, rangeP1, 1.1, "P1", "of costs in half pixels: more flattens slanted surfaces, less keeps noise");
+HDP_TUNABLE(double, rangeP2, 1.3, "P2", "the large penalty: more drags surfaces across borders, less keeps noise");
+HDP_TUNABLE(int, rangePriorDistance, 3, "candidates",
+            "from what the layer above has, for each of which a cost rises by half a bit: more keeps its errors, less "
+            "loses bare surfaces");
+HDP_TUNABLE(int, rangeMaxPrior, 2, "halves of a bit", "the most that it rises by, for the same reasons");
+
 // Scanlines over windows
 HDP_TUNABLE(int, finestSlope, 5, "halves of a bit per grey level",
             "by which the large penalty falls on the finest layer, where edges are those of surfaces");
@@ -155,11 +165,11 @@ CostPlan planCost(const MatcherParameters& p)
     return cost;
 }
 
-LayerMethod methodOf(const MatcherParameters& p, bool isTop)
+LayerMethod methodOf(const MatcherParameters& p, const LayerPlan& layer)
 {
     const int below = aggregationOf(p);
-    if (below == M::AGGREGATION_SCANLINES && !isTop)
-        return WINDOW_SCANLINES;
+    if (below == M::AGGREGATION_SCANLINES && !layer.isTop)
+        return !layer.isFinest && layer.numDisparities <= mostRangeDisparities ? RANGE_SCANLINES : WINDOW_SCANLINES;
     const int aggregation = below == M::AGGREGATION_SCANLINES ? p.topAggregation : below;
     return aggregation == M::AGGREGATION_TREE_SCANLINES ? TREE_SCANLINES
            : aggregation == M::AGGREGATION_SCANLINES    ? COST_SCANLINES
@@ -196,6 +206,13 @@ VolumePenalties planVolume(const MatcherParameters& p, int steps)
     return { cvRound(scale * meanP1 * p.P1 / steps), std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
 }
 
+RangePenalties planRange(const MatcherParameters& p)
+{
+    const auto penalty = [](double bits) { return std::min(cvRound(2 * bits), +RangePenalties::largest); };
+    return { penalty(rangeP1 * p.P1 / 2), penalty(rangeP2 * p.P2), p.gamma * edgeGamma, rangePriorDistance,
+             rangeMaxPrior };
+}
+
 //! A pass before another one would gain nothing on coarser layers.
 std::vector<ScanlinePenalties> planPasses(const MatcherParameters& p, bool isFinest)
 {
@@ -215,9 +232,9 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.numDisparities = layerDisparities(p.numDisparities, layer, plan.hasFractions);
     plan.maxDisparity = largestDisparity(p.numDisparities, layer);
     plan.cost = planCost(p);
-    plan.method = methodOf(p, plan.isTop);
+    plan.method = methodOf(p, plan);
     const bool hasVolume = plan.method == TREE_SCANLINES || plan.method == COST_SCANLINES;
-    plan.seesBelow = hasVolume && plan.isTop && !plan.isFinest;
+    plan.seesBelow = (hasVolume && plan.isTop && !plan.isFinest) || plan.method == RANGE_SCANLINES;
     if (plan.seesBelow)
         plan.numDisparities = layerDisparities(p.numDisparities, layer - 1, false);
     if (plan.method == WINDOW_SCANLINES)
@@ -228,11 +245,11 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
         plan.trees = planTrees(p, plan, size);
     if (hasVolume)
         plan.volumePenalties = planVolume(p, plan.steps());
-    plan.comparesSurfaces = plan.isFinest;
+    if (plan.method == RANGE_SCANLINES)
+        plan.rangePenalties = planRange(p);
     plan.fillsOcclusions = p.fillOcclusions;
     // As in the authors' program; the paper says that nothing is refined.
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
-    plan.medianPasses = plan.medianSize > 0 ? p.disparityMedianPasses : 1;
     plan.restoresThinStructures = plan.isFinest && !predictsIntervals(p) && plan.medianSize > 0;
     plan.votesAtEdges = layer == 0 && plan.cost.isCensus && plan.medianSize > 0;
     return plan;

@@ -8,6 +8,7 @@
 #include "../pair/pair_alignment.hpp"
 #include "../pair/pair_pyramids.hpp"
 #include "../paper/color_gradient_cost.hpp"
+#include "../scanlines/range_scanlines.hpp"
 #include "../scanlines/scanline_aggregation.hpp"
 #include "../scanlines/volume_scanlines.hpp"
 #include "../video/verdict.hpp"
@@ -26,6 +27,7 @@ enum LayerMethod
     TREE_SUMS,       //!< by sums over disparity trees (the paper, section 3.3)
     TREE_SCANLINES,  //!< by scanlines over the means of the costs in disparity trees
     COST_SCANLINES,  //!< by scanlines over the costs of all candidates
+    RANGE_SCANLINES, //!< by scanlines over the costs of all candidates, and what the layer above says
     WINDOW_SCANLINES //!< by scanlines over windows of candidates around the disparities of the layer above
 };
 
@@ -73,20 +75,20 @@ struct LayerPlan
     int maxDisparity = 0;   // of a map of the layer
     bool hasFractions = false;
     CostPlan cost;
-    bool seesBelow = false;    // whether a volume has the candidates of the layer below, see TwoLayerCost
+    bool seesBelow = false;    // whether candidates are those of the layer below, see TwoLayerCost and aggregateRange()
     bool smoothsGuide = false; // a median before the edges are weighed
     LayerMethod method = TREE_SUMS;
     TreePlan trees;
     VolumePenalties volumePenalties = { 0, 0, 0 };
+    RangePenalties rangePenalties = { 0, 0, 0, 1, 0 };
     std::vector<ScanlinePenalties> passes; // of scanlines over windows
-    bool comparesSurfaces = false;         // whether the cost decides which other surface is in a window
     bool hasIntervals = false;             // whether pixels have candidates of their own
     bool joinsPrior = false;               // whether winners are joined with what is known beforehand
     bool checksLastFrame = false;          // whether the pair's own costs may refuse the last frame
     bool prefersLastFrame = false;         // whether what the last frame predicts has lower costs
     bool fillsOcclusions = false;
     bool joinsLastFrame = false;
-    int medianSize = 0, medianPasses = 1; // of the median over the winners; size 0: none
+    int medianSize = 0; // of the median over the winners; 0: none
     bool restoresThinStructures = false;
     bool votesAtEdges = false;
 

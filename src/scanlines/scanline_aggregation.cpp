@@ -22,25 +22,6 @@ HDP_TUNABLE(double, sharpSlope, 25, "bits per direction",
 
 HDP_DISPATCH(aggregateStripe)
 
-//! The stripes of an image, or what a tile of it has of them
-std::vector<Range> stripesOf(const ImageFrame& frame, int height)
-{
-    const int whole = frame.whole.height, first = frame.origin.y;
-    const int count = // of even number, so that also two threads have as much to do
-        whole < stripeHeight / 2 ? 1 : 2 * std::max(1, cvRound(whole / (2. * stripeHeight)));
-    const auto border = [&](int64 index) {
-        return index < count ? (int)(whole * index / count / 2 * 2) - first : whole - first;
-    };
-    std::vector<Range> stripes;
-    for (int i = 0; i < count; ++i)
-    {
-        const Range rows(std::max(border(i), 0), std::min(border(i + 1), height));
-        if (rows.start < rows.end)
-            stripes.push_back(rows);
-    }
-    return stripes;
-}
-
 } // namespace
 
 void ScanlineScratch::prepare(int width, int numDisparities)
@@ -81,7 +62,7 @@ void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFram
     const Size size = left.size();
     const MinimumShape shape = { 4 * (float)bluntSlope, 4 * (float)sharpSlope };
     const ScanlineProblem problem = { &cost, &left, size, numDisparities, maxDisparity, &windows, penalties, shape };
-    const std::vector<Range> stripes = stripesOf(frame, size.height);
+    const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, stripeHeight, warmUpRows);
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);
     buffers.stripes.resize(stripes.size());
@@ -89,11 +70,9 @@ void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFram
         Mat followed; // as large as a thread needs it, not as the image would
         for (int i = range.start; i < range.end; ++i)
         {
-            const Range rows = stripes[i];
-            const Range reach(std::max(rows.start - warmUpRows, 0), std::min(rows.end + warmUpRows, size.height));
-            const ScanlineStripe stripe = { rows, reach };
-            followed.create((rows.size() + 1) / 2 * 2, (int)ScanlineScratch::followedBytes(size.width), CV_8U);
-            dispatched::aggregateStripe(problem, stripe, buffers.stripes[i], followed.data, disparity, residual);
+            const int followedRows = (stripes[i].rows.size() + 1) / 2 * 2;
+            followed.create(followedRows, (int)ScanlineScratch::followedBytes(size.width), CV_8U);
+            dispatched::aggregateStripe(problem, stripes[i], buffers.stripes[i], followed.data, disparity, residual);
         }
     });
 }

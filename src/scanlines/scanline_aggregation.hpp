@@ -7,7 +7,7 @@
 #include "candidate_windows.hpp"
 #include "../cost/census_cost.hpp"
 #include "../base/disparity_units.hpp"
-#include "../base/image_frame.hpp"
+#include "scanline_stripes.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -58,13 +58,6 @@ struct ScanlineProblem
     {
         return std::min(+CandidateWindow::candidates, numDisparities + 2 * CandidateWindow::beyondRange);
     }
-};
-
-//! Rows of an image that are aggregated by themselves, and those that the directions from above and from below are
-//! followed over; both from an even one on
-struct ScanlineStripe
-{
-    Range rows, reach;
 };
 
 /** Memory of a sweep over one stripe. A block is the rows that a sweep does at once, at most maxBlock. */

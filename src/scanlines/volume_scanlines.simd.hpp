@@ -331,11 +331,8 @@ private:
         const int k = lowest.position, last = interval.size() - 1;
         if (last < 2)
             return winners.set(scanline, interval.first + k, 0, 1);
-        // Beyond the first and the last candidate: the slope beside them, or that which leaves the tip at the end
-        const int sum = lowest.sum, before = k > 0 ? sums[k - 1] : sum + std::max(sums[2] - sums[1], sums[1] - sum);
-        const int after =
-            k < last ? sums[k + 1] : sum + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - sum);
-        winners.set(scanline, interval.first + k, before - after, std::max(std::max(before, after) - sum, 1));
+        const WinnerSlope beside = slopeOfWinner(sums, k, last);
+        winners.set(scanline, interval.first + k, beside.rise, beside.slope);
     }
 
     void takeDisparities(const Winners& winners, int scanlines, ushort* disparity) const

@@ -28,6 +28,23 @@ CV_ALWAYS_INLINE float winnerFraction(float rise, float slope, float blunt, floa
     return 0.5f * (u + share * (root - u));
 }
 
+//! What winnerFraction() is given of a winner
+struct WinnerSlope
+{
+    int rise, slope;
+};
+
+/** That of candidate k of 0 .. last, last >= 2, from the sums of all. Beyond the first and the last candidate: the
+slope beside them, or that which leaves the tip at the end. */
+template <typename Sum> CV_ALWAYS_INLINE WinnerSlope slopeOfWinner(const Sum* sums, int k, int last)
+{
+    const int sum = sums[k];
+    const int before = k > 0 ? sums[k - 1] : sum + std::max(sums[2] - sums[1], sums[1] - sum);
+    const int after = k < last ? sums[k + 1] : sum + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - sum);
+    const WinnerSlope of = { before - after, std::max(std::max(before, after) - sum, 1) };
+    return of;
+}
+
 //! In units of a disparity map, rounded to the nearest as cvRound() does, but in vectors, too
 CV_ALWAYS_INLINE int subpixelUnits(float fraction)
 {

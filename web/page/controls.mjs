@@ -20,7 +20,6 @@ const groups = [
             'useSubpixel',
             'fillOcclusions',
             'disparityMedianSize',
-            'disparityMedianPasses',
             'disp12MaxDiff',
             'speckleWindowSize',
             'speckleRange',

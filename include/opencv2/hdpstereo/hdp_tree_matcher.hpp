@@ -391,11 +391,6 @@ public:
         paper has no such filter. PAPER: AUTO, QUALITY: 7, others: 5. */
         CV_PROP_RW int disparityMedianSize;
 
-        /** @brief Number of passes of the median filter over each layer's disparities.
-
-        1..8. QUALITY: 2, others: 1. */
-        CV_PROP_RW int disparityMedianPasses;
-
         /** @brief Whether occluded pixels are filled, in each layer.
 
         They get the disparity of the farther surface beside them; at the left border they continue the surface. Needs

@@ -39,8 +39,8 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     /** @brief Returns the model for a part of the images.
 
     Rows and light depend on the place in the image; the tile's pixels get those of the whole there.
-    @param x First column of the tile in the whole images: a multiple of 24 * 2^(layers - 2), or compute() throws. So
-    the pyramid and all that is looked at in a grid are the same. 384 is one for up to 6 layers, 1400 disparities.
+    @param x First column of the tile in the whole images: a multiple of 2^(layers - 1), or compute() throws. So the
+    pyramid is the same. 32 is one for up to 6 layers, 1400 disparities.
     @param y First row of the tile, likewise.
     @param tileWidth Of the tile, > 0.
     @param tileHeight Of the tile, > 0.

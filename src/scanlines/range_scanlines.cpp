@@ -1,0 +1,68 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "range_scanlines.hpp"
+#include "range_scanlines.simd.hpp"
+#include "scanlines/range_scanlines.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
+#include "../base/tunable.hpp"
+#include "../forest/forest_aggregation.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+HDP_TUNABLE(int, rangeStripeHeight, 96, "rows", "about: more do not fit into a cache, fewer are more warm-up");
+HDP_TUNABLE(int, rangeWarmUpRows, 16, "rows",
+            "beside a stripe, which the vertical directions begin with: fewer show its border, more cost time");
+
+HDP_DISPATCH(aggregateRangeStripe)
+
+} // namespace
+
+void RangeScratch::prepare(const RangeProblem& problem, int rows)
+{
+    const size_t pixelsOfLine = problem.size.width + (size_t)1, pixelsOfBlock = (size_t)block * problem.size.width;
+    const size_t count = pixelsOfLine * (3 * block + 1 + rows), bytes = problem.lineBytes();
+    costs.resize(pixelsOfBlock * problem.costBytes());
+    sums.resize(problem.costBytes());
+    whole.resize(pixelsOfBlock);
+    rise.resize(pixelsOfBlock);
+    slope.resize(pixelsOfBlock);
+    minima.resize(count);
+    if (lineBytes != bytes ||
+        lines.size() < count * bytes + RangeProblem::row) // candidates are where others' ends were
+        lines.assign(count * bytes + RangeProblem::row, (uchar)UCHAR_MAX);
+    lineBytes = bytes;
+}
+
+void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candidates, const Mat& upper,
+                    const Mat& weights, const Mat& intervals, const RangePenalties& penalties, RangeBuffers& buffers,
+                    Mat& disparity)
+{
+    CV_DbgAssert(std::max(penalties.small, penalties.large) <= RangePenalties::largest &&
+                 penalties.maxPrior <= RangePenalties::maxMaxPrior && candidates >= 3);
+    const Size size = weights.size();
+    RangeProblem problem = { below, size, candidates, upper, weights, intervals, penalties.small, {}, {} };
+    const EdgeSimilarity similarity(penalties.gamma);
+    for (int w = 0; w < 256; ++w)
+        problem.large[w] = std::max(penalties.small, cvRound(penalties.large * similarity.table[w]));
+    for (int distance = -candidates; distance < candidates + RangeProblem::row; ++distance)
+        problem.priors.push_back((uchar)std::min(std::abs(distance) / penalties.priorDistance, penalties.maxPrior));
+
+    disparity.create(size, CV_16U);
+    const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, rangeStripeHeight, rangeWarmUpRows);
+    int rows = 0;
+    for (const ScanlineStripe& stripe : stripes)
+        rows = std::max(rows, stripe.rows.size());
+    std::mutex mutex;
+    parallel_for_(Range(0, (int)stripes.size()), [&](const Range& range) {
+        ScratchLoan<RangeScratch> scratch(buffers.idle, mutex);
+        (*scratch).prepare(problem, rows);
+        for (int i = range.start; i < range.end; ++i)
+            dispatched::aggregateRangeStripe(problem, stripes[i], *scratch, disparity);
+    });
+}
+
+}}} // namespace cv::stereo::hdp

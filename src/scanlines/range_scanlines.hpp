@@ -1,0 +1,118 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_RANGE_SCANLINES_HPP
+#define OPENCV_HDPSTEREO_RANGE_SCANLINES_HPP
+
+#include "../base/disparity_units.hpp"
+#include "../base/scratch_pool.hpp"
+#include "../cost/census_cost.hpp"
+#include "scanline_stripes.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+//! Of aggregateRange(), in halves of a bit of the census
+struct RangePenalties
+{
+    int small, large;  // for a step of one candidate and for a larger one between neighbours of one colour
+    double gamma;      // of an edge's similarity exp(-w / gamma), which the large penalty is multiplied by
+    int priorDistance; // candidates from what is predicted, for each of which a cost rises by one
+    int maxPrior;      // the most that it rises by
+    enum
+    {
+        largest = 190, // of the small and the large penalty: all costs of a direction are bytes
+        maxMaxPrior = 15
+    };
+};
+
+//! What is aggregated, see aggregateRange()
+struct RangeProblem
+{
+    const CensusCost& below;
+    Size size;      // of the layer
+    int candidates; // their number
+    const Mat &upper, &weights, &intervals;
+    int small, large[256];     // penalties; large: by the edge's weight
+    std::vector<uchar> priors; // by the distance from the predicted candidate, from -candidates on
+
+    enum
+    {
+        row = 32 // costs that are stored together
+    };
+    int costBytes() const { return (int)alignSize(candidates, row); } // of a pixel
+    int lineBytes() const { return costBytes() + row; }               // of a pixel in a line of L
+};
+
+//! Memory of a stripe
+struct RangeScratch
+{
+    enum
+    {
+        block = 4 // rows that are followed side by side
+    };
+    //! L of a row of pixels and of one more, and their minima. Before the first candidate of each pixel and behind its
+    //! last one, to the end of the row of bytes and beyond, are UCHAR_MAX.
+    struct Line
+    {
+        uchar *costs, *minima;
+    };
+
+    //! Provides the memory for stripes of so many rows.
+    CV_EXPORTS void prepare(const RangeProblem& problem, int rows);
+
+    //! Line number i: block + 1 from above, as many from the right and from the left as a block has rows, then one for
+    //! each row of the stripe from below
+    Line line(const RangeProblem& problem, int i)
+    {
+        const size_t pixels = problem.size.width + (size_t)1;
+        const Line of = { lines.data() + i * pixels * problem.lineBytes() + RangeProblem::row,
+                          minima.data() + i * pixels };
+        return of;
+    }
+
+    std::vector<uchar> costs, sums; // of the rows of a block, of a pixel
+    std::vector<uchar> lines, minima;
+    std::vector<ushort> whole;      // winners of the rows of a block
+    std::vector<short> rise, slope; // what winnerFraction() is given
+    size_t lineBytes = 0;           // what the lines are for
+};
+
+struct RangeBuffers
+{
+    ScratchPool<RangeScratch> idle;
+};
+
+/** Semi-global matching over all candidates of a layer, those of the layer below, twice as large: from the left, from
+the right, from above and from below. Costs are computed where they are needed, so there is no volume of them. With the
+census cost C' of the layer below, candidate h, a disparity of h / 2 pixels, of pixel (x, y) costs
+
+C(p, h) = C'((2 x, 2 y), h) + C'((2 x + 1, 2 y + 1), h) + min(floor(|h - predicted| / priorDistance), maxPrior),
+
+predicted being the candidate next to what the layer above has found; 255 if h is not in the pixel's interval. With
+L(p, h) of a direction and q the pixel before p,
+
+L(p, h) = C(p, h) + min(L(q, h), L(q, h - 1) + small, L(q, h + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
+large(p, q) = max(small, round(large * exp(-w(p, q) / gamma))),
+
+all sums at most 255; L = C where there is no q. The winner has the lowest sum of the directions, each less its own
+minimum, at most 255, the first of them if there are several; its sum and those of both candidates beside it give the
+sub-pixel part, as of aggregateVolume().
+
+The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
+start anew some rows before each of them. A tile has those of the image that it lies in.
+@param below The census cost of the layer below.
+@param frame Where the layer lies in a larger image, if it is that of a tile.
+@param candidates Their number, at least 3.
+@param upper The disparities of the layer above, CV_16UC1, a disparity map.
+@param weights w, CV_8UC2, of the layer, see weighEdges().
+@param intervals The candidates of the layer's pixels, DisparityInterval, or an empty Mat: all of them.
+@param penalties The penalties.
+@param buffers Memory to work in.
+@param disparity Receives CV_16UC1 of the size of weights, a disparity map. */
+CV_EXPORTS void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candidates, const Mat& upper,
+                               const Mat& weights, const Mat& intervals, const RangePenalties& penalties,
+                               RangeBuffers& buffers, Mat& disparity);
+
+}}} // namespace cv::stereo::hdp
+
+#endif
