@@ -945,7 +945,7 @@ private:
             const int least = *std::min_element(of, of + costs.cols);
             const Point edge(std::min(here.x, before.x), std::min(here.y, before.y));
             const int w = weights.at<Vec2b>(edge)[step.x == 0];
-            const int large = std::max(penalties.small, cvRound(penalties.large * std::exp(-w / penalties.gamma)));
+            const int large = std::max(penalties.leastLarge, cvRound(penalties.large * std::exp(-w / penalties.gamma)));
             for (int h = 0; h < costs.cols; ++h)
             {
                 int best = std::min(of[h], sum(least, large));

@@ -24,8 +24,8 @@ inline std::string textOf(const hdp::LayerPlan& p)
          << p.trees.stripeRows << " gamma " << p.trees.gamma << " planes " << p.trees.prefersPlanes << " refinement "
          << p.trees.refinementGamma << "\n  volume " << p.volumePenalties.small << " " << p.volumePenalties.large << " "
          << p.volumePenalties.gamma << " range " << p.rangePenalties.small << " " << p.rangePenalties.large << " "
-         << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " " << p.rangePenalties.maxPrior
-         << "\n  passes";
+         << p.rangePenalties.leastLarge << " " << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " "
+         << p.rangePenalties.maxPrior << "\n  passes";
     for (const hdp::ScanlinePenalties& pass : p.passes)
         text << " [" << pass.small << " " << pass.large << " slope " << pass.edgeSlope << " prior " << pass.prior
              << "]";

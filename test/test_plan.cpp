@@ -293,7 +293,10 @@ TEST(HDPStereo_Plan, whole_range_of_coarse_layers)
             EXPECT_EQ(isWhole ? hdp::RANGE_SCANLINES : hdp::WINDOW_SCANLINES, layer.method) << numDisparities;
             EXPECT_EQ(isWhole, layer.seesBelow) << "where the candidates are those of the layer below";
             EXPECT_EQ(isWhole, layer.passes.empty());
-            EXPECT_EQ(isWhole, layer.rangePenalties.large > layer.rangePenalties.small);
+            EXPECT_EQ(isWhole, layer.rangePenalties.large > layer.rangePenalties.leastLarge);
+            const hdp::LayerPlan followed = hdp::adapt(plan, hdp::PairFindings(), { hdp::CONTINUED, true }).layers[i];
+            EXPECT_EQ(isWhole, layer.rangePenalties.maxPrior < followed.rangePenalties.maxPrior)
+                << "many frames know more";
         }
     }
 }
@@ -364,7 +367,10 @@ TEST(HDPStereo_Plan, adapts_to_a_video)
             const PairPlan alone = hdp::adapt(plan, withNoise(2), single);
             adapted.layers.front().checksLastFrame = adapted.layers.front().prefersLastFrame = false;
             for (size_t i = 0; i < alone.layers.size(); ++i)
+            {
                 adapted.layers[i].cost.tolerance = alone.layers[i].cost.tolerance;
+                adapted.layers[i].rangePenalties.maxPrior = alone.layers[i].rangePenalties.maxPrior;
+            }
             EXPECT_EQ(textOf(alone), textOf(adapted)) << "else as a single frame";
         }
     }

@@ -18,7 +18,7 @@
 
 namespace opencv_test { namespace {
 
-const hdp::RangePenalties usualPenalties = { 18, 169, 14, 3, 2 };
+const hdp::RangePenalties usualPenalties = { 18, 169, 35, 14, 3, 2 };
 
 //! Patches of texture at several disparities, and what a layer above may have found
 struct Layer : oracle::RangeLayer
@@ -142,7 +142,7 @@ TEST_P(HDPStereo_RangeScanlines, any_penalties)
     RNG rng(74);
     hdp::RangeBuffers buffers;
     const hdp::RangePenalties penalties[] = {
-        { 0, 0, 14, 1, 0 }, { 0, 190, 5, 1, 15 }, { 190, 190, 1e9, 4, 3 }, { 10, 60, 30, 2, 8 }
+        { 0, 0, 0, 14, 1, 0 }, { 0, 190, 1, 5, 1, 15 }, { 190, 190, 190, 1e9, 4, 3 }, { 10, 60, 10, 30, 2, 8 }
     };
     for (int i = 0; i < 4; ++i)
     {
@@ -185,8 +185,29 @@ TEST_P(HDPStereo_RangeScanlines, lanes_without_vectors)
         scratch.prepare(problem, layer.weights.rows);
         Mat disparity(layer.weights.size(), CV_16UC1);
         hdp::opt_emulated::aggregateRangeStripe(problem, layer.wholeStripe()[0], scratch, disparity);
-        const hdp::RangePenalties penalties = { 18, 100, 1e9, 3, 2 };
+        const hdp::RangePenalties penalties = { 18, 100, 100, 1e9, 3, 2 };
         expectIdentical(layer.disparity(penalties, layer.wholeStripe()), disparity);
+    }
+}
+
+TEST(HDPStereo_NewSurfaces, cost_more)
+{
+    RNG rng(77);
+    for (const Size& size : { Size(1, 1), Size(2, 3), Size(41, 20) })
+    {
+        const Size ofUpper(std::max(size.width / 2, 1), std::max(size.height / 2, 1));
+        const Mat upper = randomImage(rng, ofUpper, CV_16UC1, 160), winners = randomImage(rng, size, CV_16UC1, 320),
+                  costs = randomImage(rng, size, CV_8UC1);
+        Mat expected = costs.clone(), actual = costs.clone();
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+            {
+                const int above = upper.at<ushort>(std::min(y / 2, upper.rows - 1), std::min(x / 2, upper.cols - 1));
+                if (std::abs(2 * above / 16. - winners.at<ushort>(y, x) / 16.) > 5)
+                    expected.at<uchar>(y, x) = (uchar)std::min(costs.at<uchar>(y, x) + 8, 254);
+            }
+        hdp::distrustNewSurfaces(upper, winners, actual);
+        expectIdentical(expected, actual);
     }
 }
 

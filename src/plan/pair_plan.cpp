@@ -209,8 +209,9 @@ VolumePenalties planVolume(const MatcherParameters& p, int steps)
 RangePenalties planRange(const MatcherParameters& p)
 {
     const auto penalty = [](double bits) { return std::min(cvRound(2 * bits), +RangePenalties::largest); };
-    return { penalty(rangeP1 * p.P1 / 2), penalty(rangeP2 * p.P2), p.gamma * edgeGamma, rangePriorDistance,
-             rangeMaxPrior };
+    const double p1 = rangeP1 * p.P1; // of a pixel, and so of any surface that is another one
+    return { penalty(p1 / 2),     penalty(rangeP2 * p.P2), penalty(p1),
+             p.gamma * edgeGamma, rangePriorDistance,      rangeMaxPrior };
 }
 
 //! A pass before another one would gain nothing on coarser layers.
@@ -329,6 +330,8 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
     PairPlan adapted = plan;
     for (LayerPlan& layer : adapted.layers)
     {
+        if (video.hasPrior && layer.method == RANGE_SCANLINES)
+            layer.rangePenalties.maxPrior = RangePenalties::maxMaxPrior; // the layer above has it from many frames
         if (layer.cost.isCensus)
             layer.cost.tolerance = censusTolerance(layer.layer, findings.noise, video.hasPrior);
         if (!plan.alignment.isNoisy(findings.noise))

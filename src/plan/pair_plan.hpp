@@ -80,7 +80,7 @@ struct LayerPlan
     LayerMethod method = TREE_SUMS;
     TreePlan trees;
     VolumePenalties volumePenalties = { 0, 0, 0 };
-    RangePenalties rangePenalties = { 0, 0, 0, 1, 0 };
+    RangePenalties rangePenalties = { 0, 0, 0, 0, 1, 0 };
     std::vector<ScanlinePenalties> passes; // of scanlines over windows
     bool hasIntervals = false;             // whether pixels have candidates of their own
     bool joinsPrior = false;               // whether winners are joined with what is known beforehand

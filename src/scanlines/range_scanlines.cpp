@@ -17,6 +17,10 @@ HDP_TUNABLE(int, rangeStripeHeight, 96, "rows", "about: more do not fit into a c
 HDP_TUNABLE(int, rangeWarmUpRows, 16, "rows",
             "beside a stripe, which the vertical directions begin with: fewer show its border, more cost time");
 
+HDP_TUNABLE(int, surfaceDistance, 5, "pixels", "between disparities of different surfaces");
+HDP_TUNABLE(int, distrust, 8, "bits",
+            "of another surface than the one above: more fills gaps, less leaves wrong blobs");
+
 HDP_DISPATCH(aggregateRangeStripe)
 
 } // namespace
@@ -41,13 +45,14 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
                     const Mat& weights, const Mat& intervals, const RangePenalties& penalties, RangeBuffers& buffers,
                     Mat& disparity)
 {
-    CV_DbgAssert(std::max(penalties.small, penalties.large) <= RangePenalties::largest &&
+    CV_DbgAssert(std::max(std::max(penalties.small, penalties.large), penalties.leastLarge) <=
+                     RangePenalties::largest &&
                  penalties.maxPrior <= RangePenalties::maxMaxPrior && candidates >= 3);
     const Size size = weights.size();
     RangeProblem problem = { below, size, candidates, upper, weights, intervals, penalties.small, {}, {} };
     const EdgeSimilarity similarity(penalties.gamma);
     for (int w = 0; w < 256; ++w)
-        problem.large[w] = std::max(penalties.small, cvRound(penalties.large * similarity.table[w]));
+        problem.large[w] = std::max(penalties.leastLarge, cvRound(penalties.large * similarity.table[w]));
     for (int distance = -candidates; distance < candidates + RangeProblem::row; ++distance)
         problem.priors.push_back((uchar)std::min(std::abs(distance) / penalties.priorDistance, penalties.maxPrior));
 
@@ -62,6 +67,22 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
         (*scratch).prepare(problem, rows);
         for (int i = range.start; i < range.end; ++i)
             dispatched::aggregateRangeStripe(problem, stripes[i], *scratch, disparity);
+    });
+}
+
+void distrustNewSurfaces(const Mat& upper, const Mat& winners, Mat& costs)
+{
+    const int distance = surfaceDistance * subpixelScale, rise = distrust;
+    parallel_for_(Range(0, winners.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const ushort* const above = upper.ptr<ushort>(std::min(y / 2, upper.rows - 1));
+            const ushort* const row = winners.ptr<ushort>(y);
+            uchar* const cost = costs.ptr(y);
+            for (int x = 0; x < winners.cols; ++x)
+                if (std::abs(2 * above[std::min(x / 2, upper.cols - 1)] - row[x]) > distance)
+                    cost[x] = (uchar)std::min(cost[x] + rise, UCHAR_MAX - 1); // the last one is no pixel's cost
+        }
     });
 }
 

@@ -15,12 +15,13 @@ namespace cv { namespace stereo { namespace hdp {
 struct RangePenalties
 {
     int small, large;  // for a step of one candidate and for a larger one between neighbours of one colour
+    int leastLarge;    // for a larger one at any edge
     double gamma;      // of an edge's similarity exp(-w / gamma), which the large penalty is multiplied by
     int priorDistance; // candidates from what is predicted, for each of which a cost rises by one
     int maxPrior;      // the most that it rises by
     enum
     {
-        largest = 190, // of the small and the large penalty: all costs of a direction are bytes
+        largest = 190, // penalty: all costs of a direction are bytes
         maxMaxPrior = 15
     };
 };
@@ -92,7 +93,7 @@ predicted being the candidate next to what the layer above has found; 255 if h i
 L(p, h) of a direction and q the pixel before p,
 
 L(p, h) = C(p, h) + min(L(q, h), L(q, h - 1) + small, L(q, h + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
-large(p, q) = max(small, round(large * exp(-w(p, q) / gamma))),
+large(p, q) = max(leastLarge, round(large * exp(-w(p, q) / gamma))),
 
 all sums at most 255; L = C where there is no q. The winner has the lowest sum of the directions, each less its own
 minimum, at most 255, the first of them if there are several; its sum and those of both candidates beside it give the
@@ -112,6 +113,13 @@ start anew some rows before each of them. A tile has those of the image that it 
 CV_EXPORTS void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candidates, const Mat& upper,
                                const Mat& weights, const Mat& intervals, const RangePenalties& penalties,
                                RangeBuffers& buffers, Mat& disparity);
+
+/** Raises the costs of winners that are not of the surface that the layer above has: of two pixels that map to one
+column of the right image, these are seldom the visible ones.
+@param upper The disparities of the layer above, CV_16UC1, a disparity map.
+@param winners Those of the layer, likewise.
+@param costs Their costs, CV_8UC1, in bits of the census; changed. */
+CV_EXPORTS void distrustNewSurfaces(const Mat& upper, const Mat& winners, Mat& costs);
 
 }}} // namespace cv::stereo::hdp
 
