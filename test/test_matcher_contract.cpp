@@ -860,7 +860,7 @@ TEST(HDPStereo_MatcherContract, layers_of_an_image)
             for (int layer = 0; layer < layers - 1; ++layer) // 16 candidates, or all while there are few
             {
                 const int all = cvCeil((numDisparities - 1) / std::pow(2., layer)) + 1;
-                ofLayers[layer] = layer < finest ? 0 : layer > finest && all <= 65 ? 1 : std::min(1., 16. / all);
+                ofLayers[layer] = layer < finest ? 0 : layer > finest && all <= 97 ? 1 : std::min(1., 16. / all);
             }
             match(*matcher, image, image);
             ratios = matcher->getFindings().searchRatios;

@@ -278,7 +278,7 @@ TEST(HDPStereo_Plan, methods_of_the_presets)
 //! Between the top layer and the finest one: all candidates while there are few, in halves of a pixel
 TEST(HDPStereo_Plan, whole_range_of_coarse_layers)
 {
-    for (int numDisparities : { 64, 128, 129, 256, 600 })
+    for (int numDisparities : { 64, 128, 193, 194, 256, 600 })
     {
         MatcherParameters p = parametersOf(M::PRESET_FAST);
         p.numDisparities = numDisparities;
@@ -287,9 +287,8 @@ TEST(HDPStereo_Plan, whole_range_of_coarse_layers)
         for (size_t i = 1; i < plan.layers.size(); ++i)
         {
             const hdp::LayerPlan& layer = plan.layers[i];
-            const int disparities =
-                ((numDisparities - 1) >> layer.layer) + 2; // with one for the fraction of the last one
-            const bool isWhole = !layer.isFinest && disparities <= 66;
+            const int disparities = ((numDisparities - 2) >> layer.layer) + 2; // the last one may have a fraction
+            const bool isWhole = !layer.isFinest && disparities <= 97;
             EXPECT_EQ(isWhole ? hdp::RANGE_SCANLINES : hdp::WINDOW_SCANLINES, layer.method) << numDisparities;
             EXPECT_EQ(isWhole, layer.seesBelow) << "where the candidates are those of the layer below";
             EXPECT_EQ(isWhole, layer.passes.empty());

@@ -49,7 +49,7 @@ HDP_TUNABLE(
     "by which ranges of the caller overlap in a tree: more makes small trees, less searches what none may have");
 
 // Scanlines over all candidates
-HDP_TUNABLE(int, mostRangeDisparities, 65, "disparities",
+HDP_TUNABLE(int, mostRangeDisparities, 97, "disparities",
             "of layers that are matched over the whole range: more take longer, fewer lose surfaces at their borders");
 HDP_TUNABLE(double, rangeP1, 1.1, "P1", "of costs in half pixels: more flattens slanted surfaces, less keeps noise");
 HDP_TUNABLE(double, rangeP2, 1.3, "P2", "the large penalty: more drags surfaces across borders, less keeps noise");

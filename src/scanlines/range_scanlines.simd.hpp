@@ -26,12 +26,12 @@ void aggregateRangeStripe(const RangeProblem& problem, const ScanlineStripe& str
 namespace {
 
 /** The directions over a stripe. Rows are followed in blocks, side by side: so one does not wait for the minimum of
-another. bytes: those of a pixel's costs, if the compiler may know them, or 0 */
-template <int bytes> class RangeSweep
+another. */
+class RangeSweep
 {
 public:
     RangeSweep(const RangeProblem& problem, RangeScratch& scratch)
-        : p_(problem), own_(scratch), width_(problem.size.width), costBytes_(bytes > 0 ? bytes : problem.costBytes()),
+        : p_(problem), own_(scratch), width_(problem.size.width), costBytes_(problem.costBytes()),
           small_(ByteLanes::repeat(problem.small))
     {
         for (int r = 0; r <= block; ++r)
@@ -97,15 +97,14 @@ private:
         block = RangeScratch::block
     };
 
-    int costBytes() const { return bytes > 0 ? bytes : costBytes_; }
-    uchar* costs(int r, int x = 0) const { return own_.costs.data() + ((size_t)r * width_ + x) * costBytes(); }
+    uchar* costs(int r, int x = 0) const { return own_.costs.data() + ((size_t)r * width_ + x) * costBytes_; }
     Line below(int row) const { return own_.line(p_, 3 * block + 1 + row); }
-    uchar* at(const Line& line, int x) const { return line.costs + x * (size_t)(costBytes() + RangeProblem::row); }
+    uchar* at(const Line& line, int x) const { return line.costs + x * (size_t)(costBytes_ + RangeProblem::row); }
 
     //! L of what is before the first pixel: L = C follows, whatever the penalties are.
     void beginPixel(const Line& line, int x) const
     {
-        std::fill_n(at(line, x), costBytes(), (uchar)0);
+        std::fill_n(at(line, x), costBytes_, (uchar)0);
         line.minima[x] = 0;
     }
     void begin(const Line& line, int pixels) const
@@ -167,22 +166,22 @@ private:
         const PixelsBelow first(p_.below, 2 * y, 0), last(p_.below, 2 * y + 1, 1);
         const ushort* const upper = p_.upper.ptr<ushort>(std::min(y / 2, p_.upper.rows - 1));
         const int candidates = p_.candidates, unit = subpixelScale / 4; // of a candidate in the layer above
-        for (int x = 0; x < width_; ++x, costs += costBytes())
+        for (int x = 0; x < width_; ++x, costs += costBytes_)
         {
             const int predicted = (upper[std::min(x / 2, p_.upper.cols - 1)] + unit / 2) / unit;
             const uchar* const prior = p_.priors.data() + candidates - std::min(predicted, candidates);
-            for (int d = 0; d < costBytes(); d += vector)
+            for (int d = 0; d < costBytes_; d += vector)
                 (first.costs<planes, hasLimits>(x, d) + last.costs<planes, hasLimits>(x, d) +
                  ByteLanes::load(prior + d))
                     .store(costs + d);
-            std::fill(costs + candidates, costs + costBytes(), (uchar)UCHAR_MAX);
+            std::fill(costs + candidates, costs + costBytes_, (uchar)UCHAR_MAX);
         }
     }
 
     void excludeOthers(const DisparityInterval* intervals, uchar* costs) const
     {
         const int candidates = p_.candidates;
-        for (int x = 0; x < width_; ++x, costs += costBytes())
+        for (int x = 0; x < width_; ++x, costs += costBytes_)
         {
             std::fill(costs, costs + std::min<int>(intervals[x].first, candidates), (uchar)UCHAR_MAX);
             std::fill(costs + std::min(intervals[x].last + 1, candidates), costs + candidates, (uchar)UCHAR_MAX);
@@ -193,7 +192,7 @@ private:
     CV_ALWAYS_INLINE void step(const uchar* costs, int large, const Line& before, int xBefore, const Line& line,
                                int x) const
     {
-        const int least = before.minima[xBefore], count = costBytes();
+        const int least = before.minima[xBefore], count = costBytes_;
         const uchar* const from = at(before, xBefore);
         uchar* const here = at(line, x);
         const ByteLanes leastOfAll = ByteLanes::repeat(least), jump = ByteLanes::repeat(std::min(least + large, 255)),
@@ -235,7 +234,7 @@ private:
         const ByteLanes minima[] = { ByteLanes::repeat(left.minima[to]), ByteLanes::repeat(right.minima[x]),
                                      ByteLanes::repeat(above.minima[x]), ByteLanes::repeat(below.minima[x]) };
         uchar* const sums = own_.sums.data();
-        const int count = costBytes();
+        const int count = costBytes_;
         ByteLanes minimum = ByteLanes::repeat(UCHAR_MAX);
         for (int d = 0; d < count; d += vector)
         {
@@ -252,7 +251,7 @@ private:
     {
         const uchar* const sums = own_.sums.data();
         const ByteLanes searched = ByteLanes::repeat(lowest);
-        for (int d = 0; d < costBytes(); d += vector)
+        for (int d = 0; d < costBytes_; d += vector)
         {
             const int lane = ByteLanes::load(sums + d).firstEqual(searched);
             if (lane >= 0)
@@ -290,35 +289,17 @@ private:
     Line above_[block + 1], right_[block], left_[block];
 };
 
-template <int bytes>
-void aggregateStripeOf(const RangeProblem& problem, const ScanlineStripe& stripe, RangeScratch& scratch, Mat& disparity)
-{
-    const Range& rows = stripe.rows;
-    RangeSweep<bytes> sweep(problem, scratch);
-    sweep.followUpward(stripe);
-    sweep.warmUp(stripe);
-    for (int y = rows.start; y < rows.end; y += RangeScratch::block)
-        sweep.run(Range(y, std::min(y + RangeScratch::block, rows.end)), rows.start, disparity);
-}
-
 } // namespace
 
 void aggregateRangeStripe(const RangeProblem& problem, const ScanlineStripe& stripe, RangeScratch& scratch,
                           Mat& disparity)
 {
-    switch (problem.costBytes())
-    {
-    case 32:
-        return aggregateStripeOf<32>(problem, stripe, scratch, disparity);
-    case 64:
-        return aggregateStripeOf<64>(problem, stripe, scratch, disparity);
-    case 96:
-        return aggregateStripeOf<96>(problem, stripe, scratch, disparity);
-    case 128:
-        return aggregateStripeOf<128>(problem, stripe, scratch, disparity);
-    default:
-        return aggregateStripeOf<0>(problem, stripe, scratch, disparity);
-    }
+    const Range& rows = stripe.rows;
+    RangeSweep sweep(problem, scratch);
+    sweep.followUpward(stripe);
+    sweep.warmUp(stripe);
+    for (int y = rows.start; y < rows.end; y += RangeScratch::block)
+        sweep.run(Range(y, std::min(y + RangeScratch::block, rows.end)), rows.start, disparity);
 }
 
 #endif
