@@ -116,7 +116,7 @@ public:
     enum Aggregation
     {
         AGGREGATION_TREES = 0,         //!< the paper's: sums over disparity trees
-        AGGREGATION_SCANLINES = 1,     //!< semi-global matching over 16 predicted candidates per pixel
+        AGGREGATION_SCANLINES = 1,     //!< semi-global matching over predicted candidates, or all on coarse layers
         AGGREGATION_TREE_SCANLINES = 2 //!< semi-global matching over the means of the costs in disparity trees
     };
 
@@ -289,8 +289,9 @@ public:
         AGGREGATION_TREES is that of section 3. AGGREGATION_TREE_SCANLINES runs scanlines @cite Hirschmuller2008SGM over
         weighted means of the costs in each pixel's tree: trees carry faint texture to where there is none, scanlines
         follow slanted surfaces. AGGREGATION_SCANLINES is for the costs themselves, over 16 candidates per pixel around
-        the disparity of the layer above. Those with scanlines need COST_CENSUS. PAPER: AGGREGATION_TREES, TREE:
-        AGGREGATION_TREE_SCANLINES, others: AGGREGATION_SCANLINES. */
+        the disparity of the layer above, or all of them on layers between the top and the finest one that have few.
+        Those with scanlines need COST_CENSUS. PAPER: AGGREGATION_TREES, TREE: AGGREGATION_TREE_SCANLINES, others:
+        AGGREGATION_SCANLINES. */
         CV_PROP_RW int aggregation;
 
         /** @brief Cost aggregation of the top layer, one of HDPTreeMatcher::Aggregation.
