@@ -968,9 +968,13 @@ private:
             const int* sum = sums[p];
             const int k = (int)(std::min_element(sum, sum + candidates) - sum), last = candidates - 1;
             const int after = k < last ? sum[k + 1] - sum[k] : 0, before = k > 0 ? sum[k - 1] - sum[k] : 0;
-            const int rise = k > 0 ? before : std::max(after, sum[2] - sum[1]);
-            const int descent = k < last ? after : std::max(before, sum[last - 2] - sum[last - 1]);
-            const double offset = fraction(rise, descent, 8 * 4 * 2, 14 * 4 * 2);
+            double offset = 0;
+            if (candidates > 2)
+            {
+                const int rise = k > 0 ? before : std::max(after, sum[2] - sum[1]);
+                const int descent = k < last ? after : std::max(before, sum[last - 2] - sum[last - 1]);
+                offset = fraction(rise, descent, 8 * 4 * 2, 14 * 4 * 2);
+            }
             disparity.at<ushort>(p / weights.cols, p % weights.cols) = (ushort)((16 * k + cvRound(16 * offset)) / 2);
         }
         return disparity;

@@ -112,7 +112,7 @@ TEST_P(HDPStereo_RangeScanlines, formula_for_any_number_of_candidates)
 {
     RNG rng(72);
     hdp::RangeBuffers buffers;
-    for (int candidates : { 3, 16, 31, 32, 33, 64, 65, 96, 120, 128, 129, 300 })
+    for (int candidates : { 1, 2, 3, 16, 31, 32, 33, 64, 65, 96, 120, 128, 129, 300 })
     {
         SCOPED_TRACE(testing::Message() << candidates << " candidates");
         expectFormula(Layer(rng, Size(41, 11), candidates, GetParam()), usualPenalties, buffers);

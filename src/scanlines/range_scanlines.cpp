@@ -47,7 +47,7 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
 {
     CV_DbgAssert(std::max(std::max(penalties.small, penalties.large), penalties.leastLarge) <=
                      RangePenalties::largest &&
-                 penalties.maxPrior <= RangePenalties::maxMaxPrior && candidates >= 3);
+                 penalties.maxPrior <= RangePenalties::maxMaxPrior);
     const Size size = weights.size();
     RangeProblem problem = { below, size, candidates, upper, weights, intervals, penalties.small, {}, {} };
     const EdgeSimilarity similarity(penalties.gamma);

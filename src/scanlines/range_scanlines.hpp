@@ -103,7 +103,7 @@ The image is cut into stripes that do not depend on the number of threads; the d
 start anew some rows before each of them. A tile has those of the image that it lies in.
 @param below The census cost of the layer below.
 @param frame Where the layer lies in a larger image, if it is that of a tile.
-@param candidates Their number, at least 3.
+@param candidates Their number.
 @param upper The disparities of the layer above, CV_16UC1, a disparity map.
 @param weights w, CV_8UC2, of the layer, see weighEdges().
 @param intervals The candidates of the layer's pixels, DisparityInterval, or an empty Mat: all of them.

@@ -328,11 +328,8 @@ private:
     static void setWinner(const short* sums, const DisparityInterval& interval, const Lowest& lowest, int scanline,
                           Winners& winners)
     {
-        const int k = lowest.position, last = interval.size() - 1;
-        if (last < 2)
-            return winners.set(scanline, interval.first + k, 0, 1);
-        const WinnerSlope beside = slopeOfWinner(sums, k, last);
-        winners.set(scanline, interval.first + k, beside.rise, beside.slope);
+        const WinnerSlope beside = slopeOfWinner(sums, lowest.position, interval.size() - 1);
+        winners.set(scanline, interval.first + lowest.position, beside.rise, beside.slope);
     }
 
     void takeDisparities(const Winners& winners, int scanlines, ushort* disparity) const

@@ -34,10 +34,13 @@ struct WinnerSlope
     int rise, slope;
 };
 
-/** That of candidate k of 0 .. last, last >= 2, from the sums of all. Beyond the first and the last candidate: the
-slope beside them, or that which leaves the tip at the end. */
+/** That of candidate k of 0 .. last, from the sums of all. Beyond the first and the last candidate: the slope beside
+them, or that which leaves the tip at the end. Of less than three candidates there is no fraction. */
 template <typename Sum> CV_ALWAYS_INLINE WinnerSlope slopeOfWinner(const Sum* sums, int k, int last)
 {
+    const WinnerSlope none = { 0, 1 };
+    if (last < 2)
+        return none;
     const int sum = sums[k];
     const int before = k > 0 ? sums[k - 1] : sum + std::max(sums[2] - sums[1], sums[1] - sum);
     const int after = k < last ? sums[k + 1] : sum + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - sum);
