@@ -252,6 +252,8 @@ struct ByteLanes
         return _mm_cvtsi128_si32(_mm_minpos_epu16(_mm_min_epu8(half, _mm_srli_epi16(half, 8)))) & 255;
 #elif HDP_LANES_SSE4
         return _mm_cvtsi128_si32(_mm_minpos_epu16(_mm_min_epu8(v.val, _mm_srli_epi16(v.val, 8)))) & 255;
+#elif HDP_LANES_WASM
+        return wasm_u8x16_extract_lane(minimum().v.val, 0);
 #else
         return v_reduce_min(v);
 #endif
