@@ -565,7 +565,6 @@ TEST(HDPStereo_MatcherContract, min_disparity_shifts_the_range)
             const Range inside(disparities + 20, moved.cols - 36);
             const Mat difference = disparity.colRange(inside) - expected.colRange(inside);
             // The columns that only one of the pairs has, or that are added, count in P(D_l), and so reach every pixel.
-            // The squares of the sparse matches begin with the added columns.
             // Half a pixel of the finest layer
             const bool hasScanlines = matcher->getParams().aggregation != HDPTreeMatcher::AGGREGATION_TREES;
             const int tolerance = hasScanlines ? 8 << matcher->getParams().finestLayer : 0;
