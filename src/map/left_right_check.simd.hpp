@@ -39,7 +39,7 @@ void checkRow(const T* disparity, int width, int invalid, int maxDifference, int
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const int column = x + 1 - roundedDisparity(disparity[x]);
-        columns[x] = (column > 0) & (column <= width) & (disparity[x] != invalid) ? column : 0;
+        columns[x] = ((column > 0) & (column <= width) & (disparity[x] != invalid)) ? column : 0;
     }
     testVisibility(disparity, columns, width, width, maxDifference, nearest, visibility);
 }
