@@ -13,26 +13,29 @@ namespace {
 
 HDP_TUNABLE(int, sideWeight, 27, "1/256", "of a pixel's neighbour: more loses texture, less keeps noise");
 
+//! A row, from it and those beside it; columns: memory for as many and one more at both ends
+void smoothRow(const ushort* own, const ushort* above, const ushort* below, int width, int* columns, ushort* smoothed)
+{
+    const int side = sideWeight, middle = 256 - 2 * side;
+    int* const column = columns + 1;
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) column[x] = middle * own[x] + side * (above[x] + below[x]);
+    column[-1] = column[0];
+    column[width] = column[width - 1];
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) smoothed[x] =
+        (ushort)((middle * column[x] + side * (column[x - 1] + column[x + 1]) + (1 << 15)) >> 16);
+}
+
 } // namespace
 
 void smoothNoise(const Mat& image, Mat& smoothed)
 {
-    const int width = image.cols, last = image.rows - 1, side = sideWeight, middle = 256 - 2 * side;
+    const int width = image.cols, last = image.rows - 1;
     smoothed.create(image.size(), CV_16U);
     parallel_for_(Range(0, image.rows), [&](const Range& rows) {
-        std::vector<int> columns(width + 2); // with one more at both ends
-        int* const column = columns.data() + 1;
+        std::vector<int> columns(width + 2);
         for (int y = rows.start; y < rows.end; ++y)
-        {
-            const ushort *const own = image.ptr<ushort>(y), *const above = image.ptr<ushort>(std::max(y - 1, 0)),
-                                *const below = image.ptr<ushort>(std::min(y + 1, last));
-            HDP_VECTORIZED for (int x = 0; x < width; ++x) column[x] = middle * own[x] + side * (above[x] + below[x]);
-            column[-1] = column[0];
-            column[width] = column[width - 1];
-            ushort* const to = smoothed.ptr<ushort>(y);
-            HDP_VECTORIZED for (int x = 0; x < width; ++x) to[x] =
-                (ushort)((middle * column[x] + side * (column[x - 1] + column[x + 1]) + (1 << 15)) >> 16);
-        }
+            smoothRow(image.ptr<ushort>(y), image.ptr<ushort>(std::max(y - 1, 0)),
+                      image.ptr<ushort>(std::min(y + 1, last)), width, columns.data(), smoothed.ptr<ushort>(y));
     });
 }
 
