@@ -108,7 +108,7 @@ def match_tile(left, right, tile, inside, model, output, options):
 
 def cut(width, height, options):
     '''Tiles with their margins, and what is kept of each.'''
-    grid, margin = 384, 128  # of all that the matcher looks at in a grid; what scanlines need
+    grid, margin = 384, 128  # pixels of all layers begin at its multiples; what scanlines need
     largest = max(options['min_disparity'] + options['num_disparities'] - 1, 0)
     before, after = -(-(largest + margin) // grid) * grid, max(-options['min_disparity'], 0) + margin
     for y in range(0, height, options['tile']):

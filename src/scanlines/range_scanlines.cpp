@@ -8,6 +8,7 @@
 #include "../base/dispatch.hpp"
 #include "../base/tunable.hpp"
 #include "../forest/forest_aggregation.hpp"
+#include "other_surfaces.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -17,7 +18,6 @@ HDP_TUNABLE(int, rangeStripeHeight, 96, "rows", "about: more do not fit into a c
 HDP_TUNABLE(int, rangeWarmUpRows, 16, "rows",
             "beside a stripe, which the vertical directions begin with: fewer show its border, more cost time");
 
-HDP_TUNABLE(int, surfaceDistance, 5, "pixels", "between disparities of different surfaces");
 HDP_TUNABLE(int, distrust, 8, "bits",
             "of another surface than the one above: more fills gaps, less leaves wrong blobs");
 
@@ -72,7 +72,7 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
 
 void distrustNewSurfaces(const Mat& upper, const Mat& winners, Mat& costs)
 {
-    const int distance = surfaceDistance * subpixelScale, rise = distrust;
+    const int distance = otherSurfaceDistance * subpixelScale, rise = distrust;
     parallel_for_(Range(0, winners.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {

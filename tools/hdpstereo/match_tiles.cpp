@@ -64,7 +64,7 @@ class Tiling
 public:
     Tiling(Size size, const HDPTreeMatcher& matcher, int layers, double pixels) : size_(size)
     {
-        const int step = 48 << std::max(layers - 3, 0); // of all grids; TIFF needs a multiple of 16
+        const int step = 48 << std::max(layers - 3, 0); // of the layers' pixels; TIFF needs a multiple of 16
         const auto toGrid = [=](int count) { return (count + step - 1) / step * step; };
         const int min = matcher.getMinDisparity(), largest = min + matcher.getNumDisparities() - 1;
         before_ = Size(toGrid(std::max(largest, 0) + margin), toGrid(margin));
