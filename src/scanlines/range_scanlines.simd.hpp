@@ -271,15 +271,12 @@ private:
 
     void takeDisparities(int r, ushort* disparity) const
     {
-        const float unit = 4 * 2, blunt = 8 * unit, sharp = 14 * unit; // halves of a bit in four directions
+        const int bit = 2; // costs are halves of it
         const ushort* const whole = own_.whole.data() + (size_t)r * width_;
         const short *const rise = own_.rise.data() + (size_t)r * width_, *const slope =
                                                                              own_.slope.data() + (size_t)r * width_;
-        HDP_VECTORIZED for (int x = 0; x < width_; ++x)
-        {
-            const float fraction = winnerFraction((float)rise[x], (float)slope[x], blunt, sharp);
-            disparity[x] = (ushort)((whole[x] * subpixelScale + subpixelUnits(fraction)) >> 1);
-        }
+        HDP_VECTORIZED for (int x = 0; x < width_; ++x) disparity[x] =
+            disparityOfSums(whole[x], rise[x], slope[x], bit, 1);
     }
 
     const RangeProblem& p_;

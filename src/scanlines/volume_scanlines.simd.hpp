@@ -335,13 +335,8 @@ private:
     void takeDisparities(const Winners& winners, int scanlines, ushort* disparity) const
     {
         const int halving = p_.volume.steps == 2; // of whole and fraction
-        const float unit = 4 * CostVolume::scale, blunt = 8 * unit,
-                    sharp = 14 * unit; // of the costs of four directions
-        HDP_VECTORIZED for (int k = 0; k < scanlines; ++k)
-        {
-            const float fraction = winnerFraction((float)winners.rise[k], (float)winners.slope[k], blunt, sharp);
-            disparity[k] = (ushort)((winners.whole[k] * subpixelScale + subpixelUnits(fraction)) >> halving);
-        }
+        HDP_VECTORIZED for (int k = 0; k < scanlines; ++k) disparity[k] =
+            disparityOfSums(winners.whole[k], winners.rise[k], winners.slope[k], CostVolume::scale, halving);
     }
 
     enum

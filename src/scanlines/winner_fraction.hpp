@@ -55,6 +55,18 @@ CV_ALWAYS_INLINE int subpixelUnits(float fraction)
     return (int)((subpixelScale * fraction + wholes) - wholes);
 }
 
+/** The disparity of a winner from sums of four directions, in units of a disparity map.
+@param whole The winner.
+@param rise,slope As of winnerFraction().
+@param bit What a bit of the census costs in one direction.
+@param halving 1 if there are two candidates per pixel of disparity, else 0. */
+CV_ALWAYS_INLINE ushort disparityOfSums(int whole, int rise, int slope, int bit, int halving)
+{
+    const float unit = 4.f * bit, blunt = 8 * unit, sharp = 14 * unit;
+    const float fraction = winnerFraction((float)rise, (float)slope, blunt, sharp);
+    return (ushort)((whole * subpixelScale + subpixelUnits(fraction)) >> halving);
+}
+
 }}} // namespace cv::stereo::hdp
 
 #endif
