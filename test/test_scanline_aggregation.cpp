@@ -182,9 +182,9 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
             const hdp::ScanlineProblem problem = { &cost,           &layer.left,    size,           numDisparities,
                                                    layer.largest(), &layer.windows, usualPenalties, { 60, 100 } };
             const hdp::ScanlineStripe stripe = { Range(0, size.height), Range(0, size.height) };
-            std::vector<uchar> followed((size.height + 1) * hdp::ScanlineScratch::followedBytes(size.width));
+            std::vector<uchar> stored((size.height + 1) * hdp::ScanlineScratch::storedBytes(size.width));
             Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
-            hdp::opt_emulated::aggregateStripe(problem, stripe, scratch, followed.data(), disparity, residual);
+            hdp::opt_emulated::aggregateStripe(problem, stripe, scratch, stored.data(), disparity, residual);
             expectIdentical(aggregate(layer, usualPenalties, buffers), Layer::beside(disparity, residual));
         }
 }

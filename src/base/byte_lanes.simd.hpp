@@ -70,13 +70,20 @@ struct ByteLanes
     {
         return ByteLanes(inTurns(first, second), inTurns(first + 8, second + 8));
     }
-    //! The group at bytes, and 0, 1, .. 15 in the other one
+    //! The group at bytes as the first or the last one, and 0, 1, .. 15 in the other one
     static ByteLanes first(const uchar* bytes) { return ByteLanes(v_load(bytes), laneNumbers()); }
+    static ByteLanes last(const uchar* bytes) { return ByteLanes(laneNumbers(), v_load(bytes)); }
     //! The group at bytes, then the first one of before
-    static ByteLanes shiftIn(const uchar* bytes, const ByteLanes& before)
+    static ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes& before)
     {
         return ByteLanes(v_load(bytes), v_uint8x16(_mm256_castsi256_si128(before.v.val)));
     }
+    //! The last group of before, then that at bytes
+    static ByteLanes shiftInLast(const ByteLanes& before, const uchar* bytes)
+    {
+        return ByteLanes(v_uint8x16(_mm256_extracti128_si256(before.v.val, 1)), v_load(bytes));
+    }
+    void storeFirst(uchar* bytes) const { v_store_low(bytes, v); }
     void storeLast(uchar* bytes) const { v_store_high(bytes, v); }
 #else
     static ByteLanes repeat(int byte) { return v_setall_u8((uchar)byte); }
@@ -89,7 +96,10 @@ struct ByteLanes
     //! A byte of the first, one of the second and so on; 8 more of each may be read.
     static ByteLanes loadInTurns(const uchar* first, const uchar* second) { return inTurns(first, second); }
     static ByteLanes first(const uchar* bytes) { return v_load(bytes); }
-    static ByteLanes shiftIn(const uchar* bytes, const ByteLanes&) { return v_load(bytes); }
+    static ByteLanes last(const uchar* bytes) { return v_load(bytes); }
+    static ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes&) { return v_load(bytes); }
+    static ByteLanes shiftInLast(const ByteLanes&, const uchar* bytes) { return v_load(bytes); }
+    void storeFirst(uchar* bytes) const { v_store(bytes, v); }
     void storeLast(uchar* bytes) const { v_store(bytes, v); }
 #endif
     void store(uchar* bytes) const { v_store(bytes, v); }

@@ -27,13 +27,9 @@ HDP_DISPATCH(aggregateStripe)
 void ScanlineScratch::prepare(int width, int numDisparities)
 {
     const size_t pairs = ((size_t)width + 1) / 2, upperColumns = pairs + 2 * margin;
-    const size_t stepBytes = 2 * maxBlock * CandidateWindow::candidates,
-                 blockBytes = (pairs + maxBlock - 1) * stepBytes;
     const size_t blockColumns = maxBlock * (2 * pairs + 2 * margin);
-    costs.resize(blockBytes + alignment);
-    fromRight.resize(blockBytes + alignment);
-    fromAbove.assign((2 * pairs + 2 * margin) * CandidateWindow::candidates + alignment, 0);
-    for (std::vector<uchar>* stored : { &priors, &intoRight, &intoLeft, &intoBelow })
+    vertical.assign((2 * pairs + 2 * margin) * CandidateWindow::candidates + alignment, 0);
+    for (std::vector<uchar>* stored : { &priors, &intoSide, &intoNext })
         stored->resize(upperColumns * CandidateWindow::candidates);
     isContiguous.assign(upperColumns, 0);
     for (int run = 0; run < CandidateWindow::runs; ++run)
@@ -67,12 +63,12 @@ void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFram
     residual.create(size, CV_8U);
     buffers.stripes.resize(stripes.size());
     parallel_for_(Range(0, (int)stripes.size()), [&](const Range& range) {
-        Mat followed; // as large as a thread needs it, not as the image would
+        Mat stored; // as large as a thread needs it, not as the image would
         for (int i = range.start; i < range.end; ++i)
         {
-            const int followedRows = (stripes[i].rows.size() + 1) / 2 * 2;
-            followed.create(followedRows, (int)ScanlineScratch::followedBytes(size.width), CV_8U);
-            dispatched::aggregateStripe(problem, stripes[i], buffers.stripes[i], followed.data, disparity, residual);
+            const int storedRows = (stripes[i].rows.end - stripes[i].reach.start + 1) / 2 * 2;
+            stored.create(storedRows, (int)ScanlineScratch::storedBytes(size.width), CV_8U);
+            dispatched::aggregateStripe(problem, stripes[i], buffers.stripes[i], stored.data, disparity, residual);
         }
     });
 }

@@ -67,24 +67,24 @@ struct ScanlineScratch
     {
         maxBlock = 2,
         margin = 2 * maxBlock, // of all that is stored by column, on both sides
-        alignment = 64         // of costs and directions: vectors that are in two lines of the cache take longer
+        alignment = 64         // of directions: vectors that are in two lines of the cache take longer
     };
 
-    //! What is stored of a direction, per row of a block: for the columns of all steps, and of a step more at both ends
-    static size_t followedBytes(int width)
+    //! What a sweep stores of a row for the other one: costs and sums of the columns of all steps
+    static size_t storedBytes(int width)
     {
-        return (((size_t)width + 1) / 2 + maxBlock + 1) * 2 * CandidateWindow::candidates;
+        return (((size_t)width + 1) / 2 + maxBlock - 1) * 2 * 2 * CandidateWindow::candidates;
     }
     //! Provides the memory for a layer of this width and number of disparities, and clears what a sweep starts from.
     CV_EXPORTS void prepare(int width, int numDisparities);
 
-    std::vector<uchar> costs, fromRight, fromAbove; // CandidateWindow::candidates per pixel of a block
+    std::vector<uchar> vertical; // CandidateWindow::candidates per column
     // By column of the layer above: the first candidate of each run, and its distance from what is predicted; whether
     // there is one run, and so there is for the other rows of the block in the same step
     std::vector<short> first[CandidateWindow::runs], distance[CandidateWindow::runs];
     std::vector<uchar> isContiguous;
-    std::vector<uchar> priors, intoRight, intoLeft, intoBelow; // CandidateWindow::candidates per such column
-    std::vector<short> firstOfColumn[CandidateWindow::runs];   // by column of the layer
+    std::vector<uchar> priors, intoSide, intoNext;           // CandidateWindow::candidates per such column
+    std::vector<short> firstOfColumn[CandidateWindow::runs]; // by column of the layer
     // Which lanes have the candidates of a run that begins i disparities after one of these, in the middle and i on:
     // 255 for those that it does not have
     std::vector<uchar> orders[CandidateWindow::runs];
@@ -100,8 +100,7 @@ struct ScanlineBuffers
 };
 
 /** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching from the
-left, from the right and from above, in one sweep over the rows, and from below, in one before it. The cost of candidate
-d is
+left and from below, in a sweep upward, and from the right and from above, in one downward. The cost of candidate d is
 
 C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 23) / 4) + floor(prior * |d - predicted| / 2),
 

@@ -20,11 +20,12 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param problem The layer.
 @param stripe Its rows.
 @param scratch Memory to work in.
-@param followed The same, ScanlineScratch::followedBytes() for each row.
+@param stored The same, ScanlineScratch::storedBytes() for each row from the first one of the stripe's reach to its
+last, and for one more if their number is odd.
 @param disparity As in aggregateScanlines().
 @param residual As in aggregateScanlines(). */
 void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
-                     uchar* followed, Mat& disparity, Mat& residual);
+                     uchar* stored, Mat& disparity, Mat& residual);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -46,22 +47,24 @@ H(p, d) = max(large(p, r) - (L(p, d) - m'), 0).
 All of these are bytes, and the differences saturate at 0 by themselves. What aggregateScanlines() says, step by step,
 is oracle::Scanlines of test/oracles.hpp; the two are compared.
 
-Rows are done in blocks of ByteLanes::groups, skewed: when group r is at column x of the block's row r, group r + 1 is
-at column x - 2 of the next row. So it finds what the group before left there a step ago, and all groups enter a
-pixel of the layer above, which is two columns wide, at the same step. A step is a pair of columns, for group r those of
-pixel t - r of the layer above. Groups that are beside the image compute what nobody reads: all that is stored by column
-has a margin. The direction from below is that from above of a sweep upward, which has the lower row of a block in its
-first group. */
+A sweep upward computes the costs and follows the directions from below and from the left; it stores the costs and the
+sum of both directions. A sweep downward follows those from above and from the right, and takes the winners.
+
+Rows are done in blocks of ByteLanes::groups, the lowest one in the first group, skewed: when that one is at column x,
+group r is at column x - 2 r. Upward, from the left to the right, group r finds what the group before left there a step
+ago; downward, from the right to the left, what the group behind did. All groups enter a pixel of the layer above, which
+is two columns wide, at the same step: a step is a pair of columns, for group r those of pixel t - r of the layer above.
+Groups that are beside the image compute what nobody reads: all that is stored by column has a margin. */
 class Sweep
 {
 public:
     Sweep(const ScanlineProblem& problem, bool isUpward, ScanlineScratch& scratch)
-        : p_(problem), methods_(methodsOf(*problem.cost)), width_(problem.size.width), pairs_((width_ + 1) / 2),
-          steps_(pairs_ + groups - 1), planeStride_(problem.cost->planeStride()),
-          small_(ByteLanes::repeat(problem.penalties.small)), zero_(ByteLanes::repeat(0)),
-          blockCosts_(aligned(scratch.costs)), fromRight_(aligned(scratch.fromRight)),
-          fromAbove_(aligned(scratch.fromAbove) + margin * Window::candidates), tables_(problem, groups, scratch),
-          windows_(0), upperRow_(-1), entersUpperRow_(false), isUpward_(isUpward)
+        : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
+          planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)),
+          zero_(ByteLanes::repeat(0)), vertical_(alignPtr(scratch.vertical.data(), ScanlineScratch::alignment) +
+                                                 ScanlineScratch::margin * Window::candidates),
+          tables_(problem, isUpward, groups, scratch), windows_(0), upperRow_(-1), entersUpperRow_(false),
+          isUpward_(isUpward)
     {
         for (int r = 0; r < groups; ++r)
         {
@@ -73,22 +76,49 @@ public:
         }
     }
 
-    //! The vertical direction alone, over a block of rows from y on; followed: where to store it, if it is needed
-    void follow(int y, uchar* followed)
+    //! What a sweep upward does with a block of rows
+    enum UpwardStep
     {
-        enterRows(y, true);
-        (this->*methods_.follow)(followed);
+        FOLLOW,     //!< follows the direction from below
+        AGGREGATE,  //!< all that it can
+        STORE_COSTS //!< that alone
+    };
+
+    //! A block of rows from y on; stored: receives costs and sums, unless the rows are only followed
+    void upward(int y, UpwardStep step, uchar* stored)
+    {
+        enterRows(y);
+        typedef void (Sweep::*Method)(UpwardStep, uchar*);
+        static const Method all[] = { &Sweep::upward<1>, &Sweep::upward<2>, &Sweep::upward<3> };
+        static const Method limited[] = { &Sweep::upward<hasLimits + 1>, &Sweep::upward<hasLimits + 2>,
+                                          &Sweep::upward<hasLimits + 3> };
+        (this->*(p_.cost->limits().isEmpty() ? all : limited)[p_.cost->planes() - 1])(step, stored);
     }
 
-    //! All directions and the winners of a block of rows, y to end - 1 at most; fromBelow: what a sweep upward has
-    //! stored
-    void run(int y, int end, const uchar* fromBelow, Mat& disparity, Mat& residual)
+    //! The direction from above alone, over a block of rows from y on; stored: their costs
+    void follow(int y, const uchar* stored)
     {
-        enterRows(y, false);
-        (this->*methods_.fromRight)();
-        fromLeftAndAbove(fromBelow);
-        for (int r = 0; r < groups && y + r < end; ++r)
-            finishRow(r, disparity.ptr<ushort>(y + r), residual.ptr(y + r));
+        enterRows(y);
+        ByteLanes before[2] = { zero_, zero_ };
+        for (int t = steps_ - 1; t >= 0; --t)
+        {
+            const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
+            for (int column = 1; column >= 0; --column)
+                fromAbove(ByteLanes::load(stored + storedAt(t, column)), toNext[column], t, column, before[column]);
+        }
+    }
+
+    //! The winners of a block of rows from y on, of which those before end count; stored: their costs and sums
+    void downward(int y, int end, const uchar* stored, Mat& disparity, Mat& residual)
+    {
+        enterRows(y);
+        aggregateDownward(stored);
+        for (int r = 0; r < groups; ++r)
+        {
+            const int row = y + groups - 1 - r;
+            if (row < end)
+                finishRow(r, disparity.ptr<ushort>(row), residual.ptr(row));
+        }
     }
 
 private:
@@ -101,45 +131,23 @@ private:
     };
     static_assert(groups <= (int)ScanlineScratch::maxBlock, "the scratch memory is for larger blocks");
 
-    static uchar* aligned(std::vector<uchar>& stored) { return alignPtr(stored.data(), ScanlineScratch::alignment); }
-
-    //! Those for a layout of the costs
-    struct Methods
-    {
-        void (Sweep::*fromRight)();
-        void (Sweep::*follow)(uchar*);
-    };
-    template <int layout> static Methods methodsOf()
-    {
-        return { &Sweep::fromRight<layout>, &Sweep::followBlock<layout> };
-    }
-    static Methods methodsOf(const CensusCost& cost)
-    {
-        const int planes = cost.planes();
-        if (cost.limits().isEmpty())
-            return planes == 1 ? methodsOf<1>() : planes == 2 ? methodsOf<2>() : methodsOf<3>();
-        return planes == 1   ? methodsOf<hasLimits + 1>()
-               : planes == 2 ? methodsOf<hasLimits + 2>()
-                             : methodsOf<hasLimits + 3>();
-    }
-
-    //! Prepares a block of rows, y in the first group: what follows from the windows, if they are new, from the grey
-    //! levels, and the rows' pointers. isFollowed: for the vertical direction alone
-    void enterRows(int y, bool isFollowed)
+    //! Prepares a block of rows from y on: tables of the windows, if these are new, edges, and the rows' pointers
+    void enterRows(int y)
     {
         const int upperRow = std::min(y / 2, p_.windows->rows - 1);
         entersUpperRow_ = upperRow != upperRow_ && windows_;
         if (upperRow != upperRow_)
         {
-            const Window* above = windows_;
+            const Window* before = windows_;
             windows_ = p_.windows->ptr<Window>(upperRow);
             upperRow_ = upperRow;
-            tables_.enter(windows_, above, isFollowed);
+            tables_.enter(windows_, before);
         }
         const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
         for (int r = 0; r < groups; ++r)
         {
-            const int row = std::min(y + r * forward, lastRow), next = clamped(row + forward, 0, lastRow);
+            const int inBlock = y + groups - 1 - r, row = std::min(inBlock, lastRow),
+                      next = clamped(row + forward, 0, lastRow);
             left_[r] = p_.cost->leftPixels(row);
             right_[r] = p_.cost->rightPlane(0, row) + width_ - 1;
             if (!p_.cost->limits().isEmpty())
@@ -148,7 +156,7 @@ private:
                 rightLimits_[r] = p_.cost->limits().right(row) + width_ - 1;
             }
             weighScanlineEdges(p_.left->ptr<ushort>(row), p_.left->ptr<ushort>(next), width_, p_.penalties, edges_[r]);
-            if (isUpward_ && y - r > lastRow) // nothing comes from there
+            if (isUpward_ && inBlock > lastRow) // nothing comes from there
                 std::memset(edges_[r], 0, 2 * (size_t)width_);
         }
     }
@@ -245,106 +253,100 @@ private:
     //! Clears the groups that are beside the image.
     ByteLanes clearOutside(const ByteLanes& h, int step, int column) const
     {
-        static const uchar inside[16] = {
-            255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255
-        };
-        static const uchar outside[16] = { 0 };
-        const uchar* mask[groups];
+        uchar cleared[lanes];
+        h.store(cleared);
         for (int r = 0; r < groups; ++r)
         {
             const int x = 2 * (step - r) + column;
-            mask[r] = x >= 0 && x < width_ ? inside : outside;
+            if (x < 0 || x >= width_)
+                std::fill_n(cleared + r * Window::candidates, +Window::candidates, (uchar)0);
         }
-        return h & ByteLanes::load(mask, 0);
+        return ByteLanes::load(cleared);
     }
 
-    template <int layout> void fromRight()
+    //! Where the costs at a column of a step are stored; their sums follow them.
+    static ptrdiff_t storedAt(int step, int column) { return ((ptrdiff_t)step * 2 + column) * 2 * lanes; }
+
+    template <int layout> void upward(UpwardStep upwardStep, uchar* stored)
     {
-        ByteLanes h = zero_, cost[2];
-        for (int t = steps_ - 1; t >= 0; --t)
+        ByteLanes h = zero_, before[2] = { zero_, zero_ }, cost[2];
+        for (int t = 0; t < steps_; ++t)
         {
             costs<layout>(t, cost);
-            uchar* costs = blockCosts_ + (size_t)t * 2 * lanes;
-            uchar* directions = fromRight_ + (size_t)t * 2 * lanes;
-            h = h.permute(ByteLanes::load(tables_.intoLeft(t)));
-            const ByteLanes large[2] = { largePenalty<0>(t), largePenalty<2>(t) };
-            for (int column = 1; column >= 0; --column)
+            ByteLanes sum[2] = { zero_, zero_ };
+            if (upwardStep != STORE_COSTS)
             {
-                const ByteLanes direction = advance(h, cost[column], large[column]);
-                if (t + 1 >= pairs_)
-                    h = clearOutside(h, t, column);
-                cost[column].store(costs + column * lanes);
-                direction.store(directions + column * lanes);
+                const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
+                for (int column = 0; column < 2; ++column)
+                    sum[column] = fromBelow(cost[column], toNext[column], t, column, before[column]);
+            }
+            if (upwardStep == FOLLOW)
+                continue;
+            if (upwardStep == AGGREGATE)
+            {
+                const ByteLanes toRight[2] = { largePenalty<2>(t), largePenalty<4>(t) };
+                h = h.permute(ByteLanes::load(tables_.intoSide(t)));
+                for (int column = 0; column < 2; ++column)
+                    sum[column] = sum[column] + advance(h, cost[column], toRight[column]);
+                if (t + 1 < groups)
+                    h = clearOutside(h, t, 1);
+            }
+            for (int column = 0; column < 2; ++column)
+            {
+                cost[column].store(stored + storedAt(t, column));
+                sum[column].store(stored + storedAt(t, column) + lanes);
             }
         }
     }
 
-    //! The direction from above: before holds H of the last step's columns; large: to the next row
-    ByteLanes fromAbove(const ByteLanes& cost, const ByteLanes& large, int t, int column, ByteLanes& before)
+    void aggregateDownward(const uchar* stored)
     {
-        uchar* above = fromAbove_ + (ptrdiff_t)(2 * t + column) * Window::candidates;
-        ByteLanes h = ByteLanes::shiftIn(above, before);
-        if (entersUpperRow_) // only the block's first row may
-            h = h.permute(ByteLanes::first(tables_.intoBelow(t)));
-        const ByteLanes direction = advance(h, cost, large);
-        before = h;
-        h.storeLast(above - 2 * (groups - 1) * Window::candidates);
+        ByteLanes h = zero_, before[2] = { zero_, zero_ };
+        for (int t = steps_ - 1; t >= 0; --t)
+        {
+            h = h.permute(ByteLanes::load(tables_.intoSide(t)));
+            const ByteLanes toLeft[2] = { largePenalty<0>(t), largePenalty<2>(t) };
+            const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
+            for (int column = 1; column >= 0; --column)
+            {
+                const uchar* const costs = stored + storedAt(t, column);
+                const ByteLanes cost = ByteLanes::load(costs);
+                const ByteLanes fromRight = advance(h, cost, toLeft[column]);
+                if (t + 1 >= pairs_)
+                    h = clearOutside(h, t, column);
+                const ByteLanes sum = ByteLanes::load(costs + lanes) + fromRight +
+                                      fromAbove(cost, toNext[column], t, column, before[column]);
+                takeWinners(sum, t, column, costs);
+            }
+        }
+    }
+
+    //! Where a column of a group at a step has H of the row before its block
+    uchar* verticalAt(int group, int step, int column) const
+    {
+        return vertical_ + (2 * (ptrdiff_t)(step - group) + column) * Window::candidates;
+    }
+
+    //! The direction from below: before holds H of the last step's columns; large: to the next row
+    ByteLanes fromBelow(const ByteLanes& cost, const ByteLanes& large, int t, int column, ByteLanes& before)
+    {
+        before = ByteLanes::shiftInFirst(verticalAt(0, t, column), before);
+        if (entersUpperRow_) // only the row that the block begins with may
+            before = before.permute(ByteLanes::first(tables_.intoNext(t)));
+        const ByteLanes direction = advance(before, cost, large);
+        before.storeLast(verticalAt(groups - 1, t, column));
         return direction;
     }
 
-    //! Where a direction at a column of a step is stored; there is room for a step more at both ends.
-    static ptrdiff_t storedAt(int step, int column) { return ((ptrdiff_t)(step + 1) * 2 + column) * lanes; }
-
-    template <int layout> void followBlock(uchar* followed)
+    //! The same from above
+    ByteLanes fromAbove(const ByteLanes& cost, const ByteLanes& large, int t, int column, ByteLanes& before)
     {
-        ByteLanes before[2] = { zero_, zero_ }, cost[2];
-        for (int t = 0; t < steps_; ++t)
-        {
-            costs<layout>(t, cost);
-            const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
-            for (int column = 0; column < 2; ++column)
-            {
-                const ByteLanes direction = fromAbove(cost[column], toNext[column], t, column, before[column]);
-                if (followed)
-                    direction.store(followed + storedAt(t, column));
-            }
-        }
-    }
-
-    void fromLeftAndAbove(const uchar* fromBelow)
-    {
-        ByteLanes h = zero_, before[2] = { zero_, zero_ };
-        for (int t = 0; t < steps_; ++t)
-        {
-            const uchar* costs = blockCosts_ + (size_t)t * 2 * lanes;
-            const uchar* directions = fromRight_ + (size_t)t * 2 * lanes;
-            h = h.permute(ByteLanes::load(tables_.intoRight(t)));
-            const ByteLanes toRight[2] = { largePenalty<2>(t), largePenalty<4>(t) };
-            const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
-            for (int column = 0; column < 2; ++column)
-            {
-                const ByteLanes cost = ByteLanes::load(costs + column * lanes);
-                const ByteLanes fromLeft = advance(h, cost, toRight[column]);
-                const ByteLanes sum = fromLeft + ByteLanes::load(directions + column * lanes) +
-                                      fromAbove(cost, toNext[column], t, column, before[column]) +
-                                      loadFromBelow(fromBelow, t, column);
-                takeWinners(sum, t, column, costs + column * lanes);
-            }
-            if (t + 1 < groups)
-                h = clearOutside(h, t, 1);
-        }
-    }
-
-    //! In a sweep upward, group groups - 1 - r has had the row of group r.
-    static ByteLanes loadFromBelow(const uchar* fromBelow, int t, int column)
-    {
-        const uchar* of[groups];
-        for (int r = 0; r < groups; ++r)
-        {
-            const int other = groups - 1 - r;
-            of[r] = fromBelow + storedAt(t - r + other, column) + other * Window::candidates;
-        }
-        return ByteLanes::load(of, 0);
+        before = ByteLanes::shiftInLast(before, verticalAt(groups - 1, t, column));
+        if (entersUpperRow_)
+            before = before.permute(ByteLanes::last(tables_.intoNext(t - groups + 1)));
+        const ByteLanes direction = advance(before, cost, large);
+        before.storeFirst(verticalAt(0, t, column));
+        return direction;
     }
 
     //! The winners' lanes, sums with those beside them, and costs
@@ -399,12 +401,11 @@ private:
     }
 
     const ScanlineProblem& p_;
-    const Methods methods_;
     const int width_, pairs_, steps_; // columns, pairs of them, and steps over all groups
     const size_t planeStride_;        // from a plane of the cost to the next
     const ByteLanes small_, zero_;
-    // The scratch memory, from column or step 0 on
-    uchar *const blockCosts_, *const fromRight_, *const fromAbove_;
+    // The scratch memory, from column 0 on
+    uchar* const vertical_; // H of the row before the block
     uchar *winners_[groups], *costs_[groups], *edges_[groups];
     unsigned* sums_[groups];
     ScanlineWindows tables_;
@@ -418,23 +419,28 @@ private:
 } // namespace
 
 void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
-                     uchar* followed, Mat& disparity, Mat& residual)
+                     uchar* stored, Mat& disparity, Mat& residual)
 {
     const int block = ByteLanes::groups;
     const Range &rows = stripe.rows, &reach = stripe.reach;
     const auto ofBlock = [&](int y) {
-        return followed + (y - rows.start) * ScanlineScratch::followedBytes(problem.size.width);
+        return stored + (y - reach.start) * ScanlineScratch::storedBytes(problem.size.width);
     };
     scratch.prepare(problem.size.width, problem.numDisparities);
     Sweep upward(problem, true, scratch);
-    for (int y = (reach.end + 1) / 2 * 2 - block; y >= rows.start; y -= block)
-        upward.follow(y + block - 1, y < rows.end ? ofBlock(y) : nullptr);
+    int y = (reach.end + 1) / 2 * 2 - block;
+    for (; y >= rows.end; y -= block)
+        upward.upward(y, Sweep::FOLLOW, nullptr);
+    for (; y >= rows.start; y -= block)
+        upward.upward(y, Sweep::AGGREGATE, ofBlock(y));
+    for (; y >= reach.start; y -= block)
+        upward.upward(y, Sweep::STORE_COSTS, ofBlock(y));
     scratch.prepare(problem.size.width, problem.numDisparities);
     Sweep downward(problem, false, scratch);
-    for (int y = reach.start; y < rows.start; y += block)
-        downward.follow(y, nullptr);
-    for (int y = rows.start; y < rows.end; y += block)
-        downward.run(y, rows.end, ofBlock(y), disparity, residual);
+    for (y = reach.start; y < rows.start; y += block)
+        downward.follow(y, ofBlock(y));
+    for (; y < rows.end; y += block)
+        downward.downward(y, rows.end, ofBlock(y), disparity, residual);
 }
 
 #endif

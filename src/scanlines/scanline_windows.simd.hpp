@@ -42,11 +42,10 @@ public:
     typedef CandidateWindow Window;
 
     //! groups: rows of a block
-    ScanlineWindows(const ScanlineProblem& problem, int groups, ScanlineScratch& scratch)
-        : p_(problem), groups_(groups), pairs_((problem.size.width + 1) / 2),
+    ScanlineWindows(const ScanlineProblem& problem, bool isUpward, int groups, ScanlineScratch& scratch)
+        : p_(problem), isUpward_(isUpward), groups_(groups), pairs_((problem.size.width + 1) / 2),
           isContiguous_(scratch.isContiguous.data() + margin), priors_(firstStep(scratch.priors)),
-          intoRight_(firstStep(scratch.intoRight)), intoLeft_(firstStep(scratch.intoLeft)),
-          intoBelow_(firstStep(scratch.intoBelow))
+          intoSide_(firstStep(scratch.intoSide)), intoNext_(firstStep(scratch.intoNext))
     {
         for (int run = 0; run < Window::runs; ++run)
         {
@@ -58,15 +57,15 @@ public:
         preparePriorTable();
     }
 
-    //! Enters a row of windows. above: the row before, if there is one; isFollowed: for the vertical direction alone
-    void enter(const Window* row, const Window* above, bool isFollowed)
+    //! Enters a row of windows. before: that of the sweep before, if there is one
+    void enter(const Window* row, const Window* before)
     {
         enterColumns(row);
-        enterPriors();
-        if (!isFollowed)
-            enterSides(row);
-        if (above)
-            enterBelow(row, above);
+        if (isUpward_)
+            enterPriors();
+        enterSide(row);
+        if (before)
+            enterNext(row, before);
     }
 
     //! The first disparity of a run, and whether there is one, here and in the other rows of the block in the same step
@@ -76,11 +75,10 @@ public:
     const short* firstOfColumn(int run) const { return firstOfColumn_[run]; }
     //! With the large penalty, which is a part of all costs in a sweep
     const uchar* prior(int step) const { return ofStep(priors_, step); }
-    //! Orders of lanes, 255 for candidates that the window before does not have: from the left, from the right, and
-    //! from the row before
-    const uchar* intoRight(int step) const { return ofStep(intoRight_, step); }
-    const uchar* intoLeft(int step) const { return ofStep(intoLeft_, step); }
-    const uchar* intoBelow(int step) const { return ofStep(intoBelow_, step); }
+    //! Orders of lanes, 255 for candidates that the window before does not have: from the left in a sweep upward, from
+    //! the right in one downward, and from the row before
+    const uchar* intoSide(int step) const { return ofStep(intoSide_, step); }
+    const uchar* intoNext(int step) const { return ofStep(intoNext_, step); }
 
 private:
     enum
@@ -182,30 +180,34 @@ private:
         return lanes;
     }
 
-    void enterSides(const Window* row)
+    //! The windows before, along a row, have the lanes in a sweep upward, and those behind in one downward.
+    void enterSide(const Window* row)
     {
         const uchar *const low = orders_[0], *const high = orders_[1];
-        uchar *const intoRight = intoRight_, *const intoLeft = intoLeft_ + Window::candidates;
+        uchar* const intoSide = intoSide_;
+        const bool isUpward = isUpward_;
         Window before = row[0];
         Lanes lanesBefore = lanesOf(before, low, high);
         forEachWindow(row, [&](const Window& own, int x) {
-            const ptrdiff_t at = -(ptrdiff_t)x * Window::candidates;
+            uchar* const here = intoSide - (ptrdiff_t)x * Window::candidates;
             const Lanes lanes = lanesOf(own, low, high);
-            lanesBefore.order(own, intoRight + at);
-            lanes.order(before, intoLeft + at);
+            if (isUpward)
+                lanesBefore.order(own, here);
+            else
+                lanes.order(before, here + Window::candidates);
             before = own;
             lanesBefore = lanes;
         });
     }
 
-    void enterBelow(const Window* row, const Window* above)
+    void enterNext(const Window* row, const Window* rowBefore)
     {
         const uchar *const low = orders_[0], *const high = orders_[1];
-        uchar* const intoBelow = intoBelow_;
+        uchar* const intoNext = intoNext_;
         const int lastWindow = p_.windows->cols - 1;
         forEachWindow(row, [&](const Window& own, int x) {
-            lanesOf(above[std::min(x, lastWindow)], low, high)
-                .order(own, intoBelow - (ptrdiff_t)x * Window::candidates);
+            lanesOf(rowBefore[std::min(x, lastWindow)], low, high)
+                .order(own, intoNext - (ptrdiff_t)x * Window::candidates);
         });
     }
 
@@ -220,10 +222,11 @@ private:
     }
 
     const ScanlineProblem& p_;
+    const bool isUpward_;
     const int groups_, pairs_; // pairs of columns
     // The scratch memory, from column or step 0 on
     short *first_[Window::runs], *distance_[Window::runs], *firstOfColumn_[Window::runs];
-    uchar *const isContiguous_, *const priors_, *const intoRight_, *const intoLeft_, *const intoBelow_;
+    uchar *const isContiguous_, *const priors_, *const intoSide_, *const intoNext_;
     const uchar* orders_[Window::runs]; // of a run, by the distance of the candidates
     uchar priorTable_[2 * priorRange][Window::runLength];
 };
