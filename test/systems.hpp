@@ -46,7 +46,7 @@ const System presetUltrafast = {
 const System presetQuality = {
     "PRESET_QUALITY", "quality", createPaperST, true, false, HDPTreeMatcher::PRESET_QUALITY
 };
-const System presetTree = { "PRESET_TREE", "tree", createPaperMST, true, false, HDPTreeMatcher::PRESET_TREE };
+const System presetTree = { "PRESET_TREE", "tree", createPaperST, true, false, HDPTreeMatcher::PRESET_TREE };
 
 const System presets[] = { presetPaper, presetFast, presetUltrafast, presetQuality, presetTree };
 

@@ -86,10 +86,7 @@ static std::vector<Variant> variantsOf(int preset)
     add<double>(variants, "noiseThreshold", &P::noiseThreshold, { 0, 1 });
     variants.push_back(
         { "numDisparities twice as large", [](M& m) { m.setNumDisparities(2 * m.getNumDisparities()); }, 0, 0, 0 });
-    if (preset == M::PRESET_FAST) // each has one of the two
-        addTree(variants, "createMinimumSpanningTree()", stereo::createMinimumSpanningTree());
-    else
-        addTree(variants, "createSegmentTree()", stereo::createSegmentTree());
+    addTree(variants, "createMinimumSpanningTree()", stereo::createMinimumSpanningTree());
     addTree(variants, "createRandomTree()", stereo::createRandomTree());
     if (preset == M::PRESET_FAST)
     {

@@ -174,7 +174,7 @@ HDPTreeMatcher::Params::Params(int preset)
 
     aggregation = isPaper ? AGGREGATION_TREES : isTree ? AGGREGATION_TREE_SCANLINES : AGGREGATION_SCANLINES;
     topAggregation = hasScanlines ? AGGREGATION_TREE_SCANLINES : AGGREGATION_TREES;
-    treeStrategy = hasScanlines ? createSegmentTree() : createMinimumSpanningTree();
+    treeStrategy = isPaper ? createMinimumSpanningTree() : createSegmentTree(); // planes need segments
     gamma = isPaper ? 25.5 : 20;
     useMedianPrefilter = false;
 

@@ -304,7 +304,7 @@ public:
         /** @brief Rule 1 and Rule 2 of the spanning trees (section 3.2); not empty.
 
         The paper's systems are HDP+MST, HDP+ST and HDP+RT with usePrediction, MST, ST and RT without it, and M+MST,
-        M+ST and M+RT without it and with useMedianPrefilter. PAPER and TREE: createMinimumSpanningTree(), others:
+        M+ST and M+RT without it and with useMedianPrefilter. PAPER: createMinimumSpanningTree(), others:
         createSegmentTree(). */
         CV_PROP_RW Ptr<TreeStrategy> treeStrategy;
 
