@@ -152,8 +152,10 @@ add_optional_check(python_package python "${missing}"
   "${Python_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/python/test/test_hdpstereo.py" --verbose)
 add_optional_check(sample_dask "samples;python" "${missing}"
   "${Python_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/python/test/test_hdp_dask.py")
+add_optional_check(sample_rasterio "samples;python" "${missing}"
+  "${Python_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/python/test/test_hdp_rasterio.py")
 if(NOT missing)
-  set_property(TEST python_package sample_dask APPEND PROPERTY ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
+  set_property(TEST python_package sample_dask sample_rasterio APPEND PROPERTY ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")
 endif()
 
 set(missing "")

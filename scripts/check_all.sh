@@ -9,6 +9,7 @@
 #     in-tree    scripts/build_in_tree.sh
 #     projects   a program that builds the module by FetchContent, as a static library
 #     dask       samples/hdp_dask.py on a cluster that loses a worker
+#     rasterio   samples/hdp_rasterio.py on georeferenced rasters
 #     web        scripts/check_web.sh: the web page, in Chromium
 #     ros        ROS 1's stereo_image_proc under hdpstereo-run
 #     arm64, i386, riscv64, s390x   scripts/check_machine.sh: the same maps there, and unit tests
@@ -24,8 +25,8 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 fuzz_seconds=1800
-all_steps=(warnings widths threads memory fuzz in-tree projects dask web ros arm64 i386 riscv64 s390x clang mingw bullseye
-    bookworm trixie packages-bookworm packages-trixie)
+all_steps=(warnings widths threads memory fuzz in-tree projects dask rasterio web ros arm64 i386 riscv64 s390x clang mingw
+    bullseye bookworm trixie packages-bookworm packages-trixie)
 steps=()
 for argument in "$@"; do
     case $argument in
@@ -105,11 +106,24 @@ check_projects()
     "$checkout/scripts/check_other_projects.sh" "$build/release" fetch-content
 }
 
+# check_sample NAME PACKAGE...: a sample in Python that needs these packages of Debian
+check_sample()
+{
+    local name=$1
+    shift
+    install_packages python3-opencv "$@"
+    "$checkout/scripts/test.sh" -R "sample_$name"
+    ! ctest --test-dir "$build/release" -R "sample_$name" | grep Skipped
+}
+
 check_dask()
 {
-    install_packages python3-distributed python3-opencv
-    "$checkout/scripts/test.sh" -R sample_dask
-    ! ctest --test-dir "$build/release" -R sample_dask | grep Skipped
+    check_sample dask python3-distributed
+}
+
+check_rasterio()
+{
+    check_sample rasterio python3-rasterio
 }
 
 check_web()

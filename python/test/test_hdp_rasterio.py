@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
+'''
+samples/hdp_rasterio.py on georeferenced rasters. Run by CTest, or alone:
+    PYTHONPATH=<build>/python python3 test_hdp_rasterio.py
+'''
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import warnings
+
+try:
+    import cv2
+    import hdpstereo
+    import numpy as np
+    import rasterio
+    from rasterio.transform import from_origin
+except ImportError as e:
+    print('skipped: %s (on Debian: apt install python3-rasterio python3-opencv)' % e)
+    sys.exit(77)
+
+SAMPLE = pathlib.Path(__file__).resolve().parents[2] / 'samples' / 'hdp_rasterio.py'
+WIDTH, HEIGHT, NO_DATA = 2000, 900, 0
+TRANSFORM = from_origin(431000, 4582000, 0.5, 0.5)
+
+
+def save(path, levels):
+    with rasterio.open(path, 'w', driver='GTiff', dtype=levels.dtype, count=1, width=levels.shape[1],
+                       height=levels.shape[0], nodata=NO_DATA, crs='EPSG:32631', transform=TRANSFORM) as out:
+        out.write(levels, 1)
+
+
+def make_pair(folder):
+    '''Ground at a disparity of 12 with a block at 31; 16 bit, a corner without data'''
+    rng = np.random.RandomState(1)
+    ground = cv2.GaussianBlur(rng.randint(500, 4000, (HEIGHT, WIDTH + 64)).astype(np.uint16), (3, 3), 0)
+    truth = np.full((HEIGHT, WIDTH), 12, np.float32)
+    left, right = ground[:, :WIDTH].copy(), ground[:, 12:][:, :WIDTH].copy()
+    block = cv2.GaussianBlur(rng.randint(500, 4000, (300, 600)).astype(np.uint16), (3, 3), 0)
+    left[200:500, 900:1500], right[200:500, 869:1469] = block, block
+    truth[200:500, 900:1500] = 31
+    left[:100, :150] = NO_DATA
+    truth[:100, :150] = np.nan
+    save(folder / 'left.tif', left)
+    save(folder / 'right.tif', right)
+    return truth
+
+
+def run(folder, *arguments):
+    return subprocess.run([sys.executable, str(SAMPLE), 'left.tif', 'right.tif', 'out.tif', '--num-disparities=64',
+                           *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def load(folder):
+    with rasterio.open(folder / 'out.tif') as raster:
+        assert raster.crs == rasterio.crs.CRS.from_epsg(32631) and np.isnan(raster.nodata)
+        return raster.read(1), raster.transform
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        truth = make_pair(folder)
+
+        result = run(folder, '--tile=500')
+        assert result.returncode == 0, result.stdout
+        whole, transform = load(folder)
+        assert whole.shape == truth.shape and transform == TRANSFORM
+        assert np.isnan(whole[:100, :150]).all(), 'no data must have no disparity'
+        judged = ~np.isnan(truth)
+        judged[:, :40] = judged[200:500, 860:960] = False  # what the right raster does not show
+        wrong = np.mean(~(np.abs(whole - truth)[judged] <= 0.5))
+        assert wrong < 0.01, wrong
+
+        result = run(folder, '--window=700,150,900,420')
+        assert result.returncode == 0, result.stdout
+        part, transform = load(folder)
+        assert part.shape == (420, 900) and transform == TRANSFORM * transform.translation(700, 150)
+        other = np.mean(~(np.abs(part - whole[150:570, 700:1600]) <= 0.1))
+        assert other < 0.001, other
+
+        for window in '1900,0,200,100', '0,0,10', 'left':
+            result = run(folder, '--window=' + window)
+            assert result.returncode == 1 and 'error: --window must be X,Y,WIDTH,HEIGHT inside of 2000 x 900' in \
+                result.stdout, result.stdout
+        save(folder / 'right.tif', np.ones((HEIGHT, 100), np.uint16))
+        result = run(folder)
+        assert result.returncode == 1 and "'right.tif' must have the size of 'left.tif'" in result.stdout, result.stdout
+        (folder / 'right.tif').unlink()
+        result = run(folder)
+        assert result.returncode == 1 and 'error: right.tif' in result.stdout, result.stdout
+
+
+if __name__ == '__main__':
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore')
+        main()

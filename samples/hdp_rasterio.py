@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
+'''
+Matches a rectified pair of rasters, window by window, and writes a map that lies where the left raster does.
+
+usage:
+    hdp_rasterio.py LEFT RIGHT OUT [--window=X,Y,WIDTH,HEIGHT] [--min-disparity=0] [--num-disparities=128]
+                    [--preset=fast] [--tile=1152]
+
+LEFT and RIGHT are of one size, of any number of columns, in formats of GDAL: 8 bit, 16 bit or float; of more bands than
+one, 8 bit has the first three, all others the first. What a raster declares as no data has no disparity and no
+influence. OUT is a GeoTIFF of floats, NaN = none, with the coordinates of the left raster; of the window alone, if there
+is one. Tiles are matched with one model of the pair, found in its overviews, so that there are no seams; memory is that
+of a tile. On Debian: apt install python3-rasterio python3-opencv
+'''
+
+import argparse
+import sys
+
+import hdpstereo
+import numpy as np
+import rasterio
+from rasterio.enums import Resampling
+from rasterio.windows import Window
+
+GRID, MARGIN = 384, 128  # pixels of all layers begin at its multiples; what scanlines need
+
+
+def read(raster, window, size):
+    '''Levels and mask of a window, at this size (width, height).'''
+    bands = [3, 2, 1] if raster.count >= 3 and raster.dtypes[0] == 'uint8' else 1
+    shape = (size[1], size[0])
+    levels = raster.read(bands, window=window, resampling=Resampling.average,
+                         out_shape=shape if bands == 1 else (3,) + shape)
+    mask = raster.dataset_mask(window=window, out_shape=shape, resampling=Resampling.nearest)
+    return np.ascontiguousarray(levels if bands == 1 else levels.transpose(1, 2, 0)), mask
+
+
+def match(matcher, rasters, window, size):
+    '''Disparities of a window of both rasters'''
+    (left, left_mask), (right, right_mask) = (read(raster, window, size) for raster in rasters)
+    matcher.setMasks(left_mask, right_mask)
+    return matcher.compute(left, right, as_float=True)
+
+
+def find_model(rasters, args):
+    '''What all tiles are matched with: that of the pair, halved until it has some megapixels'''
+    width, height, times = rasters[0].width, rasters[0].height, 0
+    while (height >> times) * (width >> times) > 3e6:
+        times += 1
+    size = (width >> times, height >> times)
+    matcher = hdpstereo.HDPTreeMatcher.create(args.min_disparity >> times, (args.num_disparities >> times) + 1,
+                                              args.preset)
+    match(matcher, rasters, Window(0, 0, size[0] << times, size[1] << times), size)
+    return matcher.getPairModel().enlarged(times, width, height)
+
+
+def cut(window, width, height, args):
+    '''Tiles with their margins, and what is kept of each'''
+    largest = max(args.min_disparity + args.num_disparities - 1, 0)
+    before, after = largest + MARGIN, max(-args.min_disparity, 0) + MARGIN
+    end_x, end_y = window.col_off + window.width, window.row_off + window.height
+    for y in range(window.row_off, end_y, args.tile):
+        for x in range(window.col_off, end_x, args.tile):
+            kept = Window(x, y, min(args.tile, end_x - x), min(args.tile, end_y - y))
+            x0, y0 = (max(start - margin, 0) // GRID * GRID for start, margin in ((x, before), (y, MARGIN)))
+            yield Window(x0, y0, min(x + kept.width + after, width) - x0,
+                         min(y + kept.height + MARGIN, height) - y0), kept
+
+
+def main():
+    parser = argparse.ArgumentParser(description='Disparities of a rectified pair of rasters.')
+    parser.add_argument('left', help='left raster')
+    parser.add_argument('right', help='right raster, of its size')
+    parser.add_argument('out', help='GeoTIFF for the map')
+    parser.add_argument('--window', help='X,Y,WIDTH,HEIGHT in pixels (default: all)')
+    parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity (default: 0)')
+    parser.add_argument('--num-disparities', type=int, default=128, help='number of disparities (default: 128)')
+    parser.add_argument('--preset', default='fast', choices=['ultrafast', 'fast', 'quality', 'tree', 'paper'])
+    parser.add_argument('--tile', type=int, default=1152, help='side of a tile (default: 1152)')
+    args = parser.parse_args()
+    if args.tile <= 0:
+        sys.exit('error: --tile must be > 0')
+    try:
+        rasters = [rasterio.open(name) for name in (args.left, args.right)]
+    except rasterio.errors.RasterioIOError as error:
+        sys.exit('error: %s' % error)
+    left, right = rasters
+    if right.shape != left.shape:
+        sys.exit("error: '%s' must have the size of '%s'" % (args.right, args.left))
+    whole = Window(0, 0, left.width, left.height)
+    try:
+        window = Window(*[int(number) for number in args.window.split(',')]) if args.window else whole
+        inside = window.intersection(whole) == window
+    except (TypeError, ValueError, rasterio.errors.WindowError):
+        inside = False
+    if not inside:
+        sys.exit('error: --window must be X,Y,WIDTH,HEIGHT inside of %d x %d pixels' % (left.width, left.height))
+
+    model = find_model(rasters, args)
+    matcher = hdpstereo.HDPTreeMatcher.create(args.min_disparity, args.num_disparities, args.preset)
+    profile = dict(driver='GTiff', dtype='float32', count=1, nodata=np.nan, width=window.width, height=window.height,
+                   crs=left.crs, transform=left.window_transform(window), compress='deflate')
+    with rasterio.open(args.out, 'w', **profile) as out:
+        for tile, kept in cut(window, left.width, left.height, args):
+            matcher.setPairModel(model.tile(tile.col_off, tile.row_off, tile.width, tile.height))
+            disparity = match(matcher, rasters, tile, (tile.width, tile.height))
+            top, first = kept.row_off - tile.row_off, kept.col_off - tile.col_off
+            out.write(disparity[top:top + kept.height, first:first + kept.width], 1,
+                      window=Window(kept.col_off - window.col_off, kept.row_off - window.row_off, kept.width,
+                                    kept.height))
+
+
+if __name__ == '__main__':
+    main()
