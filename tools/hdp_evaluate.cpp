@@ -38,6 +38,7 @@ static const char* const KEYS =
     "{csv             |     | FILE.csv for the tables, and one of every pair }"
     "{maps            |     | folder for the maps: METHOD/SET/SCENE.png (16 bit, times 256, 0 = none) }"
     "{calibration     |     | only prints how many errors are within what getDisparitySigma() says, by sets }"
+    "{plot            |     | with calibration, FILE.svg for its curves; of one method }"
     "{confidence      |     | only prints how many pixels have what getConfidence(), and how many of these are wrong, "
     "by sets }"
     "{runs            | 1   | how often a pair is matched; the shortest time counts }"
@@ -94,12 +95,20 @@ static int run(const CommandLineParser& parser)
             std::cout << toMarkdown(foundRangesTable(method, selectScenes(parser))) << std::endl;
         return 0;
     }
+    const String plot = parser.get<String>("plot");
+    if (!plot.empty() && (!parser.has("calibration") || settings.methods.size() != 1))
+        fail("--plot needs --calibration, and one method");
     for (const String option : { "calibration", "confidence" })
         if (parser.has(option))
         {
             const auto makeTable = option == "calibration" ? calibrationTable : confidenceErrorsTable;
             for (const Method& method : settings.methods)
-                std::cout << toMarkdown(makeTable(method, selectScenes(parser), settings.numDisparities)) << std::endl;
+            {
+                const Table table = makeTable(method, selectScenes(parser), settings.numDisparities);
+                std::cout << toMarkdown(table) << std::endl;
+                if (!plot.empty())
+                    writeText(plot, calibrationPlot(table));
+            }
             return 0;
         }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <sstream>
 
 #include "opencv2/hdpstereo.hpp"
 
@@ -96,6 +97,50 @@ Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, i
         }
     }
     return table;
+}
+
+String calibrationPlot(const Table& table)
+{
+    const char* const colors[] = { "#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd",
+                                   "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22", "#17becf" };
+    const int left = 50, top = 10, width = 420, height = 300, sets = (int)table.header.size() - 1,
+              levels = (int)table.rows.size() - 1; // the last row is of all
+    const auto x = [&](int level) { return left + width * (level + 0.5) / levels; };
+    const auto y = [&](double percent) { return top + height * (1 - percent / 100); };
+    std::ostringstream svg;
+    const auto text = [&](double textX, double textY, const char* anchor, const String& words) {
+        svg << "<text x='" << textX << "' y='" << textY << "' text-anchor='" << anchor << "'>" << htmlText(words)
+            << "</text>\n";
+    };
+    const auto line = [&](double percent, const char* color) {
+        svg << "<line x1='" << left << "' x2='" << left + width << "' y1='" << y(percent) << "' y2='" << y(percent)
+            << "' stroke='" << color << "'/>\n";
+    };
+    svg << "<svg xmlns='http://www.w3.org/2000/svg' width='640' height='360' font-family='sans-serif' "
+           "font-size='12'>\n<rect width='640' height='360' fill='white'/>\n<rect x='"
+        << left << "' y='" << y(80) << "' width='" << width << "' height='" << y(50) - y(80) << "' fill='#e8f4e8'/>\n";
+    for (int percent = 0; percent <= 100; percent += 20)
+    {
+        line(percent, "#cccccc");
+        text(left - 6, y(percent) + 4, "end", std::to_string(percent));
+    }
+    line(68, "#444444");
+    for (int i = 0; i < levels; i++)
+        text(x(i), top + height + 18, "middle", table.rows[i][0].text);
+    text(left + width / 2, top + height + 40, "middle", "sigma in pixels, from");
+    text(left, top + height + 40, "start", "% within sigma");
+    for (int set = 0; set < sets; set++)
+    {
+        const char* const color = colors[set % (sizeof(colors) / sizeof(colors[0]))];
+        svg << "<polyline fill='none' stroke-width='2' stroke='" << color << "' points='";
+        for (int i = 0; i < levels; i++)
+            if (table.rows[i][set + 1].text != "-")
+                svg << x(i) << ',' << y(std::stod(table.rows[i][set + 1].text)) << ' ';
+        svg << "'/>\n<rect x='480' y='" << top + 20 * set << "' width='12' height='12' fill='" << color << "'/>\n";
+        text(498, top + 20 * set + 11, "start", table.header[set + 1]);
+    }
+    svg << "</svg>\n";
+    return svg.str();
 }
 
 void ConfidenceErrors::add(const Mat& confidence, const Mat& disparity, const Mat& truth)

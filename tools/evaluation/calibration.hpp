@@ -20,6 +20,9 @@ namespace hdp_tools {
 @param numDisparities 0: those of the dataset. */
 Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities);
 
+//! The curves of such a table as SVG, a line per set, over the percents that are aimed at
+String calibrationPlot(const Table& table);
+
 //! Pixels by their confidence
 class ConfidenceErrors
 {

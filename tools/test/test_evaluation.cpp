@@ -15,8 +15,7 @@
 #include "evaluation/report.hpp"
 #include "evaluation/tables.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace hdp_tools;
 
@@ -105,6 +104,25 @@ TEST(HDPStereo_Evaluation, errors_by_confidence_by_hand)
     EXPECT_DOUBLE_EQ(50, errors.wrong(1));
     EXPECT_DOUBLE_EQ(100. / 3, errors.wrong(21));
     EXPECT_TRUE(std::isnan(errors.wrong(101))); // 600 pixels
+}
+
+TEST(HDPStereo_Evaluation, plot_of_calibration)
+{
+    Table table;
+    table.header = { "sigma, pixels", "one", "a & b" };
+    const std::vector<std::vector<double>> rows = { { 50, 100 }, { 0, NO_SCORE }, { 40, 80 } };
+    for (size_t i = 0; i < rows.size(); i++)
+    {
+        table.addRow(i + 1 < rows.size() ? cv::format("%d", (int)i) : String("all"));
+        for (const double value : rows[i])
+            table.addNumber(value, "%.0f");
+    }
+    const String svg = calibrationPlot(table);
+    // 420 x 300 from (50, 10) on; the row of all is no level, and what is unknown no point.
+    EXPECT_NE(String::npos, svg.find("points='155,160 365,310 '"));
+    EXPECT_NE(String::npos, svg.find("points='155,10 '"));
+    EXPECT_NE(String::npos, svg.find(">a &amp; b</text>"));
+    EXPECT_EQ(String::npos, svg.find(">all</text>"));
 }
 
 TEST(HDPStereo_Evaluation, bad_pixels_by_hand)
@@ -271,5 +289,4 @@ TEST(HDPStereo_Evaluation, predicted_matrix_by_hand)
     EXPECT_NEAR(0.091325 * 0.5, matrix(0, 4), 1e-5); // offset -2
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test
