@@ -130,51 +130,67 @@ private:
             excludeOthers(p_.intervals.ptr<DisparityInterval>(y), costs);
     }
 
-    //! A pixel of the layer below per pixel of a row
-    struct PixelsBelow
+    //! A row of the layer below
+    struct RowBelow
     {
-        const uchar *left, *right, *leftLimits, *rightLimits;
-        size_t plane;
+        const uchar *left, *right, *leftLimits, *rightLimits; // of its first pixel
 
-        //! The first of the pixels
-        PixelsBelow(const CensusCost& cost, int y, int x)
-            : left(cost.leftPixels(y) + 4 * x), right(cost.rightPlane(0, y) + cost.size().width - 1 - x),
-              leftLimits(nullptr), rightLimits(nullptr), plane(cost.planeStride())
+        RowBelow(const CensusCost& cost, int y)
+            : left(cost.leftPixels(y)), right(cost.rightPlane(0, y) + cost.size().width - 1), leftLimits(nullptr),
+              rightLimits(nullptr)
         {
             if (cost.limits().isEmpty())
                 return;
-            leftLimits = cost.limits().left(y) + x;
-            rightLimits = cost.limits().right(y) + cost.size().width - 1 - x;
+            leftLimits = cost.limits().left(y);
+            rightLimits = cost.limits().right(y) + cost.size().width - 1;
+        }
+    };
+
+    //! A pixel of it; what is stored elsewhere meanwhile does not change it.
+    template <int planes, bool hasLimits> struct PixelBelow
+    {
+        ByteLanes left[planes], leftLimit;
+        const uchar *right[planes], *rightLimits;
+
+        CV_ALWAYS_INLINE PixelBelow(const RowBelow& row, int x, size_t planeStride)
+        {
+            for (int k = 0; k < planes; ++k)
+            {
+                left[k] = ByteLanes::repeat(row.left[4 * x + k]);
+                right[k] = row.right - x + k * planeStride;
+            }
+            if (!hasLimits)
+                return;
+            leftLimit = ByteLanes::repeat(row.leftLimits[x]);
+            rightLimits = row.rightLimits - x;
         }
 
-        //! C' of some candidates from d on of the pixel of pixel x
-        template <int planes, bool hasLimits> CV_ALWAYS_INLINE ByteLanes costs(int x, int d) const
+        //! C' of some candidates from d on
+        CV_ALWAYS_INLINE ByteLanes costs(int d) const
         {
-            const uchar* const candidates = right - 2 * x + d;
-            ByteLanes cost = (ByteLanes::repeat(left[8 * x]) ^ ByteLanes::load(candidates)).countBits();
+            ByteLanes cost = (left[0] ^ ByteLanes::load(right[0] + d)).countBits();
             for (int k = 1; k < planes; ++k)
-                cost =
-                    cost + (ByteLanes::repeat(left[8 * x + k]) ^ ByteLanes::load(candidates + k * plane)).countBits();
-            if (hasLimits)
-                cost = cost.min(ByteLanes::repeat(leftLimits[2 * x])).min(ByteLanes::load(rightLimits - 2 * x + d));
-            return cost;
+                cost = cost + (left[k] ^ ByteLanes::load(right[k] + d)).countBits();
+            return hasLimits ? cost.min(leftLimit).min(ByteLanes::load(rightLimits + d)) : cost;
         }
     };
 
     template <int planes, bool hasLimits> void computeCosts(int y, uchar* costs) const
     {
-        const PixelsBelow first(p_.below, 2 * y, 0), last(p_.below, 2 * y + 1, 1);
+        const RowBelow first(p_.below, 2 * y), last(p_.below, 2 * y + 1);
+        const size_t planeStride = p_.below.planeStride();
         const ushort* const upper = p_.upper.ptr<ushort>(std::min(y / 2, p_.upper.rows - 1));
-        const int candidates = p_.candidates, unit = subpixelScale / 4; // of a candidate in the layer above
-        for (int x = 0; x < width_; ++x, costs += costBytes_)
+        const uchar* const priors = p_.priors.data() + p_.candidates;
+        const int width = width_, candidates = p_.candidates, costBytes = costBytes_, lastUpper = p_.upper.cols - 1,
+                  unit = subpixelScale / 4; // of a candidate in the layer above
+        for (int x = 0; x < width; ++x, costs += costBytes)
         {
-            const int predicted = (upper[std::min(x / 2, p_.upper.cols - 1)] + unit / 2) / unit;
-            const uchar* const prior = p_.priors.data() + candidates - std::min(predicted, candidates);
-            for (int d = 0; d < costBytes_; d += vector)
-                (first.costs<planes, hasLimits>(x, d) + last.costs<planes, hasLimits>(x, d) +
-                 ByteLanes::load(prior + d))
-                    .store(costs + d);
-            std::fill(costs + candidates, costs + costBytes_, (uchar)UCHAR_MAX);
+            const int predicted = (upper[std::min(x / 2, lastUpper)] + unit / 2) / unit;
+            const uchar* const prior = priors - std::min(predicted, candidates);
+            const PixelBelow<planes, hasLimits> a(first, 2 * x, planeStride), b(last, 2 * x + 1, planeStride);
+            for (int d = 0; d < costBytes; d += vector)
+                (a.costs(d) + b.costs(d) + ByteLanes::load(prior + d)).store(costs + d);
+            std::fill(costs + candidates, costs + costBytes, (uchar)UCHAR_MAX);
         }
     }
 
