@@ -747,7 +747,7 @@ class Strategies(Test):
                 (TypeError, 'orderEdges() must return integers in one dimension', ordering(lambda edges: edges[None]))):
             matcher.setTreeStrategy(strategy)
             self.assertRaisesText(kind, text, matcher.compute, LEFT, RIGHT)
-            matcher.setTreeStrategy(hdpstereo.createMinimumSpanningTree())
+            matcher.setTreeStrategy(hdpstereo.createSegmentTree())
             self.assertSame(expected, matcher.compute(LEFT, RIGHT))
 
     def test_lifetime(self):
