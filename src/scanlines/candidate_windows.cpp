@@ -6,6 +6,7 @@
 #include "candidate_windows.simd.hpp"
 #include "scanlines/candidate_windows.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
+#include "other_surfaces.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -65,6 +66,7 @@ void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows)
 void halveDisparity(const Mat& disparity, Mat& upper)
 {
     upper.create(disparity.rows / 2, disparity.cols / 2, CV_16U);
+    const int maxDistance = otherSurfaceDistance * subpixelScale;
     parallel_for_(Range(0, upper.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
@@ -74,9 +76,8 @@ void halveDisparity(const Mat& disparity, Mat& upper)
             for (int x = 0; x < upper.cols; ++x)
             {
                 const int a = above[2 * x], b = above[2 * x + 1], c = below[2 * x], d = below[2 * x + 1];
-                const int min = std::min(std::min(a, b), std::min(c, d));
-                const int max = std::max(std::max(a, b), std::max(c, d));
-                middle[x] = (ushort)((a + b + c + d - min - max) / 4);
+                const int p = std::max(std::min(a, b), std::min(c, d)), q = std::min(std::max(a, b), std::max(c, d));
+                middle[x] = (ushort)(std::abs(p - q) < maxDistance ? (p + q) / 4 : std::min(p, q) / 2);
             }
         }
     });

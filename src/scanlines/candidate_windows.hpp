@@ -47,8 +47,9 @@ CV_EXPORTS void predictWindows(const Mat& upper, const Mat& others, int numDispa
 @param windows From predictWindows(), changed. */
 CV_EXPORTS void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows);
 
-//! Disparities of a layer as the layer above would have them: half the mean of the middle two of 2 x 2 pixels. For a
-//! second pass over a layer, around the disparities of the first. disparity and upper: CV_16UC1, disparity maps.
+//! Disparities of a layer as the layer above would have them: half the mean of the middle two of 2 x 2 pixels, or half
+//! the smaller one if they are otherSurfaceDistance apart: no surface is between them. For a second pass over a layer,
+//! around the disparities of the first. disparity and upper: CV_16UC1, disparity maps.
 CV_EXPORTS void halveDisparity(const Mat& disparity, Mat& upper);
 
 }}} // namespace cv::stereo::hdp
