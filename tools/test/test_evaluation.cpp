@@ -15,7 +15,8 @@
 #include "evaluation/report.hpp"
 #include "evaluation/tables.hpp"
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 using namespace hdp_tools;
 
@@ -289,4 +290,5 @@ TEST(HDPStereo_Evaluation, predicted_matrix_by_hand)
     EXPECT_NEAR(0.091325 * 0.5, matrix(0, 4), 1e-5); // offset -2
 }
 
-}} // namespace opencv_test
+} // namespace
+} // namespace opencv_test
