@@ -104,7 +104,7 @@ static void run(const CommandLineParser& parser)
         matcher->setTreeStrategy(strategy);
         Mat disparity, trees, intervals;
         matcher->compute(left, right, disparity);
-        matcher->getForest(trees, intervals); // of the image itself
+        matcher->getForest(trees, intervals); // of the finest layer that has trees
         //! [use]
         double lastTree;
         minMaxLoc(trees, nullptr, &lastTree);

@@ -142,7 +142,7 @@ private:
     void growForest()
     {
         shared_.forestLayer = plan_.layer;
-        const JoinerParams params(plan_.trees.beta, plan_.trees.linksTrees, plan_.trees.stripeRows, plan_.frame);
+        const JoinerParams params = { plan_.trees.beta, plan_.trees.linksTrees };
         buildForest(guide(), own_.pixelIntv, *in_.pair.treeStrategy, params, shared_.forestBuffers, shared_.forest);
     }
 

@@ -431,10 +431,8 @@ struct Forest
     std::vector<int> joined; // edges 2 * p (to the right of p) and 2 * p + 1 (below p), ascending
 };
 
-//! Section 3.2: Kruskal's algorithm with a strategy's Rule 1 and 2 and DT-Rules 1 and 2. pixelIntv: CV_16UC2. Edges
-//! between stripes of rows, the first of which has firstRow of a larger image, come last, but not in the second pass.
-inline Forest buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link,
-                          int stripeRows = 0, int firstRow = 0)
+//! Section 3.2: Kruskal's algorithm with a strategy's Rule 1 and 2 and DT-Rules 1 and 2. pixelIntv: CV_16UC2.
+inline Forest buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link)
 {
     const int width = image.cols, pixels = image.cols * image.rows;
     Forest forest;
@@ -459,15 +457,9 @@ inline Forest buildForest(const Mat& image, const Mat& pixelIntv, const TreeStra
             edges.push_back(e);
     }
     strategy.orderEdges(edgeWeights(image), edges); // Rule 1
-    const auto isInside = [&](int e) {
-        const int row = e / 2 / width + firstRow;
-        return stripeRows == 0 || !strategy.ordersByWeight() || e % 2 == 0 || (row + 1) % stripeRows != 0;
-    };
-    std::vector<int> insideFirst = edges;
-    std::stable_partition(insideFirst.begin(), insideFirst.end(), isInside);
 
     for (int pass = 0; pass < (link && strategy.linksTrees() ? 2 : 1); ++pass)
-        for (int edge : pass == 0 ? insideFirst : edges)
+        for (int edge : edges)
         {
             const int p = edge / 2, q = edge % 2 == 0 ? p + 1 : p + width;
             if (forest.treeOf[p] == forest.treeOf[q])

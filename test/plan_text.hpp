@@ -20,12 +20,12 @@ inline std::string textOf(const hdp::LayerPlan& p)
          << p.cost.colorTruncation << " " << p.cost.gradientTruncation << " weight " << p.cost.colorWeight
          << " sees below " << p.seesBelow << " smooths guide " << p.smoothsGuide << "\n  trees: prior "
          << (int)p.trees.prior << " upper " << p.trees.upperDisparities << " delta " << p.trees.delta << " margin "
-         << p.trees.margin << " beta " << p.trees.beta << " links " << p.trees.linksTrees << " stripes "
-         << p.trees.stripeRows << " gamma " << p.trees.gamma << " planes " << p.trees.prefersPlanes << " refinement "
-         << p.trees.refinementGamma << "\n  volume " << p.volumePenalties.small << " " << p.volumePenalties.large << " "
-         << p.volumePenalties.gamma << " range " << p.rangePenalties.small << " " << p.rangePenalties.large << " "
-         << p.rangePenalties.leastLarge << " " << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " "
-         << p.rangePenalties.maxPrior << "\n  passes";
+         << p.trees.margin << " beta " << p.trees.beta << " links " << p.trees.linksTrees << " gamma " << p.trees.gamma
+         << " planes " << p.trees.prefersPlanes << " refinement " << p.trees.refinementGamma << "\n  volume "
+         << p.volumePenalties.small << " " << p.volumePenalties.large << " " << p.volumePenalties.gamma << " range "
+         << p.rangePenalties.small << " " << p.rangePenalties.large << " " << p.rangePenalties.leastLarge << " "
+         << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " " << p.rangePenalties.maxPrior
+         << "\n  passes";
     for (const hdp::ScanlinePenalties& pass : p.passes)
         text << " [" << pass.small << " " << pass.large << " slope " << pass.edgeSlope << " prior " << pass.prior
              << "]";

@@ -56,11 +56,9 @@ void testForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& stra
                 hdp::ForestBuffers& buffers, DisparityForest& forest)
 {
     SCOPED_TRACE(testing::Message() << strategy.getDefaultName() << ", " << image.size() << ", beta " << params.beta
-                                    << (params.link ? ", linked" : "") << ", stripes of " << params.stripeRows
-                                    << ", first row " << params.frame.origin.y);
+                                    << (params.link ? ", linked" : ""));
     hdp::buildForest(image, pixelIntv, strategy, params, buffers, forest);
-    const oracle::Forest expected = oracle::buildForest(image, pixelIntv, strategy, params.beta, params.link,
-                                                        params.stripeRows, params.frame.origin.y);
+    const oracle::Forest expected = oracle::buildForest(image, pixelIntv, strategy, params.beta, params.link);
 
     expectIdentical(oracle::edgeWeights(image), forest.weights);
     ASSERT_EQ(image.size(), forest.links.size());
@@ -188,10 +186,7 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_in_any_number_of_stripes)
             const Ptr<TreeStrategy>& strategy = strategies[i % 5];
             // Segments are linked without prediction only, when all intervals are equal.
             const bool link = strategy != segments && i % 7 == 0;
-            const int stripeRows = i % 3 == 0 ? 0 : 1 << rng.uniform(0, 6);
-            const hdp::ImageFrame frame(Size(), Point(0, rng.uniform(0, 100)));
-            const hdp::JoinerParams params(rng.uniform(0., 1.), link, stripeRows, frame);
-            testForest(image, pixelIntv, *strategy, params, buffers, forest);
+            testForest(image, pixelIntv, *strategy, { rng.uniform(0., 1.), link }, buffers, forest);
             if (HasFatalFailure())
                 return;
         }
@@ -209,12 +204,12 @@ TEST(HDPStereo_DisparityForest, roots_do_not_depend_on_the_number_of_threads)
         DisparityForest expected, forest;
         {
             ScopedThreads one(1);
-            hdp::buildForest(image, pixelIntv, *strategy, { 0.6, false, 16 }, buffers, expected);
+            hdp::buildForest(image, pixelIntv, *strategy, { 0.6, false }, buffers, expected);
         }
         for (int threads = 2; threads <= 5; ++threads)
         {
             ScopedThreads scope(threads);
-            hdp::buildForest(image, pixelIntv, *strategy, { 0.6, false, 16 }, buffers, forest);
+            hdp::buildForest(image, pixelIntv, *strategy, { 0.6, false }, buffers, forest);
             ASSERT_EQ(expected.trees.size(), forest.trees.size());
             for (size_t t = 0; t < expected.trees.size(); ++t)
                 ASSERT_EQ(expected.trees[t].root, forest.trees[t].root) << threads << " threads";

@@ -245,8 +245,8 @@ const Change commonChanges[] = {
     }) },
 };
 
-//! What has no effect with scanlines
-const Change treeChanges[] = {
+//! For trees between the top layer and the finest one
+const Change intervalChanges[] = {
     { "delta0", inParams([](Params& p) { p.delta0 = 0.3; }) },
     { "beta", inParams([](Params& p) { p.beta = 0.1; }) },
     { "intervalMargin", inParams([](Params& p) { p.intervalMargin = 5; }) },
@@ -254,6 +254,9 @@ const Change treeChanges[] = {
     { "predictionModel", inParams([](Params& p) {
         p.predictionModel = DisparityPredictionModel::createPublished(DisparityPredictionModel::PUBLISHED_LARGE);
     }) },
+};
+
+const Change refinementChanges[] = {
     { "useNonLocalRefinement", inParams([](Params& p) { p.useNonLocalRefinement = true; }) },
 };
 
@@ -279,13 +282,21 @@ const Change passesChanges[] = {
 };
 // clang-format on
 
-template <size_t count> void expectEffects(const System& system, const Change (&changes)[count], bool expected)
+//! numLayers: 0: those of the system
+template <size_t count>
+void expectEffects(const System& system, const Change (&changes)[count], bool expected, int numLayers = 0)
 {
     const SyntheticPair& pair = testPair();
-    const Mat unchanged = match(*createSystem(system, disparities), pair.left, pair.right);
+    const auto create = [&] {
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
+        if (numLayers > 0)
+            change(*matcher, [&](Params& p) { p.numLayers = numLayers, p.maxTopDisparities = 0; });
+        return matcher;
+    };
+    const Mat unchanged = match(*create(), pair.left, pair.right);
     for (const Change& each : changes)
     {
-        const Ptr<HDPTreeMatcher> matcher = createSystem(system, disparities);
+        const Ptr<HDPTreeMatcher> matcher = create();
         each.set(*matcher);
         EXPECT_EQ(expected, countDifferent(unchanged, match(*matcher, pair.left, pair.right)) > 0)
             << system.name << ", " << each.name;
@@ -298,17 +309,20 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
     for (const System& preset : presets)
     {
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, disparities);
-        const bool hasScanlines = matcher->getParams().aggregation == HDPTreeMatcher::AGGREGATION_SCANLINES;
+        const int aggregation = matcher->getParams().aggregation;
+        const bool hasSums = aggregation == HDPTreeMatcher::AGGREGATION_TREES;
+        const bool hasTreesBelow = aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES;
         expectEffects(preset, commonChanges, true);
-        expectEffects(preset, treeChanges, !hasScanlines);
-        expectEffects(preset, topChanges, hasScanlines);
+        expectEffects(preset, intervalChanges, hasTreesBelow, 3);
+        expectEffects(preset, refinementChanges, hasSums);
+        expectEffects(preset, topChanges, !hasTreesBelow);
         if (matcher->getParams().matchingCost == HDPTreeMatcher::COST_COLOR_GRADIENT)
             expectEffects(preset, colorAndGradientChanges, true);
         // Otherwise the top layer alone is matched.
         const bool hasLayers = matcher->getParams().finestLayer == 0;
-        if (matcher->getParams().aggregation != HDPTreeMatcher::AGGREGATION_TREES && hasLayers)
+        if (!hasSums && hasLayers)
             expectEffects(preset, scanlineChanges, true);
-        expectEffects(preset, passesChanges, hasScanlines && hasLayers);
+        expectEffects(preset, passesChanges, !hasSums && hasLayers);
     }
 }
 

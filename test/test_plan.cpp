@@ -261,7 +261,7 @@ TEST(HDPStereo_Plan, methods_of_the_presets)
     const hdp::LayerMethod tops[] = { hdp::TREE_SUMS, hdp::TREE_SCANLINES, hdp::TREE_SCANLINES, hdp::TREE_SCANLINES,
                                       hdp::TREE_SCANLINES };
     const hdp::LayerMethod finest[] = { hdp::TREE_SUMS, hdp::WINDOW_SCANLINES, hdp::WINDOW_SCANLINES,
-                                        hdp::WINDOW_SCANLINES, hdp::TREE_SCANLINES };
+                                        hdp::WINDOW_SCANLINES, hdp::WINDOW_SCANLINES };
     for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
     {
         const PairPlan plan = hdp::plan(parametersOf(preset), imageSize, CV_8UC3);
@@ -270,9 +270,24 @@ TEST(HDPStereo_Plan, methods_of_the_presets)
         for (size_t i = 1; i < plan.layers.size(); ++i)
             EXPECT_EQ(plan.layers[i - 1].layer - 1, plan.layers[i].layer);
         EXPECT_EQ(preset == M::PRESET_ULTRAFAST, plan.finest().layer == 1);
-        EXPECT_EQ(0, plan.top().trees.stripeRows) << "bare surfaces need trees as large as they are";
-        EXPECT_EQ(preset == M::PRESET_TREE, plan.finest().trees.stripeRows > 0) << "those of the paper have no stripes";
     }
+}
+
+//! Between the top layer and the finest one, which has windows
+TEST(HDPStereo_Plan, trees_of_coarse_layers)
+{
+    MatcherParameters p = parametersOf(M::PRESET_TREE);
+    p.numDisparities = 256;
+    const PairPlan plan = hdp::plan(p, Size(1280, 960), CV_8UC3);
+    ASSERT_EQ(3u, plan.layers.size());
+    EXPECT_EQ(hdp::TREE_SCANLINES, plan.layers[1].method);
+    EXPECT_EQ(hdp::UPPER_LAYER, plan.layers[1].trees.prior);
+    EXPECT_FALSE(plan.layers[1].seesBelow);
+    EXPECT_TRUE(plan.layers[1].passes.empty());
+    EXPECT_EQ(1u, plan.finest().passes.size());
+    EXPECT_TRUE(plan.finest().restoresThinStructures);
+    p.aggregation = M::AGGREGATION_TREES;
+    EXPECT_EQ(hdp::TREE_SUMS, hdp::plan(p, Size(1280, 960), CV_8UC3).finest().method);
 }
 
 //! Between the top layer and the finest one: all candidates while there are few, in halves of a pixel

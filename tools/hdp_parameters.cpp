@@ -104,7 +104,6 @@ static std::vector<Variant> variantsOf(int preset)
     {
         variants[0].name = "PRESET_TREE";
         addChange(variants, "aggregation = AGGREGATION_TREES", [](P& p) { p.aggregation = M::AGGREGATION_TREES; });
-        add<bool>(variants, "useNonLocalRefinement", &P::useNonLocalRefinement, { true });
         add<int>(variants, "maxTopDisparities", &P::maxTopDisparities, { 32, 128 });
         add<double>(variants, "delta0", &P::delta0, { 0.005, 0.08 });
         add<double>(variants, "beta", &P::beta, { 0.6, 0.98 });

@@ -22,16 +22,16 @@ bool isFrozen(int parentOfRoot) { return parentOfRoot < -frozenMark; }
 
 An edge to another stripe is left undecided, and freezes its tree: from its turn on, what the tree would be joined with
 is not known. An edge to a frozen tree is left undecided, too, and freezes the other tree. So each decision sees the
-same trees as without stripes. Where stripes come first, nothing is frozen, and only edges between them are left. */
+same trees as without stripes. */
 class StripeJoiner
 {
 public:
-    //! rule2: none if every edge may join; rows: of the stripe; freezes: unless stripes come first; links: continuous
-    StripeJoiner(const TreeStrategy* rule2, const Mat& weights, double beta, const Range& rows, bool freezes,
-                 GrowingTrees& trees, JoinerStripe& stripe, Mat& links)
+    //! rule2: none if every edge may join; rows: of the stripe; links: continuous
+    StripeJoiner(const TreeStrategy* rule2, const Mat& weights, double beta, const Range& rows, GrowingTrees& trees,
+                 JoinerStripe& stripe, Mat& links)
         : rule2_(rule2), unitesIntervals_(!rule2 || rule2->unitesIntervals()), weights_(weights.ptr()), beta_(beta),
           width_(links.cols), begin_(rows.start * width_), end_(rows.end * width_), nodes_(trees.nodes.data()),
-          maxWeights_(trees.maxWeights.data()), links_(links.ptr()), freezes_(freezes), stripe_(stripe)
+          maxWeights_(trees.maxWeights.data()), links_(links.ptr()), stripe_(stripe)
     {
     }
 
@@ -95,8 +95,6 @@ private:
 
     void freezeTree(int pixel)
     {
-        if (!freezes_)
-            return;
         const int root = findRoot(pixel);
         if (!isFrozen(nodes_[root].parent))
         {
@@ -164,7 +162,6 @@ private:
     Node* const nodes_;
     uchar* const maxWeights_;
     uchar* const links_;
-    const bool freezes_;
     JoinerStripe& stripe_;
 };
 
@@ -206,69 +203,44 @@ void orderEdges(const TreeStrategy& strategy, const Mat& weights, JoinerStripe& 
         CV_Error(Error::StsBadArg, "treeStrategy: orderEdges must leave a permutation of the edges");
 }
 
-//! The stripes of an image whose trees are joined first
-std::vector<Range> stripesOf(const ImageFrame& frame, int height, int stripeRows)
-{
-    std::vector<Range> stripes;
-    for (int start = 0; start < height; start = stripes.back().end)
-        stripes.push_back(Range(start, std::min(start + stripeRows - (start + frame.origin.y) % stripeRows, height)));
-    return stripes;
-}
-
-//! As many stripes as threads make use of
-std::vector<Range> stripesOf(int height)
-{
-    const int count = std::max(std::min({ getNumThreads(), +maxStripes, height / minStripeRows }), 1);
-    std::vector<Range> stripes;
-    for (int s = 0; s < count; ++s)
-        stripes.push_back(Range((int)((int64)height * s / count), (int)((int64)height * (s + 1) / count)));
-    return stripes;
-}
-
 } // namespace
 
 void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixelIntv, const JoinerParams& params,
                GrowingTrees& trees, std::vector<JoinerStripe>& stripes, Mat& links)
 {
-    const Range all(0, pixelIntv.rows);
+    const int height = pixelIntv.rows;
     trees.nodes.resize(pixelIntv.total());
     trees.maxWeights.resize(pixelIntv.total());
-    // Other orders than by weight are not those of a stripe.
-    const bool isOrdered = strategy.ordersByWeight(), areFirst = isOrdered && params.stripeRows > 0;
-    const std::vector<Range> rows = areFirst    ? stripesOf(params.frame, all.end, params.stripeRows)
-                                    : isOrdered ? stripesOf(all.end)
-                                                : std::vector<Range>(1, all);
-    const int count = (int)rows.size(), tasks = std::min(count, std::max(getNumThreads(), 1));
-    if ((int)stripes.size() < tasks + 1)
-        stripes.resize(tasks + 1);
-    parallel_for_(Range(0, tasks), [&](const Range& range) {
-        for (int task = range.start; task < range.end; ++task)
+    // The number of threads decides how fast it goes, not what comes out. Other orders are not those of a stripe.
+    const int maxCount = strategy.ordersByWeight() ? std::min(getNumThreads(), +maxStripes) : 1;
+    const int count = std::max(std::min(maxCount, height / minStripeRows), 1);
+    stripes.resize(count + 1);
+    parallel_for_(Range(0, count), [&](const Range& range) {
+        for (int s = range.start; s < range.end; ++s)
         {
-            JoinerStripe& stripe = stripes[task];
+            JoinerStripe& stripe = stripes[s];
+            const Range rows((int)((int64)height * s / count), (int)((int64)height * (s + 1) / count));
             stripe.undecidedEdges.clear();
             stripe.frozenRoots.clear();
-            for (int s = count * task / tasks; s < count * (task + 1) / tasks; ++s)
-            {
-                startTrees(pixelIntv, rows[s], trees);
-                selectEdges(weights, pixelIntv, rows[s], stripe.edges);
-                orderEdges(strategy, weights, stripe);
-                StripeJoiner(&strategy, weights, params.beta, rows[s], !areFirst, trees, stripe, links)
-                    .tryEdges(stripe.edges);
-            }
+            startTrees(pixelIntv, rows, trees);
+            selectEdges(weights, pixelIntv, rows, stripe.edges);
+            orderEdges(strategy, weights, stripe);
+            StripeJoiner(&strategy, weights, params.beta, rows, trees, stripe, links).tryEdges(stripe.edges);
         }
     });
 
-    JoinerStripe& whole = stripes[tasks];
+    const Range all(0, height);
+    JoinerStripe& whole = stripes[count];
     whole.edges.clear();
-    for (int task = 0; task < tasks; ++task)
+    for (int s = 0; s < count; ++s)
     {
-        const JoinerStripe& stripe = stripes[task];
+        const JoinerStripe& stripe = stripes[s];
         whole.edges.insert(whole.edges.end(), stripe.undecidedEdges.begin(), stripe.undecidedEdges.end());
         for (int root : stripe.frozenRoots)
             trees.nodes[root].parent += frozenMark;
     }
     sortByWeight(weights, whole.edges, whole.sorted); // those of one weight are by number already
-    StripeJoiner(&strategy, weights, params.beta, all, false, trees, whole, links).tryEdges(whole.edges);
+    StripeJoiner(&strategy, weights, params.beta, all, trees, whole, links).tryEdges(whole.edges);
     if (!params.link)
         return;
     if (count > 1)
@@ -276,7 +248,7 @@ void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixe
         selectEdges(weights, pixelIntv, all, stripes[0].edges);
         sortByWeight(weights, stripes[0].edges, whole.sorted);
     }
-    StripeJoiner(nullptr, weights, params.beta, all, false, trees, whole, links).tryEdges(stripes[0].edges);
+    StripeJoiner(nullptr, weights, params.beta, all, trees, whole, links).tryEdges(stripes[0].edges);
 }
 
 }}} // namespace cv::stereo::hdp

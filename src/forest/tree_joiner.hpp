@@ -5,7 +5,6 @@
 #define OPENCV_HDPSTEREO_TREE_JOINER_HPP
 
 #include "../base/disparity_units.hpp"
-#include "../base/image_frame.hpp"
 #include "tree_strategy.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -34,21 +33,13 @@ struct JoinerStripe
 //! How trees are joined
 struct JoinerParams
 {
-    double beta;      // threshold of DT-Rule 2
-    bool link;        // whether to join what Rule 2 left apart, by a second pass without it
-    int stripeRows;   // of stripes whose edges come first, unless it is 0
-    ImageFrame frame; // where it lies in a larger image, if it is a tile of one: its stripes are those of that
-
-    JoinerParams(double beta_, bool link_, int stripeRows_ = 0, const ImageFrame& frame_ = ImageFrame())
-        : beta(beta_), link(link_), stripeRows(stripeRows_), frame(frame_)
-    {
-    }
+    double beta; // threshold of DT-Rule 2
+    bool link;   // whether to join what Rule 2 left apart, by a second pass without it
 };
 
 /** Kruskal's algorithm: tries one edge after the other in the order of Rule 1, and joins the trees at its ends if Rule
 2 and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the image side by side; the trees and their
-roots are those of trying one edge after the other, for any number of stripes. With stripeRows, these stripes, which fit
-into a cache, are what counts: the edges between them are tried last.
+roots are those of trying one edge after the other, for any number of stripes.
 @param strategy Rule 1 and Rule 2.
 @param weights From weighEdges().
 @param pixelIntv CV_16UC2 of the same size.

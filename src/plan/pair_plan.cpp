@@ -32,9 +32,6 @@ HDP_TUNABLE(int, coarseLayer, 2, "layer",
 HDP_TUNABLE(double, meanGamma, 0.2, "gamma of the trees' sums",
             "of means that scanlines get, on the first two layers: these carry costs farther by themselves, "
             "and more blurs borders; less on coarser layers, where each step goes farther");
-HDP_TUNABLE(int, treeStripeRows, 32, "rows",
-            "of the stripes in which trees are joined first, below the top layer: more do not fit into a cache, fewer "
-            "leave more to do between them");
 HDP_TUNABLE(double, meanP1, 0.5, "P1",
             "means are smoother than costs: more flattens slanted surfaces, less keeps noise");
 HDP_TUNABLE(double, meanP2, 1.3, "P2",
@@ -168,8 +165,10 @@ CostPlan planCost(const MatcherParameters& p)
 LayerMethod methodOf(const MatcherParameters& p, const LayerPlan& layer)
 {
     const int below = aggregationOf(p);
+    if (layer.isFinest && !layer.isTop && below != M::AGGREGATION_TREES)
+        return WINDOW_SCANLINES;
     if (below == M::AGGREGATION_SCANLINES && !layer.isTop)
-        return !layer.isFinest && layer.numDisparities <= mostRangeDisparities ? RANGE_SCANLINES : WINDOW_SCANLINES;
+        return layer.numDisparities <= mostRangeDisparities ? RANGE_SCANLINES : WINDOW_SCANLINES;
     const int aggregation = below == M::AGGREGATION_SCANLINES ? p.topAggregation : below;
     return aggregation == M::AGGREGATION_TREE_SCANLINES ? TREE_SCANLINES
            : aggregation == M::AGGREGATION_SCANLINES    ? COST_SCANLINES
@@ -190,10 +189,9 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
         trees.beta = p.beta != M::AUTO ? p.beta : isLarge(size) ? 0.6 : 0.95;
     }
     trees.linksTrees = !p.usePrediction;
-    trees.stripeRows = layer.method == TREE_SCANLINES && !layer.isTop ? +treeStripeRows : 0;
     trees.gamma = layer.method == TREE_SCANLINES ? p.gamma * meanGamma / std::max(layer.layer, 1) : p.gamma;
     trees.prefersPlanes = layer.method == TREE_SCANLINES && layer.isTop;
-    if (p.useNonLocalRefinement && predictsIntervals(p))
+    if (p.useNonLocalRefinement && aggregationOf(p) == M::AGGREGATION_TREES)
         trees.refinementGamma = p.gamma * refinementGamma;
     return trees;
 }
@@ -251,7 +249,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.fillsOcclusions = p.fillOcclusions;
     // As in the authors' program; the paper says that nothing is refined.
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
-    plan.restoresThinStructures = plan.isFinest && !predictsIntervals(p) && plan.medianSize > 0;
+    plan.restoresThinStructures = plan.isFinest && aggregationOf(p) != M::AGGREGATION_TREES && plan.medianSize > 0;
     plan.votesAtEdges = layer == 0 && plan.cost.isCensus && plan.medianSize > 0;
     return plan;
 }

@@ -59,7 +59,6 @@ struct TreePlan
     int margin = 0;           // candidates added to an interval on both sides
     double beta = 0;          // of DT-Rule 2; only trees whose intervals differ ask for it
     bool linksTrees = false;  // whether what Rule 2 leaves apart is joined
-    int stripeRows = 0;       // of the stripes in which trees are joined first; 0: as in the paper, none
     double gamma = 0;         // grey levels, of the sums or means
     bool prefersPlanes = false;
     double refinementGamma = 0; // of the non-local refinement; 0: none

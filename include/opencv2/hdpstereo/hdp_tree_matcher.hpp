@@ -109,7 +109,7 @@ public:
         PRESET_FAST = 1,      //!< the default: scanlines, on the top layer over means of trees
         PRESET_ULTRAFAST = 2, //!< PRESET_FAST at half the resolution
         PRESET_QUALITY = 3,   //!< slower and more accurate than PRESET_FAST
-        PRESET_TREE = 4       //!< trees on every layer, as in the paper, and scanlines over the means in them
+        PRESET_TREE = 4 //!< disparity trees on a top layer as fine as can be, and on all others but the finest one
     };
 
     //! Cost aggregation, see Params::aggregation and Params::topAggregation
@@ -117,7 +117,8 @@ public:
     {
         AGGREGATION_TREES = 0,         //!< the paper's: sums over disparity trees
         AGGREGATION_SCANLINES = 1,     //!< semi-global matching over predicted candidates, or all on coarse layers
-        AGGREGATION_TREE_SCANLINES = 2 //!< semi-global matching over the means of the costs in disparity trees
+        AGGREGATION_TREE_SCANLINES = 2 //!< semi-global matching over the means of the costs in disparity trees, on
+                                       //!< layers above the finest one
     };
 
     //! Matching cost, see Params::matchingCost
@@ -288,9 +289,9 @@ public:
 
         AGGREGATION_TREES is that of section 3. AGGREGATION_TREE_SCANLINES runs scanlines @cite Hirschmuller2008SGM over
         weighted means of the costs in each pixel's tree: trees carry faint texture to where there is none, scanlines
-        follow slanted surfaces. AGGREGATION_SCANLINES is for the costs themselves, over 16 candidates per pixel around
-        the disparity of the layer above, or all of them on layers between the top and the finest one that have few.
-        Those with scanlines need COST_CENSUS. PAPER: AGGREGATION_TREES, TREE: AGGREGATION_TREE_SCANLINES, others:
+        follow slanted surfaces. On the finest layer, where costs tell more by themselves, it is the same as
+        AGGREGATION_SCANLINES. That is for the costs themselves, over 16 candidates per pixel around the disparity of
+        the layer above, or all of them on layers between the top and the finest one that have few. Those with scanlines need COST_CENSUS. PAPER: AGGREGATION_TREES, TREE: AGGREGATION_TREE_SCANLINES, others:
         AGGREGATION_SCANLINES. */
         CV_PROP_RW int aggregation;
 
@@ -400,8 +401,8 @@ public:
 
         /** @brief Whether disparities are refined over trees @cite Yang2012MST , in each layer, before the median.
 
-        Each pixel gets a weighted median of the stable disparities of its tree. Without effect with
-        AGGREGATION_SCANLINES. All: false. */
+        Each pixel gets a weighted median of the stable disparities of its tree. For AGGREGATION_TREES only. All: false.
+        */
         CV_PROP_RW bool useNonLocalRefinement;
 
         //! @}
@@ -611,7 +612,8 @@ public:
 
     /** @brief Returns the disparity forest of the last compute() (section 3.2), at the finest layer that has one.
 
-    With scanlines this is the top layer, whose trees search the full range. Either may be cv::noArray().
+    With PRESET_FAST, ULTRAFAST and QUALITY this is the top layer, whose trees search the full range; with PRESET_TREE
+    the lowest layer above the finest one. Either may be cv::noArray().
     @param trees Receives the number of each pixel's tree, from 0: CV_32SC1 of the layer's size. Empty before the first
     compute(), after one that threw an exception, and without trees: Params::topAggregation, temporal prediction.
     @param intervals Receives the first and the last candidate of each pixel's tree, TreeIntv, counted from

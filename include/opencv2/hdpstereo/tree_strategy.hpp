@@ -70,9 +70,8 @@ public:
     /** @brief Whether Rule 1 is to try edges by ascending weight, equal weights by number (false by default).
 
     If true, orderEdges() is not called: the matcher orders the edges itself, and joins trees in several parts of the
-    image in parallel. The trees are the same as with orderEdges() in that order, but for the layers of PRESET_TREE
-    below the top one: there, edges between stripes of 32 rows come last. mayJoin() is called from several threads at
-    the same time then.
+    image in parallel. The trees are the same as with orderEdges() in that order. mayJoin() is called from several
+    threads at the same time then.
      */
     virtual bool ordersByWeight() const { return false; }
 
