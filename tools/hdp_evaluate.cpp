@@ -88,16 +88,17 @@ static int run(const CommandLineParser& parser)
     setThreads(parser);
     const int threads = getNumThreads();
     const EvaluationSettings settings = readSettings(parser);
+    const bool looksForRanges = parser.has("num-disparities") && settings.numDisparities == 0;
+    const String plot = parser.get<String>("plot");
+    if (!plot.empty() && (!parser.has("calibration") || settings.methods.size() != 1 || looksForRanges))
+        fail("--plot needs --calibration, one method and no --num-disparities=0");
 
-    if (parser.has("num-disparities") && settings.numDisparities == 0)
+    if (looksForRanges)
     {
         for (const Method& method : settings.methods)
             std::cout << toMarkdown(foundRangesTable(method, selectScenes(parser))) << std::endl;
         return 0;
     }
-    const String plot = parser.get<String>("plot");
-    if (!plot.empty() && (!parser.has("calibration") || settings.methods.size() != 1))
-        fail("--plot needs --calibration, and one method");
     for (const String option : { "calibration", "confidence" })
         if (parser.has(option))
         {

@@ -75,9 +75,12 @@ int windowSide(const MatcherParameters& p)
 //! image.
 int aggregationOf(const MatcherParameters& p) { return p.usePrediction ? p.aggregation : (int)M::AGGREGATION_TREES; }
 
+//! The paper's winners, of sums over trees, whatever the layer
+bool hasTreeSums(const MatcherParameters& p) { return aggregationOf(p) == M::AGGREGATION_TREES; }
+
 bool predictsIntervals(const MatcherParameters& p) { return aggregationOf(p) != M::AGGREGATION_SCANLINES; }
 
-bool hasFractions(const MatcherParameters& p) { return p.useSubpixel || aggregationOf(p) != M::AGGREGATION_TREES; }
+bool hasFractions(const MatcherParameters& p) { return p.useSubpixel || !hasTreeSums(p); }
 
 bool isLarge(Size size) { return size.width >= largeImageWidth; }
 
@@ -165,7 +168,7 @@ CostPlan planCost(const MatcherParameters& p)
 LayerMethod methodOf(const MatcherParameters& p, const LayerPlan& layer)
 {
     const int below = aggregationOf(p);
-    if (layer.isFinest && !layer.isTop && below != M::AGGREGATION_TREES)
+    if (layer.isFinest && !layer.isTop && !hasTreeSums(p))
         return WINDOW_SCANLINES;
     if (below == M::AGGREGATION_SCANLINES && !layer.isTop)
         return layer.numDisparities <= mostRangeDisparities ? RANGE_SCANLINES : WINDOW_SCANLINES;
@@ -191,7 +194,7 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
     trees.linksTrees = !p.usePrediction;
     trees.gamma = layer.method == TREE_SCANLINES ? p.gamma * meanGamma / std::max(layer.layer, 1) : p.gamma;
     trees.prefersPlanes = layer.method == TREE_SCANLINES && layer.isTop;
-    if (p.useNonLocalRefinement && aggregationOf(p) == M::AGGREGATION_TREES)
+    if (p.useNonLocalRefinement && hasTreeSums(p))
         trees.refinementGamma = p.gamma * refinementGamma;
     return trees;
 }
@@ -249,7 +252,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.fillsOcclusions = p.fillOcclusions;
     // As in the authors' program; the paper says that nothing is refined.
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
-    plan.restoresThinStructures = plan.isFinest && aggregationOf(p) != M::AGGREGATION_TREES && plan.medianSize > 0;
+    plan.restoresThinStructures = plan.isFinest && !hasTreeSums(p) && plan.medianSize > 0;
     plan.votesAtEdges = layer == 0 && plan.cost.isCensus && plan.medianSize > 0;
     return plan;
 }

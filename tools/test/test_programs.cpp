@@ -251,6 +251,12 @@ TEST(HDPStereo_Programs, evaluate)
     EXPECT_NE(String::npos, two.errors.find("skipped dataset/b"));
     EXPECT_NE(String::npos, two.output.find("| mean of 2 |"));
 
+    for (const String options :
+         { "--confidence", "--calibration --methods=fast,tree", "--calibration --num-disparities=0" })
+        EXPECT_EQ(
+            "error: --plot needs --calibration, one method and no --num-disparities=0\n",
+            run(folder, "hdp_evaluate --methods=fast --plot=x.svg " + options + " " + folder.path("dataset")).errors)
+            << options;
     const Execution unknown = run(folder, "hdp_evaluate --methods=FAST " + folder.path("dataset"));
     EXPECT_EQ(1, unknown.status);
     EXPECT_NE(String::npos, unknown.errors.find("'FAST' is unknown, there are: "));
