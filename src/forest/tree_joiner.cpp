@@ -214,7 +214,8 @@ void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixe
     // The number of threads decides how fast it goes, not what comes out. Other orders are not those of a stripe.
     const int maxCount = strategy.ordersByWeight() ? std::min(getNumThreads(), +maxStripes) : 1;
     const int count = std::max(std::min(maxCount, height / minStripeRows), 1);
-    stripes.resize(count + 1);
+    if ((int)stripes.size() < count + 1) // a small layer leaves the memory of the large ones
+        stripes.resize(count + 1);
     parallel_for_(Range(0, count), [&](const Range& range) {
         for (int s = range.start; s < range.end; ++s)
         {

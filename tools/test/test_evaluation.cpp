@@ -15,8 +15,7 @@
 #include "evaluation/report.hpp"
 #include "evaluation/tables.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace hdp_tools;
 
@@ -290,5 +289,4 @@ TEST(HDPStereo_Evaluation, predicted_matrix_by_hand)
     EXPECT_NEAR(0.091325 * 0.5, matrix(0, 4), 1e-5); // offset -2
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -109,7 +109,7 @@ public:
         PRESET_FAST = 1,      //!< the default: scanlines, on the top layer over means of trees
         PRESET_ULTRAFAST = 2, //!< PRESET_FAST at half the resolution
         PRESET_QUALITY = 3,   //!< slower and more accurate than PRESET_FAST
-        PRESET_TREE = 4 //!< disparity trees on a top layer as fine as can be, and on all others but the finest one
+        PRESET_TREE = 4       //!< disparity trees on all layers but the finest one, and a finer top layer
     };
 
     //! Cost aggregation, see Params::aggregation and Params::topAggregation
@@ -161,8 +161,8 @@ public:
     @endcode
 
     Values are checked by HDPTreeMatcher::setParams(). "All" and "others" are presets; sections are those of
-    @cite Luo2015HDP. Intervals are used where trees are below the top layer: in PRESET_PAPER and PRESET_TREE, not with
-    HDPTreeMatcher::AGGREGATION_SCANLINES.
+    @cite Luo2015HDP. Intervals are used where trees are below the top layer: in PRESET_PAPER, in PRESET_TREE with more
+    than 180 disparities, not with HDPTreeMatcher::AGGREGATION_SCANLINES.
      */
     struct CV_EXPORTS_W_SIMPLE Params
     {
@@ -291,7 +291,8 @@ public:
         weighted means of the costs in each pixel's tree: trees carry faint texture to where there is none, scanlines
         follow slanted surfaces. On the finest layer, where costs tell more by themselves, it is the same as
         AGGREGATION_SCANLINES. That is for the costs themselves, over 16 candidates per pixel around the disparity of
-        the layer above, or all of them on layers between the top and the finest one that have few. Those with scanlines need COST_CENSUS. PAPER: AGGREGATION_TREES, TREE: AGGREGATION_TREE_SCANLINES, others:
+        the layer above, or all of them on layers between the top and the finest one that have few. Those with
+        scanlines need COST_CENSUS. PAPER: AGGREGATION_TREES, TREE: AGGREGATION_TREE_SCANLINES, others:
         AGGREGATION_SCANLINES. */
         CV_PROP_RW int aggregation;
 
@@ -372,7 +373,7 @@ public:
         census, 0..100. All: 65. */
         CV_PROP_RW int P2;
 
-        /** @brief Number of passes of AGGREGATION_SCANLINES over the finest layer; coarser ones have one.
+        /** @brief Number of passes of scanlines over the finest layer; coarser ones have one.
 
         The first pass searches around the disparities of the layer above, each other one around those of the pass
         before. 1..4. QUALITY: 2, others: 1. */
