@@ -4,7 +4,9 @@
 #include "../precomp.hpp"
 #include "forest_edges.hpp"
 
-#include "opencv2/core/hal/intrin.hpp"
+#include "forest_edges.simd.hpp"
+#include "forest/forest_edges.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/dispatch.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -14,27 +16,7 @@ namespace {
 // the paper's tables, keeps those of at most this weight.
 const int largestSparedWeight = 7;
 
-//! The largest absolute difference over the channels of two pixels
-int difference(const uchar* a, const uchar* b, int channels)
-{
-    int largest = 0;
-    for (int c = 0; c < channels; ++c)
-        largest = std::max(largest, std::abs(a[c] - b[c]));
-    return largest;
-}
-
-#if CV_SIMD128
-//! difference() of 16 pairs of pixels
-v_uint8x16 differences(const uchar* a, const uchar* b, int channels)
-{
-    if (channels == 1)
-        return v_absdiff(v_load(a), v_load(b));
-    v_uint8x16 a0, a1, a2, b0, b1, b2;
-    v_load_deinterleave(a, a0, a1, a2);
-    v_load_deinterleave(b, b0, b1, b2);
-    return v_max(v_max(v_absdiff(a0, b0), v_absdiff(a1, b1)), v_absdiff(a2, b2));
-}
-#endif
+HDP_DISPATCH(weighRow)
 
 //! DT-Rule 1, without a branch
 bool isKept(int weight, const DisparityInterval& a, const DisparityInterval& b)
@@ -46,28 +28,12 @@ bool isKept(int weight, const DisparityInterval& a, const DisparityInterval& b)
 
 void weighEdges(const Mat& image, Mat& weights)
 {
-    const int channels = image.channels(), width = image.cols;
     weights.create(image.size(), CV_8UC2);
     parallel_for_(Range(0, image.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {
-            const uchar* row = image.ptr(y);
-            const uchar* next = image.ptr(std::min(y + 1, image.rows - 1)); // the last row itself below it
-            uchar* weight = weights.ptr(y);
-            int x = 0;
-#if CV_SIMD128
-            for (; x + 16 < width; x += 16)
-            {
-                const uchar *p = row + x * channels, *right = p + channels, *below = next + x * channels;
-                v_store_interleave(weight + 2 * x, differences(p, right, channels), differences(p, below, channels));
-            }
-#endif
-            for (; x < width; ++x)
-            {
-                const uchar *p = row + x * channels, *right = x + 1 < width ? p + channels : p;
-                weight[2 * x] = (uchar)difference(p, right, channels);
-                weight[2 * x + 1] = (uchar)difference(p, next + x * channels, channels);
-            }
+            const uchar* const next = image.ptr(std::min(y + 1, image.rows - 1)); // the last row itself below it
+            dispatched::weighRow(image.ptr(y), next, image.cols, image.channels(), weights.ptr(y));
         }
     });
 }
