@@ -261,11 +261,12 @@ private:
     {
         const double windowed = std::min<double>(CandidateWindow::candidates, plan_.numDisparities);
         result_.searchRatio = windowed / plan_.numDisparities;
+        clock_.run("cost aggregation", [&] { weighEdges(in_.images.guide, own_.edgeWeights); });
         for (const ScanlinePenalties& penalties : plan_.passes)
         {
             predictPass(&penalties == &plan_.passes.front());
             clock_.run("cost aggregation", [&] {
-                aggregateScanlines(own_.census, in_.images.left, plan_.frame, plan_.numDisparities, plan_.maxDisparity,
+                aggregateScanlines(own_.census, own_.edgeWeights, plan_.frame, plan_.numDisparities, plan_.maxDisparity,
                                    own_.windows, penalties, shared_.scanlines, result_.winners, own_.residual);
             });
             correctWinners();
@@ -334,11 +335,11 @@ private:
         swap(result_.disparity, own_.filtered);
         const PairMasks& masks = in_.images.masks;
         if (masks.isEmpty())
-            return hdp::voteAtEdges(in_.images.left, own_.filtered, result_.disparity);
+            return hdp::voteAtEdges(in_.images.guide, own_.filtered, result_.disparity);
         const Mat hasData = pixelsWithData(masks.left);
-        in_.images.left.copyTo(own_.votingLevels);
-        own_.votingLevels.setTo(Scalar(USHRT_MAX), hasData == 0);
-        hdp::voteAtEdges(own_.votingLevels, own_.filtered, result_.disparity);
+        own_.filtered.copyTo(own_.voting);
+        own_.voting.setTo(Scalar(USHRT_MAX), hasData == 0);
+        hdp::voteAtEdges(in_.images.guide, own_.voting, result_.disparity);
         Mat inside;
         erode(hasData, inside, Mat());
         own_.filtered.copyTo(result_.disparity, inside == 0);

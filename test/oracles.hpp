@@ -660,11 +660,11 @@ class Scanlines
 {
 public:
     //! left, right: grey levels in quarters; windows: CandidateWindow, one for every 2 x 2 pixels.
-    Scanlines(const Mat& left, const Mat& right, int blockSize, int numDisparities, int largest, const Mat& windows,
-              const hdp::ScanlinePenalties& penalties, const hdp::PairMasks& masks = hdp::PairMasks())
-        : left_(left), right_(right), census_(left, right, blockSize), size_(left.size()),
-          numDisparities_(numDisparities), largest_(largest), windows_(windows), small_(penalties.small),
-          large_(penalties.large), edgeSlope_(penalties.edgeSlope), prior_(penalties.prior), masks_(masks)
+    Scanlines(const Mat& left, const Mat& right, const Mat& weights, int blockSize, int numDisparities, int largest,
+              const Mat& windows, const hdp::ScanlinePenalties& penalties,
+              const hdp::PairMasks& masks = hdp::PairMasks())
+        : left_(left), right_(right), weights_(weights), census_(left, right, blockSize), size_(left.size()),
+          numDisparities_(numDisparities), largest_(largest), windows_(windows), penalties_(penalties), masks_(masks)
     {
     }
 
@@ -728,7 +728,8 @@ private:
         const int difference =
             left_.at<ushort>(p) / 4 - right_.at<ushort>(p.y, clamped(p.x - d, size_.width)) / 4; // of whole levels
         return limited(p, d, census_(p.y, p.x, d) + std::min(std::abs(difference), 23) / 4) +
-               (int)std::floor(prior_ * std::abs(d - w.predicted[run] / 16.) / 2);
+               (int)std::floor(penalties_.prior * std::abs(d - w.predicted[run] / 16.) / 2) +
+               (run == 1 && w.first[1] > w.first[0] + 8 ? penalties_.nearer : 0);
     }
 
     int limited(Point p, int d, int cost) const
@@ -750,8 +751,7 @@ private:
             return result;
         const std::vector<int> theirs = candidates(q);
         const int m = *std::min_element(before.begin(), before.end());
-        const int contrast = std::abs(left_.at<ushort>(p) - left_.at<ushort>(q)); // in quarters of levels
-        const int large = std::max(std::min(small_, large_), large_ - (int)std::floor(edgeSlope_ * contrast / 8.));
+        const int small = penalties_.small, large = largePenalty(p, q);
         const auto costBefore = [&](int d) {
             const size_t i = (size_t)(std::find(theirs.begin(), theirs.end(), d) - theirs.begin());
             return i < theirs.size() ? before[i] : m + large;
@@ -760,12 +760,23 @@ private:
         {
             int best = std::min(m + large, costBefore(own[i]));
             if (i > 0)
-                best = std::min(best, costBefore(own[i - 1]) + small_);
+                best = std::min(best, costBefore(own[i - 1]) + small);
             if (i + 1 < own.size())
-                best = std::min(best, costBefore(own[i + 1]) + small_);
+                best = std::min(best, costBefore(own[i + 1]) + small);
             result[i] += best - m;
         }
         return result;
+    }
+
+    //! Less where the colours differ by more than noise, above all where a window has two runs
+    int largePenalty(Point p, Point q) const
+    {
+        const Point first(std::min(p.x, q.x), std::min(p.y, q.y));
+        const int weight = weights_.at<Vec2b>(first)[p.x == q.x];
+        const hdp::CandidateWindow& w = window(p.x == q.x ? q : first);
+        const int slope = w.first[1] == w.first[0] + 8 ? penalties_.edgeSlope : penalties_.borderSlope;
+        const double fall = std::floor(slope * std::max(weight - penalties_.edgeNoise, 0) / 2.);
+        return std::max(std::min(penalties_.small, penalties_.large), penalties_.large - (int)fall);
     }
 
     ushort winner(Point p, const std::vector<Costs>& directions, uchar& residual) const
@@ -785,12 +796,12 @@ private:
         return (ushort)std::min(std::max(16 * d[i] + cvRound(16 * offset), 0), largest_);
     }
 
-    Mat left_, right_;
+    Mat left_, right_, weights_;
     CensusCost census_;
     Size size_;
     int numDisparities_, largest_;
     Mat windows_;
-    int small_, large_, edgeSlope_, prior_;
+    const hdp::ScanlinePenalties penalties_;
     const hdp::PairMasks masks_;
 };
 

@@ -27,8 +27,8 @@ inline std::string textOf(const hdp::LayerPlan& p)
          << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " " << p.rangePenalties.maxPrior
          << "\n  passes";
     for (const hdp::ScanlinePenalties& pass : p.passes)
-        text << " [" << pass.small << " " << pass.large << " slope " << pass.edgeSlope << " prior " << pass.prior
-             << "]";
+        text << " [" << pass.small << " " << pass.large << " slopes " << pass.edgeSlope << " " << pass.borderSlope
+             << " prior " << pass.prior << " nearer " << pass.nearer << " noise " << pass.edgeNoise << "]";
     text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
          << p.fillsOcclusions << " intervals " << p.hasIntervals << " joins prior " << p.joinsPrior
          << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " thin structures "

@@ -9,7 +9,7 @@
 namespace opencv_test { namespace {
 
 //! hdp::voteAtEdges() for a pixel
-ushort votedDisparity(const Mat& grey, const Mat& disparity, int x, int y)
+ushort votedDisparity(const Mat& image, const Mat& disparity, int x, int y)
 {
     const int width = disparity.cols, height = disparity.rows;
     int nearest = 0, farthest = 65535;
@@ -29,10 +29,12 @@ ushort votedDisparity(const Mat& grey, const Mat& disparity, int x, int y)
         for (int u = start; u < start + 16; ++u)
         {
             const int v = oracle::clamped(y + dy, height), d = disparity.at<ushort>(v, u);
-            const int change = std::abs(grey.at<ushort>(v, u) - grey.at<ushort>(y, x));
+            int change = 0;
+            for (int c = 0; c < image.channels(); ++c)
+                change = std::max(change, std::abs(image.ptr(v, u)[c] - image.ptr(y, x)[c]));
             const int distance = std::max(std::abs(dy), std::abs(u - x));
-            const int votes = std::max(4 * 36 - change, 0) * std::max(9 - distance, 1);
-            near += d > middle && d <= nearest + 16 ? votes : 0;
+            const int votes = std::max(36 - change, 0) * std::max(9 - distance, 1);
+            near += d > middle && d <= std::min(nearest + 16, 65535) ? votes : 0;
             far += d <= middle && d >= farthest - 16 ? votes : 0;
         }
     const bool isNear = own > middle;
@@ -56,28 +58,31 @@ TEST(HDPStereo_EdgeVote, oracle)
 {
     RNG rng(93);
     int changed = 0;
-    for (const Size& size : { Size(16, 9), Size(17, 1), Size(61, 40), Size(90, 3) })
+    for (const Size& size : { Size(16, 9), Size(17, 1), Size(61, 40), Size(90, 3), Size(20, 150) })
         for (int range : { 100, 4000, 65536 })
         {
+            const int channels = range == 100 ? 1 : 3;
             // Patches of some disparities, with noise and single pixels of others
-            Mat grey(size, CV_16U), disparity(size, CV_16U);
+            Mat image(size, CV_8UC(channels)), disparity(size, CV_16U);
             for (int y = 0; y < size.height; ++y)
                 for (int x = 0; x < size.width; ++x)
                 {
                     const int patch = (x / 11 + y / 9) % 3, wrong = rng.uniform(0, 6) == 0;
                     disparity.at<ushort>(y, x) =
                         (ushort)std::min(((patch + wrong) % 3) * range / 3 + rng.uniform(0, 20), 65535);
-                    const bool hasVote = rng.uniform(0, 20) > 0;
-                    grey.at<ushort>(y, x) = hasVote ? (ushort)(patch * 100 + 300 + rng.uniform(0, 90)) : USHRT_MAX;
+                    if (rng.uniform(0, 20) == 0)
+                        disparity.at<ushort>(y, x) = USHRT_MAX; // no vote
+                    for (int c = 0; c < channels; ++c)
+                        image.ptr(y, x)[c] = (uchar)(patch * 25 * (c + 1) + 75 + rng.uniform(0, 22));
                 }
             Mat expected(size, CV_16U), voted;
             for (int y = 0; y < size.height; ++y)
                 for (int x = 0; x < size.width; ++x)
                 {
-                    expected.at<ushort>(y, x) = votedDisparity(grey, disparity, x, y);
+                    expected.at<ushort>(y, x) = votedDisparity(image, disparity, x, y);
                     changed += expected.at<ushort>(y, x) != disparity.at<ushort>(y, x);
                 }
-            hdp::voteAtEdges(grey, disparity, voted);
+            hdp::voteAtEdges(image, disparity, voted);
             SCOPED_TRACE(testing::Message() << size << ", " << range);
             expectIdentical(expected, voted);
         }
@@ -89,17 +94,18 @@ TEST(HDPStereo_EdgeVote, outline)
 {
     const Rect square(40, 30, 50, 40), wide(37, 27, 56, 46), narrow(43, 33, 44, 34);
     const ushort far = 10 * 16, near = 30 * 16;
-    Mat grey(100, 140, CV_16U, Scalar(300)), truth(grey.size(), CV_16U, Scalar(far));
-    grey(square).setTo(600);
+    // Colours of the same brightness
+    Mat image(100, 140, CV_8UC3, Scalar(50, 120, 90)), truth(image.size(), CV_16U, Scalar(far));
+    image(square).setTo(Scalar(50, 80, 168));
     truth(square).setTo(near);
     for (const Rect& matched : { wide, narrow })
     {
-        Mat disparity(grey.size(), CV_16U, Scalar(far)), voted;
+        Mat disparity(image.size(), CV_16U, Scalar(far)), voted;
         disparity(matched).setTo(near);
         const int before = countNonZero(disparity != truth);
         for (int pass = 0; pass < 4; ++pass) // one moves an outline by a pixel
         {
-            hdp::voteAtEdges(grey, disparity, voted);
+            hdp::voteAtEdges(image, disparity, voted);
             std::swap(disparity, voted);
         }
         EXPECT_LE(countNonZero(disparity != truth), before / 20) << matched;
@@ -112,12 +118,12 @@ TEST(HDPStereo_EdgeVote, leaves_slopes_and_narrow_maps)
     RNG rng(94);
     for (const Size& size : { Size(40, 30), Size(15, 30) })
     {
-        const Mat grey = randomImage(rng, size, CV_16UC1, 1023);
+        const Mat image = randomImage(rng, size, CV_8UC3, 255);
         Mat disparity(size, CV_16U), voted;
         for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x)
                 disparity.at<ushort>(y, x) = (ushort)(size.width == 40 ? 16 * x : rng.uniform(0, 1000));
-        hdp::voteAtEdges(grey, disparity, voted);
+        hdp::voteAtEdges(image, disparity, voted);
         expectIdentical(disparity, voted);
     }
 }

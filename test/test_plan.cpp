@@ -336,7 +336,10 @@ TEST(HDPStereo_Plan, adapts_to_noise)
     EXPECT_LT(some.finest().cost.tolerance, much.finest().cost.tolerance);
     EXPECT_FALSE(some.top().smoothsGuide);
     EXPECT_TRUE(much.top().smoothsGuide) << "above the threshold";
-    EXPECT_GT(some.finest().passes[0].edgeSlope, much.finest().passes[0].edgeSlope);
+    EXPECT_EQ(0, quiet.finest().passes[0].edgeNoise);
+    EXPECT_LT(0, some.finest().passes[0].edgeNoise);
+    EXPECT_LT(some.finest().passes[0].edgeNoise, much.finest().passes[0].edgeNoise);
+    EXPECT_EQ(255, hdp::adapt(plan, withNoise(1e4), single).finest().passes[0].edgeNoise);
     EXPECT_EQ(hdp::CensusCost::mostTolerance + 0, hdp::adapt(plan, withNoise(1e4), single).finest().cost.tolerance);
 
     MatcherParameters p = parametersOf(M::PRESET_FAST);

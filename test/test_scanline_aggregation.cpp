@@ -21,10 +21,10 @@ namespace opencv_test { namespace {
 
 const int scale = 16;
 
-//! A layer: grey levels, and windows for them
+//! A layer: grey levels, weights of edges, and windows for them
 struct Layer
 {
-    Mat left, right, windows;
+    Mat left, right, weights, windows;
     int numDisparities, blockSize;
     hdp::PairMasks masks;
 
@@ -34,6 +34,7 @@ struct Layer
     {
         left = randomImage(rng, size, CV_16UC1, 1021);
         right = randomImage(rng, size, CV_16UC1, 1021);
+        weights = randomImage(rng, size, CV_8UC2, 256);
         Mat upper(std::max(size.height / 2, 1), std::max(size.width / 2, 1), CV_16UC1);
         const int largest = (numDisparities - 1) / 2;
         for (int y0 = 0; y0 < upper.rows; y0 += 10)
@@ -86,7 +87,7 @@ struct Layer
     {
         Mat residual;
         const Mat disparity =
-            oracle::Scanlines(left, right, blockSize, numDisparities, largest(), windows, penalties, masks)
+            oracle::Scanlines(left, right, weights, blockSize, numDisparities, largest(), windows, penalties, masks)
                 .match(residual);
         return beside(disparity, residual);
     }
@@ -103,12 +104,12 @@ struct Layer
 Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::ScanlineBuffers& buffers)
 {
     Mat disparity, residual;
-    hdp::aggregateScanlines(layer.cost(), layer.left, hdp::ImageFrame(layer.left.size()), layer.numDisparities,
+    hdp::aggregateScanlines(layer.cost(), layer.weights, hdp::ImageFrame(layer.left.size()), layer.numDisparities,
                             layer.largest(), layer.windows, penalties, buffers, disparity, residual);
     return Layer::beside(disparity, residual);
 }
 
-const hdp::ScanlinePenalties usualPenalties = { 18, 60, 3, 1 };
+const hdp::ScanlinePenalties usualPenalties = { 18, 60, 3, 7, 1, 1, 10 };
 
 void expectFormula(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::ScanlineBuffers& buffers)
 {
@@ -152,15 +153,18 @@ TEST_P(HDPStereo_ScanlineAggregation, any_penalties)
 {
     RNG rng(43);
     hdp::ScanlineBuffers buffers;
-    const hdp::ScanlinePenalties penalties[] = { { 0, 0, 3, 1 },  { 0, 100, 5, 2 }, { 100, 100, 8, 4 },
-                                                 { 5, 30, 0, 2 }, { 1, 2, 3, 3 },   { 60, 20, 4, 1 } };
+    const hdp::ScanlinePenalties penalties[] = { { 0, 0, 3, 3, 1, 1, 0 },      { 0, 100, 5, 0, 2, 0, 255 },
+                                                 { 100, 100, 8, 64, 4, 4, 0 }, { 5, 30, 0, 64, 2, 2, 1 },
+                                                 { 1, 2, 3, 1, 3, 3, 100 },    { 60, 20, 4, 4, 1, 1, 5 },
+                                                 { 0, 100, 64, 64, 1, 0, 0 } };
     for (int numDisparities : { 3, 14, 33 })
     {
         const Layer layer(rng, Size(61, 38), numDisparities, GetParam());
         for (const hdp::ScanlinePenalties& p : penalties)
         {
-            SCOPED_TRACE(testing::Message() << numDisparities << " disparities, " << p.small << ", " << p.large << ", "
-                                            << p.edgeSlope << ", " << p.prior);
+            SCOPED_TRACE(testing::Message()
+                         << numDisparities << " disparities, " << p.small << ", " << p.large << ", " << p.edgeSlope
+                         << ", " << p.borderSlope << ", " << p.prior << ", " << p.nearer << ", " << p.edgeNoise);
             expectFormula(layer, p, buffers);
         }
     }
@@ -179,7 +183,7 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
             if (numDisparities > 5)
                 layer.mask(rng);
             const hdp::CensusCost cost = layer.cost();
-            const hdp::ScanlineProblem problem = { &cost,           &layer.left,    size,           numDisparities,
+            const hdp::ScanlineProblem problem = { &cost,           &layer.weights, size,           numDisparities,
                                                    layer.largest(), &layer.windows, usualPenalties, { 60, 100 } };
             const hdp::ScanlineStripe stripe = { Range(0, size.height), Range(0, size.height) };
             std::vector<uchar> stored((size.height + 1) * hdp::ScanlineScratch::storedBytes(size.width));

@@ -8,7 +8,6 @@
 #include "map/edge_vote.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/dispatch.hpp"
 #include "../base/disparity_units.hpp"
-#include "../base/grey_levels.hpp"
 #include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -21,11 +20,14 @@ HDP_TUNABLE(int, minStep, 2, "pixels", "of disparities at the border of two surf
 HDP_TUNABLE(int, reach, 1, "pixels", "beyond both ends of a step, on the same surfaces: more are third ones");
 HDP_TUNABLE(int, nearest, 9, "votes", "of the nearest pixels, one less per row or column: more blurs corners");
 
+// Rows whose colours are split at once
+const int voteBlock = 64;
+
 HDP_DISPATCH(voteRow)
 
 } // namespace
 
-void voteAtEdges(const Mat& grey, const Mat& disparity, Mat& voted)
+void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted)
 {
     const int width = disparity.cols, lastRow = disparity.rows - 1;
     if (width < VoteRows::columns)
@@ -35,23 +37,30 @@ void voteAtEdges(const Mat& grey, const Mat& disparity, Mat& voted)
     ushort columnNearness[2 * VoteRows::columns + 1];
     for (int k = -VoteRows::columns; k <= VoteRows::columns; ++k)
         columnNearness[k + VoteRows::columns] = nearness(k);
-    VoteRule rule = { (ushort)(likeness * greyScale),
+    VoteRule rule = { (ushort)likeness,
                       (ushort)(minStep * subpixelScale),
                       (ushort)(reach * subpixelScale),
                       {},
                       columnNearness + VoteRows::columns };
     for (int r = 0; r < VoteRows::rows; ++r)
         rule.rowNearness[r] = nearness(VoteRows::rowStep * (r - VoteRows::rows / 2));
-    parallel_for_(Range(0, disparity.rows), [&](const Range& range) {
+    const int count = (disparity.rows + voteBlock - 1) / voteBlock, reach = VoteRows::rowStep * (VoteRows::rows / 2);
+    parallel_for_(Range(0, count), [&](const Range& range) {
         std::vector<ushort> near(width + 2), far(width + 2);
+        std::vector<Mat> channels;
         VoteRows rows;
         rows.width = width;
-        for (int y = range.start; y < range.end; ++y)
+        rows.channels = image.channels();
+        for (int y = range.start * voteBlock; y < std::min(range.end * voteBlock, disparity.rows); ++y)
         {
+            const int first = std::max(y / voteBlock * voteBlock - reach, 0);
+            if (y % voteBlock == 0)
+                split(image.rowRange(first, std::min(y + voteBlock + reach, disparity.rows)), channels);
             for (int r = 0; r < VoteRows::rows; ++r)
             {
-                const int row = clamped(y + VoteRows::rowStep * (r - VoteRows::rows / 2), 0, lastRow);
-                rows.grey[r] = grey.ptr<ushort>(row);
+                const int row = clamped(y + VoteRows::rowStep * r - reach, 0, lastRow);
+                for (int c = 0; c < rows.channels; ++c)
+                    rows.colour[c][r] = channels[c].ptr(row - first);
                 rows.disparity[r] = disparity.ptr<ushort>(row);
             }
             rows.farAbove = disparity.ptr<ushort>(std::max(y - VoteRows::barWidth, 0));

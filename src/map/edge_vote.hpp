@@ -13,18 +13,19 @@ one of its two surfaces. A weighted median @cite Ma2013WM of two surfaces is suc
 
 A step is where disparities of 3 x 3 pixels differ by more than 2 pixels; halfway between the nearest and the farthest
 one is the border of the two surfaces. Each pixel of the window around that is on a surface, or less than a pixel beyond
-its end, votes for it by max(36 - difference, 0) max(9 - distance, 1): the difference of its grey level, of 255, from
-that of the pixel in the middle, and its distance in rows or columns, whichever is more. The window has 16 columns, of
+its end, votes for it by max(36 - difference, 0) max(9 - distance, 1): the largest difference of a channel from that of
+the pixel in the middle, and the distance in rows or columns, whichever is more. The window has 16 columns, of
 which 7 are on the left of the pixel, all of them inside of the image, and every third one of 13 rows, the nearest ones
 of the image. A pixel whose surface has fewer votes than the other one gets the nearest or the farthest disparity of the
 3 x 3.
 
 In bars of up to 8 pixels the nearer surface keeps its pixels: these are fewer than those around, whatever they look
 like.
-@param grey CV_16UC1, see greyLevels(); USHRT_MAX has no vote.
-@param disparity CV_16UC1, a disparity map of the same size.
+@param image CV_8UC1 or CV_8UC3.
+@param disparity CV_16UC1, a disparity map of the same size; USHRT_MAX has no vote, and what is voted
+beside it means nothing.
 @param voted Receives the map after the vote; another one. The same map if it has less than 16 columns. */
-CV_EXPORTS void voteAtEdges(const Mat& grey, const Mat& disparity, Mat& voted);
+CV_EXPORTS void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted);
 
 }}} // namespace cv::stereo::hdp
 

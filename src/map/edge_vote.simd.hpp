@@ -55,12 +55,25 @@ inline bool isInBar(const VoteRows& rows, int x, ushort middle)
     return (!left && !right && (up || down)) || (!up && !down && (left || right));
 }
 
+//! The largest absolute difference over the channels of pixels u and x, of row number r and the one in the middle
+template <int channels> CV_ALWAYS_INLINE ushort differenceOf(const VoteRows& rows, int r, int u, const uchar* colour)
+{
+    uchar largest = difference(rows.colour[0][r][u], colour[0]);
+    for (int c = 1; c < channels; ++c)
+        largest = std::max(largest, difference(rows.colour[c][r][u], colour[c]));
+    return largest;
+}
+
 //! The disparity of a pixel at a step from nearest to farthest
+template <int channels>
 inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort nearest, ushort farthest)
 {
     const int start = std::min(std::max(x - VoteRows::columnsBefore, 0), rows.width - VoteRows::columns);
     const ushort* const columnNearness = rule.columnNearness + start - x;
-    const ushort own = rows.disparity[VoteRows::rows / 2][x], level = rows.grey[VoteRows::rows / 2][x];
+    const ushort own = rows.disparity[VoteRows::rows / 2][x];
+    uchar colour[channels];
+    for (int c = 0; c < channels; ++c)
+        colour[c] = rows.colour[c][VoteRows::rows / 2][x];
     const TwoSurfaces surfaces = { (ushort)std::min(nearest + rule.reach, (int)USHRT_MAX),
                                    (ushort)((nearest + farthest) / 2), (ushort)std::max(farthest - rule.reach, 0) };
     const ushort likeness = rule.likeness;
@@ -69,7 +82,7 @@ inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort n
     {
         near[k] = far[k] = 0;
         HDP_UNROLLED for (int r = 0; r < VoteRows::rows; ++r)
-            addVote(difference(rows.grey[r][start + k], level), rows.disparity[r][start + k], likeness,
+            addVote(differenceOf<channels>(rows, r, start + k, colour), rows.disparity[r][start + k], likeness,
                     std::min(columnNearness[k], rule.rowNearness[r]), surfaces, near[k], far[k]);
     }
     int nearVotes = 0, farVotes = 0;
@@ -86,8 +99,7 @@ inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort n
 CV_ALWAYS_INLINE ushort largestOfThree(const ushort* v) { return std::max(std::max(v[0], v[2]), v[1]); }
 CV_ALWAYS_INLINE ushort smallestOfThree(const ushort* v) { return std::min(std::min(v[0], v[2]), v[1]); }
 
-} // namespace
-
+template <int channels>
 void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* far, ushort* voted)
 {
     const int width = rows.width;
@@ -118,9 +130,19 @@ void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* f
             const ushort nearest = largestOfThree(near + x);
             const ushort farthest = smallestOfThree(far + x);
             if (nearest - farthest > minStep)
-                voted[x] = voteAt(rows, rule, x, nearest, farthest);
+                voted[x] = voteAt<channels>(rows, rule, x, nearest, farthest);
         }
     }
+}
+
+} // namespace
+
+void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* far, ushort* voted)
+{
+    if (rows.channels == 1)
+        voteRow<1>(rows, rule, near, far, voted);
+    else
+        voteRow<3>(rows, rule, near, far, voted);
 }
 
 #endif

@@ -17,18 +17,22 @@ struct VoteRows
         columnsBefore = 7,
         rows = 5,
         rowStep = 3,
-        barWidth = 8 // pixels, up to which a surface is a bar
+        barWidth = 8, // pixels, up to which a surface is a bar
+        maxChannels = 3
     };
-    const ushort *grey[rows], *disparity[rows]; // the window's rows
-    const ushort *above, *below;                // disparities of the rows beside the one in the middle
-    const ushort *farAbove, *farBelow;          // the same, barWidth rows away
+    // The window's rows
+    const uchar* colour[maxChannels][rows];
+    const ushort* disparity[rows];
+    int channels;                      // of the colours: 1 or maxChannels
+    const ushort *above, *below;       // disparities of the rows beside the one in the middle
+    const ushort *farAbove, *farBelow; // the same, barWidth rows away
     int width;
 };
 
 //! How pixels vote
 struct VoteRule
 {
-    ushort likeness;       // the difference of levels from which on votes count nothing
+    ushort likeness;       // the difference of colours from which on votes count nothing
     ushort minStep, reach; // of disparities: what is a step, and how far beyond its ends the surfaces go
     ushort rowNearness[VoteRows::rows];
     const ushort* columnNearness; // by the distance, which may be negative

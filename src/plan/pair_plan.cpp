@@ -56,10 +56,16 @@ HDP_TUNABLE(int, rangePriorDistance, 3, "candidates",
 HDP_TUNABLE(int, rangeMaxPrior, 2, "halves of a bit", "the most that it rises by, for the same reasons");
 
 // Scanlines over windows
-HDP_TUNABLE(int, finestSlope, 5, "halves of a bit per grey level",
-            "by which the large penalty falls on the finest layer, where edges are those of surfaces");
-HDP_TUNABLE(int, usualSlope, 3, "halves of a bit per grey level",
-            "on coarser layers, and in noise: edges are weaker evidence there");
+HDP_TUNABLE(int, edgeSlope, 4, "halves of a bit per grey level",
+            "by which the large penalty falls at edges: more takes texture for borders, less drags surfaces over them");
+HDP_TUNABLE(int, borderSlope, 10, "halves of a bit per grey level",
+            "where two surfaces may be: an edge there is most likely their border");
+HDP_TUNABLE(
+    double, edgeNoise, 4, "standard deviations of the noise",
+    "in an edge's weight, the largest of three differences: more loses faint borders, less takes noise for them");
+HDP_TUNABLE(
+    int, nearerCost, 1, "bits",
+    "of another surface that is nearer: the windows of the cost see its edge beyond it; more loses thin things");
 HDP_TUNABLE(int, firstPrior, 1, "bits per 2 pixels",
             "from the layer above, which may be wrong: more cannot be repaired, less loses bare surfaces");
 HDP_TUNABLE(int, laterPrior, 2, "bits per 2 pixels", "from the pass before, which knows more than the layer above");
@@ -220,7 +226,7 @@ std::vector<ScanlinePenalties> planPasses(const MatcherParameters& p, bool isFin
 {
     std::vector<ScanlinePenalties> passes;
     for (int i = 0; i < (isFinest ? p.scanlinePasses : 1); ++i)
-        passes.push_back({ p.P1, p.P2, isFinest ? finestSlope : usualSlope, i == 0 ? firstPrior : laterPrior });
+        passes.push_back({ p.P1, p.P2, edgeSlope, borderSlope, i == 0 ? firstPrior : laterPrior, nearerCost, 0 });
     return passes;
 }
 
@@ -335,11 +341,9 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
             layer.rangePenalties.maxPrior = RangePenalties::maxMaxPrior; // the layer above has it from many frames
         if (layer.cost.isCensus)
             layer.cost.tolerance = censusTolerance(layer.layer, findings.noise, video.hasPrior);
-        if (!plan.alignment.isNoisy(findings.noise))
-            continue;
-        layer.smoothsGuide |= layer.method != WINDOW_SCANLINES;
         for (ScanlinePenalties& penalties : layer.passes)
-            penalties.edgeSlope = usualSlope;
+            penalties.edgeNoise = saturate_cast<uchar>(edgeNoise * findings.noise.ofLayer(layer.layer));
+        layer.smoothsGuide |= layer.method != WINDOW_SCANLINES && plan.alignment.isNoisy(findings.noise);
     }
     LayerPlan& top = adapted.layers.front();
     top.checksLastFrame = video.verdict == CONTINUED && top.method == TREE_SCANLINES;

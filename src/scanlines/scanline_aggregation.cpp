@@ -45,19 +45,20 @@ void ScanlineScratch::prepare(int width, int numDisparities)
         for (int i = 0; i < length; ++i)
             orders[run][farthest + length + i] = (uchar)(run * length + i);
     }
+    slopes.resize(width + 1);            // pairs of columns
     edges.resize(2 * blockColumns + 16); // some more to read
     winners.resize(blockColumns);
     winnerCosts.resize(blockColumns);
     winnerSums.resize(blockColumns);
 }
 
-void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFrame& frame, int numDisparities,
+void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageFrame& frame, int numDisparities,
                         int maxDisparity, const Mat& windows, const ScanlinePenalties& penalties,
                         ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
-    const Size size = left.size();
+    const Size size = weights.size();
     const MinimumShape shape = { 4 * (float)bluntSlope, 4 * (float)sharpSlope };
-    const ScanlineProblem problem = { &cost, &left, size, numDisparities, maxDisparity, &windows, penalties, shape };
+    const ScanlineProblem problem = { &cost, &weights, size, numDisparities, maxDisparity, &windows, penalties, shape };
     const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, stripeHeight, warmUpRows);
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);

@@ -14,15 +14,18 @@ namespace cv { namespace stereo { namespace hdp {
 //! Penalties in units of the census cost
 struct ScanlinePenalties
 {
-    int small, large; // for a step of one disparity and for a larger one between neighbours of one grey level,
-                      // 0..max
-    int edgeSlope;    // halves of a bit by which large falls per grey level between them, 0..maxSlope
+    int small, large; // for a step of one disparity and for a larger one between neighbours of one colour, 0..max
+    int edgeSlope;    // halves of a bit by which large falls per grey level of an edge's weight, 0..maxSlope
+    int borderSlope;  // the same where a window has two runs: surfaces end there
     int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..maxPrior
+    int nearer;       // for candidates of another surface that is nearer, 0..maxNearer
+    int edgeNoise;    // grey levels that an edge's weight may have by noise, 0..255
     enum
     {
         max = 100,     // bits; costs with it have 8 bits
-        maxSlope = 64, // times the maximum difference of grey levels, in their units, it has 16 bits
-        maxPrior = 4   // for the same reason
+        maxSlope = 64, // times the largest weight, it has 16 bits
+        maxPrior = 4,  // costs with it and maxNearer have 8 bits
+        maxNearer = 4
     };
 };
 
@@ -45,7 +48,7 @@ struct MinimumShape
 struct ScanlineProblem
 {
     const CensusCost* cost;
-    const Mat* left; // grey levels
+    const Mat* weights; // of the edges
     Size size;
     int numDisparities;
     int maxDisparity; // of a map
@@ -79,7 +82,7 @@ struct ScanlineScratch
     CV_EXPORTS void prepare(int width, int numDisparities);
 
     std::vector<uchar> vertical; // CandidateWindow::candidates per column
-    // By column of the layer above: the first candidate of each run, and its distance from what is predicted; whether
+    // By column of the layer above: the first candidate of each run, and where its prior is in a table; whether
     // there is one run, and so there is for the other rows of the block in the same step
     std::vector<short> first[CandidateWindow::runs], distance[CandidateWindow::runs];
     std::vector<uchar> isContiguous;
@@ -88,7 +91,8 @@ struct ScanlineScratch
     // Which lanes have the candidates of a run that begins i disparities after one of these, in the middle and i on:
     // 255 for those that it does not have
     std::vector<uchar> orders[CandidateWindow::runs];
-    std::vector<uchar> edges; // large penalties of a block, two per pixel
+    std::vector<uchar> slopes; // of edges, by column of the layer
+    std::vector<uchar> edges;  // large penalties of a block, two per pixel
     // The winners of a block: their lanes, their sums with those of the lanes before and behind, and their costs
     std::vector<uchar> winners, winnerCosts;
     std::vector<unsigned> winnerSums;
@@ -102,15 +106,16 @@ struct ScanlineBuffers
 /** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching from the
 left and from below, in a sweep upward, and from the right and from above, in one downward. The cost of candidate d is
 
-C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 23) / 4) + floor(prior * |d - predicted| / 2),
+C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 23) / 4) + floor(prior * |d - predicted| / 2) + nearer,
 
-the first two together no more than CostLimits allows, I being grey levels, here whole ones, and predicted the disparity
-that the candidate's run was predicted for.
+the first two together no more than CostLimits allows, I being whole grey levels, and predicted the disparity that the
+candidate's run was predicted for; nearer is 0 but for candidates of a second run beyond the first one.
 
 With L(p, d) of a direction and q the pixel before p,
 L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
-large(p, q) = max(min(small, large), large - floor(edgeSlope * |I(p) - I(q)| / 2)),
-where candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d
+large(p, q) = max(min(small, large), large - floor(slope * max(w(p, q) - edgeNoise, 0) / 2)),
+slope being borderSlope if the window of q, or of p in the direction from the right, has two runs, and else edgeSlope;
+candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d
 in the window of p: those that p does not have are left out, and the last one of its first run and the first one of the
 second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less
 its own minimum, at most 255, the first of them if there are several; its sum and those of the candidates beside it, if
@@ -119,7 +124,7 @@ p has disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction()
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
 start anew some rows before each of them. A tile has those of the image that it lies in.
 @param cost The layer's census cost.
-@param left The layer's grey levels, see LayerImages.
+@param weights w, CV_8UC2, of the layer, see weighEdges().
 @param frame Where they lie in a larger image, if they are a tile of one; from an even row on.
 @param numDisparities Of the layer.
 @param maxDisparity That of a map of the layer. The winner may be beyond the ends of the range;
@@ -129,9 +134,10 @@ its disparity is not.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
-CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& left, const ImageFrame& frame, int numDisparities,
-                                   int maxDisparity, const Mat& windows, const ScanlinePenalties& penalties,
-                                   ScanlineBuffers& buffers, Mat& disparity, Mat& residual);
+CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageFrame& frame,
+                                   int numDisparities, int maxDisparity, const Mat& windows,
+                                   const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity,
+                                   Mat& residual);
 
 }}} // namespace cv::stereo::hdp
 

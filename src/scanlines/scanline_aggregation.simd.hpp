@@ -4,7 +4,6 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "scanline_aggregation.hpp"
-#include "../base/grey_levels.hpp"
 #include "../base/vectorized.hpp"
 #include "winner_fraction.hpp"
 #include <cstring>
@@ -146,8 +145,8 @@ private:
         const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
         for (int r = 0; r < groups; ++r)
         {
-            const int inBlock = y + groups - 1 - r, row = std::min(inBlock, lastRow),
-                      next = clamped(row + forward, 0, lastRow);
+            const int inBlock = y + groups - 1 - r, row = std::min(inBlock, lastRow);
+            const int upper = std::max(std::min(row, row + forward), 0);
             left_[r] = p_.cost->leftPixels(row);
             right_[r] = p_.cost->rightPlane(0, row) + width_ - 1;
             if (!p_.cost->limits().isEmpty())
@@ -155,7 +154,8 @@ private:
                 leftLimits_[r] = p_.cost->limits().left(row);
                 rightLimits_[r] = p_.cost->limits().right(row) + width_ - 1;
             }
-            weighScanlineEdges(p_.left->ptr<ushort>(row), p_.left->ptr<ushort>(next), width_, p_.penalties, edges_[r]);
+            weighScanlineEdges(p_.weights->ptr(row), p_.weights->ptr(upper), tables_.slopes(), width_, p_.penalties,
+                               edges_[r]);
             if (isUpward_ && inBlock > lastRow) // nothing comes from there
                 std::memset(edges_[r], 0, 2 * (size_t)width_);
         }

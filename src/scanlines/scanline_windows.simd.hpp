@@ -4,7 +4,6 @@
 
 // Compiled once for each instruction set, as the *.simd.hpp that include it: no include guard.
 #include "scanline_aggregation.hpp"
-#include "../base/grey_levels.hpp"
 #include "../base/vectorized.hpp"
 #include <cstring>
 
@@ -13,24 +12,26 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-//! large(p, q) between each pixel of a row and its neighbours to the right and in the next row
-inline void weighScanlineEdges(const ushort* row, const ushort* next, int width, const ScanlinePenalties& penalties,
-                               uchar* edges)
+/** large(p, q) between each pixel of a row and its neighbours to the right and in the next row.
+@param row Weights of the row's edges, of which those to the right are read.
+@param toNext Weights of those between it and the next row, which are those below of the upper one.
+@param slopes Of the row's pixels.
+@param edges Receives two penalties per pixel. */
+inline void weighScanlineEdges(const uchar* row, const uchar* toNext, const uchar* slopes, int width,
+                               const ScanlinePenalties& penalties, uchar* edges)
 {
     const ushort large = (ushort)penalties.large, min = std::min((ushort)penalties.small, large);
-    const ushort slope = (ushort)penalties.edgeSlope;
-    const int last = width - 1;
-    const auto penalty = [&](ushort p, ushort q) {
-        const ushort fall = (ushort)((ushort)(difference(p, q) * slope) / (2 * greyScale));
+    const ushort noise = (ushort)penalties.edgeNoise;
+    const auto penalty = [&](ushort weight, ushort slope) {
+        const ushort fall = (ushort)((ushort)((ushort)(std::max(weight, noise) - noise) * slope) / 2);
         return (uchar)std::max((ushort)(std::max(large, fall) - fall), min);
     };
-    HDP_VECTORIZED for (int x = 0; x < last; ++x)
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        edges[2 * x] = penalty(row[x], row[x + 1]);
-        edges[2 * x + 1] = penalty(row[x], next[x]);
+        edges[2 * x] = penalty(row[2 * x], slopes[x]);
+        edges[2 * x + 1] = penalty(toNext[2 * x + 1], slopes[x]);
     }
-    edges[2 * last] = 0; // there is no pixel
-    edges[2 * last + 1] = penalty(row[last], next[last]);
+    edges[2 * width - 2] = 0; // there is no pixel
 }
 
 /** What scanlines need to know of the windows of a row of the layer above, from column to column: where the candidates
@@ -44,8 +45,9 @@ public:
     //! groups: rows of a block
     ScanlineWindows(const ScanlineProblem& problem, bool isUpward, int groups, ScanlineScratch& scratch)
         : p_(problem), isUpward_(isUpward), groups_(groups), pairs_((problem.size.width + 1) / 2),
-          isContiguous_(scratch.isContiguous.data() + margin), priors_(firstStep(scratch.priors)),
-          intoSide_(firstStep(scratch.intoSide)), intoNext_(firstStep(scratch.intoNext))
+          isContiguous_(scratch.isContiguous.data() + margin), slopes_(scratch.slopes.data()),
+          priors_(firstStep(scratch.priors)), intoSide_(firstStep(scratch.intoSide)),
+          intoNext_(firstStep(scratch.intoNext))
     {
         for (int run = 0; run < Window::runs; ++run)
         {
@@ -73,6 +75,8 @@ public:
     bool isContiguous(int step) const { return isContiguous_[step] != 0; }
     //! The first disparity of a run, by column of the layer
     const short* firstOfColumn(int run) const { return firstOfColumn_[run]; }
+    //! Of edges, by column of the layer
+    const uchar* slopes() const { return slopes_; }
     //! With the large penalty, which is a part of all costs in a sweep
     const uchar* prior(int step) const { return ofStep(priors_, step); }
     //! Orders of lanes, 255 for candidates that the window before does not have: from the left in a sweep upward, from
@@ -84,18 +88,22 @@ private:
     enum
     {
         margin = ScanlineScratch::margin,
-        priorRange = 3 * Window::candidates / 2 * subpixelScale
+        priorRange = 3 * Window::candidates / 2 * subpixelScale, // of distances, both ways
+        distances = 2 * priorRange
     };
 
-    //! The prior of a run, by the distance of its first candidate from the predicted disparity; with the large penalty,
-    //! which is a part of all costs in a sweep.
+    //! The prior of a run, by the distance of its first candidate from the predicted disparity, once more for nearer
+    //! surfaces; with the large penalty, which is a part of all costs in a sweep.
     void preparePriorTable()
     {
         for (int distance = -priorRange; distance < priorRange; ++distance)
             for (int i = 0; i < Window::runLength; ++i)
-                priorTable_[distance + priorRange][i] =
-                    (uchar)(p_.penalties.large +
-                            p_.penalties.prior * std::abs(distance + i * subpixelScale) / (2 * subpixelScale));
+            {
+                const int prior = p_.penalties.prior * std::abs(distance + i * subpixelScale) / (2 * subpixelScale);
+                uchar* const of = priorTable_[distance + priorRange] + i;
+                of[0] = (uchar)(p_.penalties.large + prior);
+                of[distances * Window::runLength] = (uchar)(of[0] + p_.penalties.nearer);
+            }
     }
 
     // Bytes may alias everything but what is local.
@@ -124,7 +132,9 @@ private:
                 const short begin = members[4 * x + run];
                 const int predicted = (ushort)members[4 * x + Window::runs + run];
                 first[x] = begin;
-                distance[x] = (short)clamped(begin * subpixelScale - predicted, -priorRange, priorRange - 1);
+                const bool isNearer = begin > members[4 * x] + length;
+                distance[x] = (short)(clamped(begin * subpixelScale - predicted, -priorRange, priorRange - 1) +
+                                      priorRange + (isNearer ? distances : 0));
             }
             std::fill(first + columns, first + pairs, first[columns - 1]);
             std::fill(distance + columns, distance + pairs, distance[columns - 1]);
@@ -136,6 +146,10 @@ private:
         const bool isSingle = groups_ == 1;
         HDP_VECTORIZED for (int x = 0; x < pairs; ++x) isContiguous[x] =
             (uchar)((high[x] - low[x] == length) & ((isSingle) | (high[x - 1] - low[x - 1] == length)));
+        uchar* const slopes = slopes_;
+        const uchar edgeSlope = (uchar)p_.penalties.edgeSlope, borderSlope = (uchar)p_.penalties.borderSlope;
+        HDP_VECTORIZED for (int x = 0; x < pairs; ++x) slopes[2 * x] = slopes[2 * x + 1] =
+            high[x] - low[x] == length ? edgeSlope : borderSlope;
     }
 
     void enterPriors() const
@@ -146,8 +160,8 @@ private:
         for (int x = 0; x < pairs_; ++x)
         {
             uchar* const prior = priors - (ptrdiff_t)x * Window::candidates;
-            std::memcpy(prior, priorTable_[low[x] + priorRange], Window::runLength);
-            std::memcpy(prior + Window::runLength, priorTable_[high[x] + priorRange], Window::runLength);
+            std::memcpy(prior, priorTable_[low[x]], Window::runLength);
+            std::memcpy(prior + Window::runLength, priorTable_[high[x]], Window::runLength);
         }
         if (lanesUsed < Window::candidates)
             for (int x = 0; x < pairs_; ++x)
@@ -226,9 +240,9 @@ private:
     const int groups_, pairs_; // pairs of columns
     // The scratch memory, from column or step 0 on
     short *first_[Window::runs], *distance_[Window::runs], *firstOfColumn_[Window::runs];
-    uchar *const isContiguous_, *const priors_, *const intoSide_, *const intoNext_;
+    uchar *const isContiguous_, *const slopes_, *const priors_, *const intoSide_, *const intoNext_;
     const uchar* orders_[Window::runs]; // of a run, by the distance of the candidates
-    uchar priorTable_[2 * priorRange][Window::runLength];
+    uchar priorTable_[2 * distances][Window::runLength];
 };
 
 } // namespace

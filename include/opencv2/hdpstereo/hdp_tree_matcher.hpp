@@ -367,7 +367,7 @@ public:
         In bits of the census, which is not the unit of cv::StereoSGBM, 0..100. All: 16. */
         CV_PROP_RW int P1;
 
-        /** @brief Penalty for a larger step between neighbours of one grey level on a scanline.
+        /** @brief Penalty for a larger step between neighbours of one colour on a scanline.
 
         Other neighbours have a lower one, not less than P1, as surfaces end where the image has an edge. In bits of the
         census, 0..100. All: 65. */
