@@ -240,8 +240,6 @@ private:
         if (plan_.fillsOcclusions)
             clock_.run("occlusions", [&] {
                 own_.census.ofDisparities(result_.winners, own_.residual);
-                if (plan_.method == RANGE_SCANLINES)
-                    distrustNewSurfaces(in_.upper->disparity, result_.winners, own_.residual);
                 fillOcclusions();
             });
     }

@@ -190,27 +190,6 @@ TEST_P(HDPStereo_RangeScanlines, lanes_without_vectors)
     }
 }
 
-TEST(HDPStereo_NewSurfaces, cost_more)
-{
-    RNG rng(77);
-    for (const Size& size : { Size(1, 1), Size(2, 3), Size(41, 20) })
-    {
-        const Size ofUpper(std::max(size.width / 2, 1), std::max(size.height / 2, 1));
-        const Mat upper = randomImage(rng, ofUpper, CV_16UC1, 160), winners = randomImage(rng, size, CV_16UC1, 320),
-                  costs = randomImage(rng, size, CV_8UC1);
-        Mat expected = costs.clone(), actual = costs.clone();
-        for (int y = 0; y < size.height; ++y)
-            for (int x = 0; x < size.width; ++x)
-            {
-                const int above = upper.at<ushort>(std::min(y / 2, upper.rows - 1), std::min(x / 2, upper.cols - 1));
-                if (std::abs(2 * above / 16. - winners.at<ushort>(y, x) / 16.) > 5)
-                    expected.at<uchar>(y, x) = (uchar)std::min(costs.at<uchar>(y, x) + 8, 254);
-            }
-        hdp::distrustNewSurfaces(upper, winners, actual);
-        expectIdentical(expected, actual);
-    }
-}
-
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_RangeScanlines, testing::Values(3, 5, 7));
 
 }} // namespace opencv_test

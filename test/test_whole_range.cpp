@@ -155,8 +155,8 @@ TEST(HDPStereo_SlowWholeRange, thin_structures_are_kept_or_not_confident)
         int preset, width;
         double vertical, horizontal;
     } limits[] = {
-        { HDPTreeMatcher::PRESET_FAST, 3, 44, 84 },    { HDPTreeMatcher::PRESET_FAST, 4, 90, 95 },
-        { HDPTreeMatcher::PRESET_FAST, 6, 93, 95 },    { HDPTreeMatcher::PRESET_FAST, 8, 94, 95 },
+        { HDPTreeMatcher::PRESET_FAST, 3, 69, 86 },    { HDPTreeMatcher::PRESET_FAST, 4, 94, 95 },
+        { HDPTreeMatcher::PRESET_FAST, 6, 94, 95 },    { HDPTreeMatcher::PRESET_FAST, 8, 95, 95 },
         { HDPTreeMatcher::PRESET_QUALITY, 3, 61, 79 }, { HDPTreeMatcher::PRESET_QUALITY, 4, 93, 95 },
         { HDPTreeMatcher::PRESET_QUALITY, 6, 98, 98 }, { HDPTreeMatcher::PRESET_QUALITY, 8, 98, 98 },
         { HDPTreeMatcher::PRESET_TREE, 3, 56, 70 },    { HDPTreeMatcher::PRESET_TREE, 4, 94, 95 },

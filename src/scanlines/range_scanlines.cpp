@@ -8,7 +8,6 @@
 #include "../base/dispatch.hpp"
 #include "../base/tunable.hpp"
 #include "../forest/forest_aggregation.hpp"
-#include "other_surfaces.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -17,9 +16,6 @@ namespace {
 HDP_TUNABLE(int, rangeStripeHeight, 96, "rows", "about: more do not fit into a cache, fewer are more warm-up");
 HDP_TUNABLE(int, rangeWarmUpRows, 16, "rows",
             "beside a stripe, which the vertical directions begin with: fewer show its border, more cost time");
-
-HDP_TUNABLE(int, distrust, 8, "bits",
-            "of another surface than the one above: more fills gaps, less leaves wrong blobs");
 
 HDP_DISPATCH(aggregateRangeStripe)
 
@@ -67,22 +63,6 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
         (*scratch).prepare(problem, rows);
         for (int i = range.start; i < range.end; ++i)
             dispatched::aggregateRangeStripe(problem, stripes[i], *scratch, disparity);
-    });
-}
-
-void distrustNewSurfaces(const Mat& upper, const Mat& winners, Mat& costs)
-{
-    const int distance = otherSurfaceDistance * subpixelScale, rise = distrust;
-    parallel_for_(Range(0, winners.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const ushort* const above = upper.ptr<ushort>(std::min(y / 2, upper.rows - 1));
-            const ushort* const row = winners.ptr<ushort>(y);
-            uchar* const cost = costs.ptr(y);
-            for (int x = 0; x < winners.cols; ++x)
-                if (std::abs(2 * above[std::min(x / 2, upper.cols - 1)] - row[x]) > distance)
-                    cost[x] = (uchar)std::min(cost[x] + rise, UCHAR_MAX - 1); // the last one is no pixel's cost
-        }
     });
 }
 

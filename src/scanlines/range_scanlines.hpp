@@ -114,13 +114,6 @@ CV_EXPORTS void aggregateRange(const CensusCost& below, const ImageFrame& frame,
                                const Mat& weights, const Mat& intervals, const RangePenalties& penalties,
                                RangeBuffers& buffers, Mat& disparity);
 
-/** Raises the costs of winners that are not of the surface that the layer above has: of two pixels that map to one
-column of the right image, these are seldom the visible ones.
-@param upper The disparities of the layer above, CV_16UC1, a disparity map.
-@param winners Those of the layer, likewise.
-@param costs Their costs, CV_8UC1, in bits of the census; changed. */
-CV_EXPORTS void distrustNewSurfaces(const Mat& upper, const Mat& winners, Mat& costs);
-
 }}} // namespace cv::stereo::hdp
 
 #endif
