@@ -31,7 +31,7 @@ public:
     Mat join(int maxDisparity) const
     {
         Mat joined = winners_.clone();
-        if (2 * std::count(agrees_.begin(), agrees_.end(), true) < (int)points_.size())
+        if (5 * std::count(agrees_.begin(), agrees_.end(), true) < 2 * (int)points_.size())
             return joined;
         Mat proposed = winners_.clone(), limits(winners_.size(), CV_32S, Scalar(-1)); // bits; -1: the winner stays
         for (int y = 0; y < joined.rows; ++y)
