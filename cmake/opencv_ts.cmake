@@ -14,8 +14,9 @@ endforeach()
 file(GLOB ts_sources "${OPENCV_SOURCE_DIR}/modules/ts/src/*.cpp")
 add_library(opencv_ts STATIC ${ts_sources})
 target_compile_definitions(opencv_ts PRIVATE __OPENCV_BUILD=1)
-target_include_directories(opencv_ts SYSTEM PUBLIC
-  "${ts_generated}" "${OPENCV_SOURCE_DIR}/modules/ts/include" "${OPENCV_SOURCE_DIR}/modules/core/include")
+# Of the source's core those headers that are not installed: the source may be that of another version.
+target_include_directories(opencv_ts SYSTEM PUBLIC "${ts_generated}" "${OPENCV_SOURCE_DIR}/modules/ts/include"
+  ${OpenCV_INCLUDE_DIRS} "${OPENCV_SOURCE_DIR}/modules/core/include")
 if(HDPSTEREO_SANITIZE)
   target_compile_options(opencv_ts PRIVATE -fno-sanitize=all) # it is not what is tested, and takes long
 endif()

@@ -345,7 +345,8 @@ a value is missing or not valid; the matcher is unchanged then.)doc");
         },
         [](const py::tuple& state) {
         std::unique_ptr<Matcher> copy = create(0, 64, HDPTreeMatcher::PRESET_FAST);
-        copy->run([&](HDPTreeMatcher& m) { fromText(m, state[0].cast<std::string>()); });
+        const std::string text = state[0].cast<std::string>(); // run() gives Python's lock away
+        copy->run([&](HDPTreeMatcher& m) { fromText(m, text); });
         return copy;
     }));
 }
