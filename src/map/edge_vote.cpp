@@ -44,7 +44,7 @@ void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted)
                       columnNearness + VoteRows::columns };
     for (int r = 0; r < VoteRows::rows; ++r)
         rule.rowNearness[r] = nearness(VoteRows::rowStep * (r - VoteRows::rows / 2));
-    const int count = (disparity.rows + voteBlock - 1) / voteBlock, reach = VoteRows::rowStep * (VoteRows::rows / 2);
+    const int count = (disparity.rows + voteBlock - 1) / voteBlock, border = VoteRows::rowStep * (VoteRows::rows / 2);
     parallel_for_(Range(0, count), [&](const Range& range) {
         std::vector<ushort> near(width + 2), far(width + 2);
         std::vector<Mat> channels;
@@ -53,12 +53,12 @@ void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted)
         rows.channels = image.channels();
         for (int y = range.start * voteBlock; y < std::min(range.end * voteBlock, disparity.rows); ++y)
         {
-            const int first = std::max(y / voteBlock * voteBlock - reach, 0);
+            const int first = std::max(y / voteBlock * voteBlock - border, 0);
             if (y % voteBlock == 0)
-                split(image.rowRange(first, std::min(y + voteBlock + reach, disparity.rows)), channels);
+                split(image.rowRange(first, std::min(y + voteBlock + border, disparity.rows)), channels);
             for (int r = 0; r < VoteRows::rows; ++r)
             {
-                const int row = clamped(y + VoteRows::rowStep * r - reach, 0, lastRow);
+                const int row = clamped(y + VoteRows::rowStep * r - border, 0, lastRow);
                 for (int c = 0; c < rows.channels; ++c)
                     rows.colour[c][r] = channels[c].ptr(row - first);
                 rows.disparity[r] = disparity.ptr<ushort>(row);
