@@ -184,12 +184,6 @@ unpack_tarball()
     mv "$directory.part" "$directory"
 }
 
-# version_of FOLDER: that of OpenCV's headers in it
-version_of()
-{
-    sed -n -E 's/^#define CV_VERSION_(MAJOR|MINOR|REVISION) +//p' "$1/opencv2/core/version.hpp" | paste -sd .
-}
-
 # find_opencv_source: sets OPENCV_SOURCE_DIR, if it is not set, to a directory with what tests, demo and the Python bindings
 # read of it.
 find_opencv_source()

@@ -23,15 +23,10 @@ install_packages "${packages[@]}"
 cd "$checkout"
 if find_opencv_source; then
     options+=("-DOPENCV_SOURCE_DIR=$(realpath "$OPENCV_SOURCE_DIR")")
-    # The bindings of cv2 are made of source and installed headers, the package of the latter alone.
-    has_bindings=OFF
-    if [ ! -e /usr/include/opencv4 ] ||
-        [ "$(version_of "$OPENCV_SOURCE_DIR/modules/core/include")" = "$(version_of /usr/include/opencv4)" ]; then
-        has_bindings=ON
-    fi
     if [ "$preset" = release ] &&
         "$python" -c 'import numpy, os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null; then
-        options+=(-DHDPSTEREO_PYTHON=$has_bindings "-DPython3_EXECUTABLE=$python")
+        options+=("-DPython3_EXECUTABLE=$python")
+        [ ! -e "$OPENCV_SOURCE_DIR/modules/python" ] || options+=(-DHDPSTEREO_PYTHON=ON)
         [ ! -e /usr/lib/cmake/pybind11 ] || options+=(-DHDPSTEREO_PYTHON_PACKAGE=ON)
     fi
 fi

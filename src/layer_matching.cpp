@@ -259,7 +259,7 @@ private:
     {
         const double windowed = std::min<double>(CandidateWindow::candidates, plan_.numDisparities);
         result_.searchRatio = windowed / plan_.numDisparities;
-        clock_.run("cost aggregation", [&] { weighEdges(in_.images.guide, own_.edgeWeights); });
+        clock_.run("cost aggregation", [&] { weighEdges(guide(), own_.edgeWeights); });
         for (const ScanlinePenalties& penalties : plan_.passes)
         {
             predictPass(&penalties == &plan_.passes.front());

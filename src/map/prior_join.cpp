@@ -15,7 +15,7 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_TUNABLE(double, minAgreement, 0.4, "share of the points",
-            "that agree with the winners, in a prior of this scene: of a hard one half may not, and a tenth be wrong");
+            "that agree with the winners, in a prior of this scene: in a hard one half of the winners are wrong");
 HDP_TUNABLE(double, tolerance, 0.7, "pixels", "of what agrees, beside two sigmas: less takes rounding for errors");
 HDP_TUNABLE(double, slope, 0.15, "pixels per pixel", "by which disparities of a surface may differ beside that");
 HDP_TUNABLE(int, reach, 48, "pixels of the image", "from a pixel to the points it knows: more sees other surfaces");

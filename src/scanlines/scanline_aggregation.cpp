@@ -35,7 +35,7 @@ void ScanlineScratch::prepare(int width, int numDisparities)
     for (int run = 0; run < CandidateWindow::runs; ++run)
     {
         first[run].assign(upperColumns, 0); // of the margins' candidates, too, the addresses are valid
-        distance[run].resize(upperColumns);
+        priorRow[run].resize(upperColumns);
         firstOfColumn[run].resize(2 * pairs);
     }
     const int length = CandidateWindow::runLength, farthest = numDisparities + CandidateWindow::candidates;

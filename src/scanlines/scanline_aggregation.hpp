@@ -84,7 +84,7 @@ struct ScanlineScratch
     std::vector<uchar> vertical; // CandidateWindow::candidates per column
     // By column of the layer above: the first candidate of each run, and where its prior is in a table; whether
     // there is one run, and so there is for the other rows of the block in the same step
-    std::vector<short> first[CandidateWindow::runs], distance[CandidateWindow::runs];
+    std::vector<short> first[CandidateWindow::runs], priorRow[CandidateWindow::runs];
     std::vector<uchar> isContiguous;
     std::vector<uchar> priors, intoSide, intoNext;           // CandidateWindow::candidates per such column
     std::vector<short> firstOfColumn[CandidateWindow::runs]; // by column of the layer

@@ -146,7 +146,7 @@ private:
         for (int r = 0; r < groups; ++r)
         {
             const int inBlock = y + groups - 1 - r, row = std::min(inBlock, lastRow);
-            const int upper = std::max(std::min(row, row + forward), 0);
+            const int edgeRow = std::max(std::min(row, row + forward), 0); // its edges below lead to the next row
             left_[r] = p_.cost->leftPixels(row);
             right_[r] = p_.cost->rightPlane(0, row) + width_ - 1;
             if (!p_.cost->limits().isEmpty())
@@ -154,7 +154,7 @@ private:
                 leftLimits_[r] = p_.cost->limits().left(row);
                 rightLimits_[r] = p_.cost->limits().right(row) + width_ - 1;
             }
-            weighScanlineEdges(p_.weights->ptr(row), p_.weights->ptr(upper), tables_.slopes(), width_, p_.penalties,
+            weighScanlineEdges(p_.weights->ptr(row), p_.weights->ptr(edgeRow), tables_.slopes(), width_, p_.penalties,
                                edges_[r]);
             if (isUpward_ && inBlock > lastRow) // nothing comes from there
                 std::memset(edges_[r], 0, 2 * (size_t)width_);

@@ -52,7 +52,7 @@ public:
         for (int run = 0; run < Window::runs; ++run)
         {
             first_[run] = scratch.first[run].data() + margin;
-            distance_[run] = scratch.distance[run].data();
+            priorRow_[run] = scratch.priorRow[run].data();
             firstOfColumn_[run] = scratch.firstOfColumn[run].data();
             orders_[run] = scratch.orders[run].data() + scratch.orders[run].size() / 2;
         }
@@ -100,9 +100,9 @@ private:
             for (int i = 0; i < Window::runLength; ++i)
             {
                 const int prior = p_.penalties.prior * std::abs(distance + i * subpixelScale) / (2 * subpixelScale);
-                uchar* const of = priorTable_[distance + priorRange] + i;
-                of[0] = (uchar)(p_.penalties.large + prior);
-                of[distances * Window::runLength] = (uchar)(of[0] + p_.penalties.nearer);
+                const int row = distance + priorRange, cost = p_.penalties.large + prior;
+                priorTable_[row][i] = (uchar)cost;
+                priorTable_[row + distances][i] = (uchar)(cost + p_.penalties.nearer);
             }
     }
 
@@ -126,18 +126,18 @@ private:
         const short* const members = windows->first; // first, then predicted
         for (int run = 0; run < Window::runs; ++run)
         {
-            short *const first = first_[run], *const distance = distance_[run];
+            short *const first = first_[run], *const priorRow = priorRow_[run];
             HDP_VECTORIZED for (int x = 0; x < columns; ++x)
             {
                 const short begin = members[4 * x + run];
                 const int predicted = (ushort)members[4 * x + Window::runs + run];
                 first[x] = begin;
                 const bool isNearer = begin > members[4 * x] + length;
-                distance[x] = (short)(clamped(begin * subpixelScale - predicted, -priorRange, priorRange - 1) +
+                priorRow[x] = (short)(clamped(begin * subpixelScale - predicted, -priorRange, priorRange - 1) +
                                       priorRange + (isNearer ? distances : 0));
             }
             std::fill(first + columns, first + pairs, first[columns - 1]);
-            std::fill(distance + columns, distance + pairs, distance[columns - 1]);
+            std::fill(priorRow + columns, priorRow + pairs, priorRow[columns - 1]);
             short* const firstOfColumn = firstOfColumn_[run];
             HDP_VECTORIZED for (int x = 0; x < pairs; ++x) firstOfColumn[2 * x] = firstOfColumn[2 * x + 1] = first[x];
         }
@@ -155,7 +155,7 @@ private:
     void enterPriors() const
     {
         uchar* const priors = priors_;
-        const short *const low = distance_[0], *const high = distance_[1];
+        const short *const low = priorRow_[0], *const high = priorRow_[1];
         const int lanesUsed = p_.validCandidates();
         for (int x = 0; x < pairs_; ++x)
         {
@@ -239,7 +239,7 @@ private:
     const bool isUpward_;
     const int groups_, pairs_; // pairs of columns
     // The scratch memory, from column or step 0 on
-    short *first_[Window::runs], *distance_[Window::runs], *firstOfColumn_[Window::runs];
+    short *first_[Window::runs], *priorRow_[Window::runs], *firstOfColumn_[Window::runs];
     uchar *const isContiguous_, *const slopes_, *const priors_, *const intoSide_, *const intoNext_;
     const uchar* orders_[Window::runs]; // of a run, by the distance of the candidates
     uchar priorTable_[2 * distances][Window::runLength];
