@@ -8,8 +8,6 @@
 #include "pair/image_levels.hpp"
 #include "pair/image_pyramid.hpp"
 
-#include <cmath>
-
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
@@ -18,18 +16,14 @@ namespace {
 HDP_TUNABLE(int, maxCorners, 500, "corners", "more cost time, fewer miss what is small");
 HDP_TUNABLE(int, neighbourReach, 24, "pixels of the coarse layer", "in which a corner is to have neighbours");
 HDP_TUNABLE(int, minNeighbours, 3, "corners", "of the same surface: fewer believe a pattern that repeats itself");
-HDP_TUNABLE(double, neighbourShare, 0.3, "share of the neighbours", "of the same surface: the same");
-HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the coarse layer", "by which neighbours differ");
-HDP_TUNABLE(double, neighbourSlope, 0.1, "disparities per pixel", "that surfaces have: more lets wrong corners in");
+HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the coarse layer", "by which these differ: more lets wrong corners in");
 HDP_TUNABLE(int, minSupport, 10, "corners", "fewer are no evidence of a range");
 
 // All pixels
 HDP_TUNABLE(double, farReach, 1.5, "share of the corners' range",
             "that is searched before it: more cost time and errors");
 HDP_TUNABLE(double, nearReach, 1.5, "share of the corners' range", "that is searched behind it");
-HDP_TUNABLE(double, leastReach, 0.1, "share of the width", "that is searched behind it at least");
 HDP_TUNABLE(double, minConfidence, 25, "confidence", "of disparities that count: less believes errors");
-HDP_TUNABLE(int, speckleSize, 50, "pixels", "of regions that do not count: fewer believe errors");
 HDP_TUNABLE(double, leftOut, 0.0005, "share of the disparities", "at each end that may be wrong");
 
 // The range
@@ -70,18 +64,15 @@ Range supportedDisparities(const std::vector<CornerMatch>& matches, int& support
         if (!match.isValid)
             continue;
         const double disparity = match.left.x - match.x;
-        int near = 0, alike = 0;
+        int neighbours = 0;
         for (const CornerMatch& other : matches)
         {
             const Point offset = other.left - match.left;
             const int square = offset.dot(offset);
-            if (!other.isValid || square == 0 || square > neighbourReach * neighbourReach)
-                continue;
-            const double tolerance = neighbourStep + neighbourSlope * std::sqrt((double)square);
-            ++near;
-            alike += std::abs(other.left.x - other.x - disparity) <= tolerance;
+            neighbours += other.isValid && square != 0 && square <= neighbourReach * neighbourReach &&
+                          std::abs(other.left.x - other.x - disparity) <= neighbourStep;
         }
-        if (alike < minNeighbours || alike < neighbourShare * near)
+        if (neighbours < minNeighbours)
             continue;
         first = support == 0 ? disparity : std::min(first, disparity);
         last = support == 0 ? disparity : std::max(last, disparity);
@@ -109,9 +100,8 @@ int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks
 bool RangeSearch::matchPixels(const PairMasks& masks, const Range& corners, Range& found)
 {
     const int layer = std::max(coarse_.layer - 1, 0), scale = 1 << layer;
-    const double size = corners.size(), width = coarse_.left[coarse_.layer].cols;
-    const double first = corners.start - farReach * size;
-    const double last = corners.end + std::max(nearReach * size, leastReach * width);
+    const double size = corners.size();
+    const double first = corners.start - farReach * size, last = corners.end + nearReach * size;
     const double unit = 1 << (coarse_.layer - layer);
     const int columns = coarse_.left[layer].cols;
     const Range searched = limited(first * unit, last * unit, columns);
@@ -120,9 +110,7 @@ bool RangeSearch::matchPixels(const PairMasks& masks, const Range& corners, Rang
         matcher_ = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_FAST);
         matcher_->setDisparityDepth(CV_32F);
         matcher_->setDisp12MaxDiff(1);
-        matcher_->setSpeckleRange(1);
     }
-    matcher_->setSpeckleWindowSize(speckleSize);
     matcher_->setMinDisparity(searched.start);
     matcher_->setNumDisparities(searched.size());
     matcher_->setMasks(ofLayer(masks.left, layer), ofLayer(masks.right, layer));
