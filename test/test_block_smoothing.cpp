@@ -128,7 +128,7 @@ TEST(HDPStereo_BlockSmoothing, weak_blocks_count_less)
                     grey.at<ushort>(y, x) =
                         (ushort)(500 + levels.at<double>((y + 8 - begin) / 8, (x + 8 - begin) / 8) + rng.uniform(0, 3));
             const Vec2d across = meanStep(grey, begin), down = meanStep(grey.t(), begin);
-            const double share = std::min(std::max((std::min(across[1], 1.5 * down[1]) - 4.5) / 1.5, 0.), 1.);
+            const double share = std::min(std::max((std::min(across[1], down[1]) - 4.5) / 1.5, 0.), 1.);
             const BlockGrid grid = hdp::findBlocks(grey);
             EXPECT_TRUE(share == 0 || grid.begin == begin);
             EXPECT_NEAR(share * across[0], grid.step, 1e-9) << "seed " << seed << ", step " << step;

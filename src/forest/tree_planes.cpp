@@ -16,17 +16,12 @@ namespace {
 HDP_TUNABLE(int, minPixels, 400, "pixels", "of a tree that gets a plane: what fewer say is mostly noise");
 HDP_TUNABLE(int, samples, 300, "pixels", "of a tree, about: more cost time and find the same plane");
 HDP_TUNABLE(int, triples, 60, "planes", "that are tried: four of them are right if minShare lies on the right one");
-HDP_TUNABLE(double, minBase, 0.05, "share of the tree", "area that three pixels span: what is narrow tells no slope");
-HDP_TUNABLE(double, maxSlope, 0.5, "disparities per pixel", "steeper planes join two surfaces");
 HDP_TUNABLE(double, tiltCost, 0.2, "cost per disparity",
             "between the ends of the tree: of two planes, the flatter one");
 HDP_TUNABLE(int, fits, 4, "fits", "to the disparities near the plane: then these are the same as before");
 HDP_TUNABLE(double, fitDistance, 1.5, "disparities", "from the plane: what is farther off is another surface");
-HDP_TUNABLE(double, onDistance, 1, "disparities", "from the plane that disparities on it are off by noise");
 HDP_TUNABLE(double, minShare, 0.4, "share of the samples", "on the plane: a tree of several surfaces gets none");
 HDP_TUNABLE(double, maxRise, 4.5, "cost", "of the mean over the tree: the costs are against a plane that has more");
-HDP_TUNABLE(double, minContrast, 1, "cost", "of the mean candidate above the winner's: flat costs fit any plane");
-HDP_TUNABLE(int, maxPixelRise, 64, "cost", "of one pixel: one of another surface counts no more than that");
 HDP_TUNABLE(int, maxPenalty, 10, "cost", "of a disparity off the plane: so the scanlines can still leave it");
 
 //! d = coefficients . (1, x, y)
@@ -39,8 +34,7 @@ class TreeSamples
 {
 public:
     TreeSamples(const int* pixels, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
-        : interval_(tree.interval), steps_((float)volume.steps), size_(tree.size),
-          begin_(0, volume.size.width, volume.size.height)
+        : interval_(tree.interval), steps_((float)volume.steps), begin_(0, volume.size.width, volume.size.height)
     {
         const ushort* const winners = disparity.ptr<ushort>();
         const int step = std::max(tree.size / samples, 1), candidates = interval_.size();
@@ -62,9 +56,8 @@ public:
                 cost_.push_back(costs[candidateAt(disparity_.back())]);
                 uchar lowest = 255;
                 HDP_VECTORIZED for (int k = 0; k < candidates; ++k) lowest = std::min(lowest, costs[k]);
-                const int sum = std::accumulate(costs, costs + candidates, 0);
                 minRise_[group] += lowest - cost_.back();
-                contrast_ += sum - candidates * cost_.back();
+                haveContrast_ |= std::count(costs, costs + candidates, lowest) < candidates;
                 for (int term = 1; term < 3; ++term)
                 {
                     begin_[term] = std::min(begin_[term], basis[term]);
@@ -77,7 +70,7 @@ public:
     }
 
     //! Whether the costs tell anything
-    bool haveContrast() const { return contrast_ >= minContrast * interval_.size() * count_; }
+    bool haveContrast() const { return haveContrast_; }
 
     //! The plane of least rise among those through three samples, fitted to the disparities near it
     Plane findPlane() const
@@ -116,7 +109,7 @@ public:
     {
         int count = 0;
         for (int i = 0; i < count_; ++i)
-            count += std::abs(plane.dot(basis(i)) - disparity_[i]) <= onDistance;
+            count += std::abs(plane.dot(basis(i)) - disparity_[i]) <= fitDistance;
         return count / (double)count_;
     }
 
@@ -143,7 +136,7 @@ private:
             (i - begin) * stride + candidateAt(offset + slopeX * x[i] + slopeY * y[i]);
         int sum = 0;
         for (int i = 0; i < end - begin; ++i)
-            sum += std::min(costs[at[i]] - cost[i], +maxPixelRise);
+            sum += costs[at[i]] - cost[i];
         return sum;
     }
 
@@ -197,23 +190,22 @@ private:
         const Vec3d p = basis(b) - basis(a), q = basis(c) - basis(a);
         const double area = p[1] * q[2] - q[1] * p[2], rise = disparity_[b] - disparity_[a],
                      secondRise = disparity_[c] - disparity_[a];
-        if (std::abs(area) < minBase * size_)
+        if (area == 0)
             return false;
         plane[1] = (rise * q[2] - secondRise * p[2]) / area;
         plane[2] = (secondRise * p[1] - rise * q[1]) / area;
         plane[0] = disparity_[a] - plane[1] * x_[a] - plane[2] * y_[a];
-        return std::abs(plane[1]) <= maxSlope && std::abs(plane[2]) <= maxSlope;
+        return true;
     }
 
     static const int groups = 8;
     const DisparityInterval interval_;
     const float steps_; // candidates per pixel of disparity
-    const int size_;    // of the tree
     Vec3d begin_, end_; // of its columns and rows
     int count_;
-    int firsts_[groups + 1];   // samples of the groups
-    int minRise_[groups];      // the lowest that riseOf() may be
-    int64 contrast_ = 0;       // the sum of all candidates' costs, less the costs of the disparities
+    int firsts_[groups + 1]; // samples of the groups
+    int minRise_[groups];    // the lowest that riseOf() may be
+    bool haveContrast_ = false;
     std::vector<uchar> costs_; // of the candidates of each sample
     std::vector<float> x_, y_, disparity_;
     std::vector<int> cost_;       // of the disparity

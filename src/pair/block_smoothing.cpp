@@ -21,8 +21,6 @@ HDP_TUNABLE(
     double, minRatio, 4.5, "mean of the steps inside blocks",
     "of the mean step between them, up to which there are none: smoothing of weak ones costs more than it saves");
 HDP_TUNABLE(double, sureRatio, 6, "mean of the steps inside blocks", "of that from which they are surely blocks");
-HDP_TUNABLE(double, downWeight, 1.5, "factor",
-            "of the ratio of rows, which are only to confirm the columns: more confirms contours, less loses blocks");
 HDP_TUNABLE(int, minSteps, 64, "steps", "between blocks, for a mean: fewer find blocks by chance");
 HDP_TUNABLE(int, smoothedSteps, 4, "mean steps between blocks",
             "that are taken away: larger ones are edges of the scene");
@@ -126,8 +124,7 @@ Steps findSteps(const Mat& lines)
 BlockGrid findBlocks(const Mat& grey)
 {
     const Steps across = findSteps(someLines(grey, false)), down = findSteps(someLines(grey, true));
-    const double share =
-        clamped((std::min(across.ratio, downWeight * down.ratio) - minRatio) / (sureRatio - minRatio), 0., 1.);
+    const double share = clamped((std::min(across.ratio, down.ratio) - minRatio) / (sureRatio - minRatio), 0., 1.);
     BlockGrid grid;
     grid.begin = across.begin;
     grid.step = share * across.mean;

@@ -18,7 +18,6 @@ namespace {
 
 // Corners
 HDP_TUNABLE(int, minSpacing, 10, "pixels of the image", "side of a cell: windows of nearer corners see the same");
-HDP_TUNABLE(int, minCoarseSpacing, 4, "pixels of the coarse layer", "the same there, however small the image is");
 HDP_TUNABLE(int, cornerStep, 2, "pixels", "from one that is looked at to the next: neighbours are about as good");
 HDP_TUNABLE(int, maxCoarseArea, 45000, "pixels", "of the coarse layer: more cost time, fewer have too few corners");
 
@@ -294,7 +293,7 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
     }
     const CornerSearch search = { Range(disparities.start >> coarse.layer,
                                         layerDisparities(disparities.end, coarse.layer, true)),
-                                  maxCorners, std::max<int>(minSpacing >> coarse.layer, minCoarseSpacing) };
+                                  maxCorners, std::max(minSpacing >> coarse.layer, 1) };
     findCornerMatches(coarseLeft, coarseRight, { leftMasks.back(), rightMasks.back() }, search, coarse.windows,
                       coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);

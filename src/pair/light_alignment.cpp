@@ -25,13 +25,9 @@ HDP_TUNABLE(double, maxRestShare, 0.7, "share", "of that difference before the m
 
 // Expected deviations of the coefficients from those of the same light. What vignetting and gamma do is within them;
 // what few matches cannot tell stays as it is.
-HDP_TUNABLE(double, gainDeviation, 0.3, "factor", "exposures differ by half a stop");
-HDP_TUNABLE(double, slopeDeviation, 0.1, "factor per width", "light from one side");
-HDP_TUNABLE(double, curveDeviation, 0.15, "factor per squared width", "vignetting");
+HDP_TUNABLE(double, deviation, 0.3, "factor, or of white", "exposures differ by half a stop, and all else by no more");
 HDP_TUNABLE(double, rimDeviation, 1, "factor per fourth power of the width",
             "vignetting of the corners, where it is steep");
-HDP_TUNABLE(double, offsetDeviation, 0.1, "of white", "black levels and haze differ");
-HDP_TUNABLE(double, gammaDeviation, 0.15, "of white", "of the square and the cube of levels: curves of cameras differ");
 
 typedef LightModel::Coefficients Coefficients;
 typedef FitSample<LightModel::terms> LevelPair; // a match: the basis of the right level, the left level
@@ -40,8 +36,9 @@ HDP_DISPATCH(alignLightRow)
 
 Coefficients expectedDeviations()
 {
-    return Coefficients(gainDeviation, slopeDeviation, slopeDeviation, curveDeviation, curveDeviation, curveDeviation,
-                        rimDeviation, offsetDeviation, gammaDeviation, gammaDeviation);
+    Coefficients deviations = Coefficients::all(deviation);
+    deviations[LightModel::rim] = rimDeviation;
+    return deviations;
 }
 
 double meanLevel(const Mat& image, Point centre)

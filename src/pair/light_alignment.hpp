@@ -15,7 +15,8 @@ struct LightModel
 {
     enum
     {
-        terms = 10
+        terms = 10,
+        rim = 6 // the number of the term of the vignetting of corners
     };
     typedef Vec<double, terms> Coefficients;
 

@@ -26,7 +26,6 @@ HDP_TUNABLE(double, slopeChange, 1e-3, "rows per pixel", "of a slope from border
 
 // What moves rows by less costs more by interpolation than it gains.
 HDP_TUNABLE(double, minMove, 0.12, "pixels", "root of the mean square of a model that is applied");
-HDP_TUNABLE(double, certainty, 2, "deviations", "of the model, taken from its move: noise is no reason to move rows");
 
 HDP_TUNABLE(double, noiseFall, 1.7, "factor from a layer to the next",
             "white noise would halve; that of cameras, which neighbours share, falls less");
@@ -221,7 +220,7 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
     if (ofBest.deviation == DBL_MAX || maxMoveAtCorners(best, size) > maxOffset)
         return false;
     model = best;
-    return ofBest.move - certainty * certainty * ofBest.deviation > minMove * minMove;
+    return ofBest.move > minMove * minMove;
 }
 
 void alignRows(const Mat& right, const RowModel& model, const ImageFrame& frame, Mat& aligned)

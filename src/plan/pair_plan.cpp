@@ -25,8 +25,6 @@ const int maxWindow = 31;
 
 HDP_TUNABLE(double, toleratedNoise, 0.45, "standard deviations of the noise",
             "what differs by less is not darker: more loses texture, less takes noise for it");
-HDP_TUNABLE(int, coarseLayer, 2, "layer",
-            "from which on the census has a tolerance of 1 at least: rounded means and faint shading are no texture");
 
 // Means over trees
 HDP_TUNABLE(double, meanGamma, 0.2, "gamma of the trees' sums",
@@ -265,12 +263,13 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
 
 //! What differs by less is as often noise as texture. Where several frames have agreed, their noise averages out, and
 //! faint texture is worth more.
-int censusTolerance(int layer, const LayerNoise& noise, bool hasPrior)
+int censusTolerance(const LayerPlan& layer, const LayerNoise& noise, bool hasPrior)
 {
-    if (hasPrior && layer < coarseLayer)
+    if (hasPrior)
         return 0;
-    const int tolerance = cvRound(toleratedNoise * greyScale * noise.ofLayer(layer));
-    return std::min(std::max(tolerance, (int)(layer >= coarseLayer)), +CensusCost::mostTolerance);
+    const int least = !layer.isFinest; // rounded means and faint shading are no texture
+    const int tolerance = cvRound(toleratedNoise * greyScale * noise.ofLayer(layer.layer));
+    return std::min(std::max(tolerance, least), +CensusCost::mostTolerance);
 }
 
 } // namespace
@@ -340,7 +339,7 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
         if (video.hasPrior && layer.method == RANGE_SCANLINES)
             layer.rangePenalties.maxPrior = RangePenalties::maxMaxPrior; // the layer above has it from many frames
         if (layer.cost.isCensus)
-            layer.cost.tolerance = censusTolerance(layer.layer, findings.noise, video.hasPrior);
+            layer.cost.tolerance = censusTolerance(layer, findings.noise, video.hasPrior);
         for (ScanlinePenalties& penalties : layer.passes)
             penalties.edgeNoise = saturate_cast<uchar>(edgeNoise * findings.noise.ofLayer(layer.layer));
         layer.smoothsGuide |= layer.method != WINDOW_SCANLINES && plan.alignment.isNoisy(findings.noise);
