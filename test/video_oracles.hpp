@@ -266,12 +266,8 @@ private:
         return isStill_ ? 128 + 26 : !isNear ? 128 + 10 * std::max(count - 1, 0) : count > 1 ? 60 : 33;
     }
 
-    //! How many frames a disparity of the last frame counts for: all those of a camera at rest for two, once it moves
-    int countOf(Point from) const
-    {
-        const int count = last_->detail.at<uchar>(from) % 16;
-        return !isStill_ && last_->motion.isStill ? std::min(count, 2) : count;
-    }
+    //! How many frames a disparity of the last frame counts for
+    int countOf(Point from) const { return last_->detail.at<uchar>(from) % 16; }
 
     //! Returns whether more than 30 percent of the cells that have a source contradict it.
     bool choose()

@@ -38,8 +38,6 @@ HDP_TUNABLE(int, driftStep, 12, "cells", "between those that correct the predict
 HDP_TUNABLE(int, tolerance, 2, "pixels of the image", "between disparities that agree: more joins two surfaces");
 HDP_TUNABLE(int, maxStep, 1, "pixels", "towards the measured one, before its share is taken: it may be an outlier");
 HDP_TUNABLE(int, maxCount, 7, "frames", "that a disparity may stand for: more flickers less and follows changes later");
-HDP_TUNABLE(int, stillCount, 2, "frames",
-            "that all those of a camera at rest count for once it moves: they have the same errors, noise apart");
 HDP_TUNABLE(int, maxUnmovedWeight, 2, "frames",
             "that it counts for at the same place if the camera moved: it may be by chance");
 HDP_TUNABLE(int, maxMovedWeight, 1, "frames",
@@ -66,8 +64,6 @@ struct LastFrame
     DisparityChange change; // of the camera's motion
 
     bool isStill() const { return prediction.motion.isStill; }
-    //! How many frames a disparity may count for
-    int maxCounted() const { return !isStill() && memory.motion.isStill ? +stillCount : +maxCount; }
     Size cells() const { return prediction.sources.size(); }
 };
 
@@ -113,7 +109,7 @@ ChoiceShares choiceShares(const LastFrame& frame)
     if (frame.isStill())
         return { stillShare | ChoiceShares::KEEPS, stillShare | ChoiceShares::KEEPS, 0, maxCount, INT_MAX };
     // No pair has agreed with a disparity of one frame: nothing that contradicts is taken.
-    return { std::min(+nearShare, +wrongShare), nearShare, apartShare, frame.maxCounted(), distance };
+    return { std::min(+nearShare, +wrongShare), nearShare, apartShare, maxCount, distance };
 }
 
 //! Compares costs in each cell whose first pixel has another disparity in the last frame.
@@ -224,8 +220,8 @@ void takeMoved(const LastFrame& frame, int y, RowScratch& scratch)
         std::memcpy(&scratch.disparity[x], memory.disparity.ptr<ushort>(from.y) + from.x, count * sizeof(ushort));
         std::memcpy(&scratch.detail[x], memory.detail.ptr(from.y) + from.x, count);
     });
-    dispatched::unpackRow(scratch.disparity.data(), scratch.detail.data(), width, frame.maxCounted(),
-                          scratch.moved.data(), scratch.movedCounts.data());
+    dispatched::unpackRow(scratch.disparity.data(), scratch.detail.data(), width, scratch.moved.data(),
+                          scratch.movedCounts.data());
     dispatched::changeDisparities(frame.change, y, 1, width, scratch.moved.data());
 }
 
@@ -237,7 +233,7 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
     for (int j = 0; j < cells; ++j)
         scratch.choices[2 * j] = scratch.choices[2 * j + 1] = choices[j];
     std::fill(scratch.choices.begin() + cells * cell, scratch.choices.end(), choices[cells - 1]);
-    dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width, frame.maxCounted(),
+    dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width,
                           scratch.unmoved.data(), scratch.unmovedCounts.data());
     if (!frame.isStill())
         takeMoved(frame, y, scratch);

@@ -14,10 +14,9 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param disparity FrameMemory's.
 @param detail FrameMemory's.
 @param width Number of pixels.
-@param maxCount Frames that a disparity may count for.
 @param finer Receives the disparities in 1 / FrameMemory::scale pixel.
 @param counts Receives how many frames each stands for. */
-void unpackRow(const ushort* disparity, const uchar* detail, int width, int maxCount, int* finer, uchar* counts);
+void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts);
 
 /** Disparities of the frame before become those of this one.
 @param change The camera's motion.
@@ -163,12 +162,12 @@ void compareCellsOf(const ComparedRow* rows, const int* moved, const uchar* diff
 
 } // namespace
 
-void unpackRow(const ushort* disparity, const uchar* detail, int width, int maxCount, int* finer, uchar* counts)
+void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts)
 {
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         finer[x] = FrameMemory::finer(disparity[x], detail[x]);
-        counts[x] = (uchar)std::min(detail[x] & FrameMemory::countMask, maxCount);
+        counts[x] = (uchar)(detail[x] & FrameMemory::countMask);
     }
 }
 

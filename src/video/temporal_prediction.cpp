@@ -17,7 +17,6 @@ namespace {
 
 HDP_TUNABLE(double, maxError, 2, "cells", "of the points of a first guess: more follows what moves by itself");
 HDP_TUNABLE(double, smallError, 1, "cells", "of a guess that is good, and of points that are near the motion");
-HDP_TUNABLE(double, goodError, 0.2, "cells", "of a guess that is not improved: more keeps errors, less costs time");
 HDP_TUNABLE(
     double, noMotion, 1.25, "cells",
     "median distance of the points from a motion that is none: more warps by wrong ones, less loses fast cameras");
@@ -99,13 +98,9 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
         trackPoints(before, now, points);
         motion = fitMotion(points, size, maxError);
     }
-    if (motion.error > goodError)
-    {
-        movePoints(motion, size, points);
-        trackNearby(before, now, points);
-        motion = fitMotion(points, size, smallError);
-    }
-    return scaled(motion, cell);
+    movePoints(motion, size, points);
+    trackNearby(before, now, points);
+    return scaled(fitMotion(points, size, smallError), cell);
 }
 
 //! Whether this frame shows another scene, or none: on the coarsest level, about as much changed as there is contrast,
