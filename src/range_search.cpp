@@ -16,7 +16,8 @@ namespace {
 HDP_TUNABLE(int, maxCorners, 500, "corners", "more cost time, fewer miss what is small");
 HDP_TUNABLE(int, neighbourReach, 24, "pixels of the coarse layer", "in which a corner is to have neighbours");
 HDP_TUNABLE(int, minNeighbours, 3, "corners", "of the same surface: fewer believe a pattern that repeats itself");
-HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the coarse layer", "by which these differ: more lets wrong corners in");
+HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the coarse layer",
+            "by which these differ: more lets wrong corners in");
 HDP_TUNABLE(int, minSupport, 10, "corners", "fewer are no evidence of a range");
 
 // All pixels
