@@ -57,7 +57,7 @@ public:
                 uchar lowest = 255;
                 HDP_VECTORIZED for (int k = 0; k < candidates; ++k) lowest = std::min(lowest, costs[k]);
                 minRise_[group] += lowest - cost_.back();
-                haveContrast_ |= std::count(costs, costs + candidates, lowest) < candidates;
+                haveContrast_ = haveContrast_ || std::count(costs, costs + candidates, lowest) < candidates;
                 for (int term = 1; term < 3; ++term)
                 {
                     begin_[term] = std::min(begin_[term], basis[term]);
