@@ -24,7 +24,6 @@ struct RandomFrames
     {
         const int maxDisparity = (candidates - 1) * subpixelScale;
         last.frames = frames;
-        last.motion.isStill = rng.uniform(0, 2) == 0;
         last.disparity.create(size, CV_16U);
         last.detail.create(size, CV_8U);
         prediction.verdict = CONTINUED;
