@@ -931,35 +931,34 @@ private:
         return all;
     }
 
-    //! L of a direction, from the pixel that is step away, less its minimum
+    //! E of a direction, from the pixel that is step away
     static Mat_<int> excess(const Mat_<int>& costs, const Mat& weights, const hdp::RangePenalties& penalties,
                             Point step)
     {
         const Size size = weights.size();
-        const auto sum = [](int a, int b) { return std::min(a + b, 255); };
         Mat_<int> all = costs.clone();
         for (int i = 0; i < size.area(); ++i)
         {
             const int p = step.x + step.y < 0 ? i : size.area() - 1 - i; // after the pixel before
             const Point here(p % size.width, p / size.width), before = here + step;
-            if (!Rect(Point(), size).contains(before))
-                continue;
-            const int* of = all[before.y * size.width + before.x];
-            const int least = *std::min_element(of, of + costs.cols);
-            const Point edge(std::min(here.x, before.x), std::min(here.y, before.y));
-            const int w = weights.at<Vec2b>(edge)[step.x == 0];
-            const int large = std::max(penalties.leastLarge, cvRound(penalties.large * std::exp(-w / penalties.gamma)));
-            for (int h = 0; h < costs.cols; ++h)
+            if (Rect(Point(), size).contains(before))
             {
-                int best = std::min(of[h], sum(least, large));
-                for (int other : { h - 1, h + 1 })
-                    if (0 <= other && other < costs.cols)
-                        best = std::min(best, sum(of[other], penalties.small));
-                all(p, h) = sum(costs(p, h), best - least);
+                const int* of = all[before.y * size.width + before.x];
+                const Point edge(std::min(here.x, before.x), std::min(here.y, before.y));
+                const int w = weights.at<Vec2b>(edge)[step.x == 0];
+                const int large =
+                    std::max(penalties.leastLarge, cvRound(penalties.large * std::exp(-w / penalties.gamma)));
+                for (int h = 0; h < costs.cols; ++h)
+                {
+                    int best = std::min(of[h], large);
+                    for (int other : { h - 1, h + 1 })
+                        if (0 <= other && other < costs.cols)
+                            best = std::min(best, of[other] + penalties.small);
+                    all(p, h) = std::min(costs(p, h) + best, 255);
+                }
             }
-        }
-        for (int p = 0; p < all.rows; ++p)
             all.row(p) -= *std::min_element(all[p], all[p] + all.cols);
+        }
         return all;
     }
 

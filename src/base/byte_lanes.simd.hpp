@@ -158,6 +158,13 @@ struct ByteLanes
 #endif
     }
 
+    //! The same of three together: two counts, of their sums and carries
+    static ByteLanes countBits(const ByteLanes& a, const ByteLanes& b, const ByteLanes& c)
+    {
+        const ByteLanes difference = a ^ b, carries = ((a & b) | (difference & c)).countBits();
+        return (difference ^ c).countBits() + (carries + carries);
+    }
+
     //! The byte in place `at`, of the first 16, in all lanes of its group
     template <int at> static ByteLanes repeatByte(const uchar* const* bytes)
     {
@@ -266,6 +273,17 @@ struct ByteLanes
         return wasm_u8x16_extract_lane(minimum().v.val, 0);
 #else
         return v_reduce_min(v);
+#endif
+    }
+
+    //! The smallest lane of all, in all lanes
+    ByteLanes minimumOfAll() const
+    {
+#if HDP_LANES_AVX2
+        const __m128i half = _mm_min_epu8(_mm256_castsi256_si128(v.val), _mm256_extracti128_si256(v.val, 1));
+        return _mm256_broadcastb_epi8(_mm_minpos_epu16(_mm_min_epu8(half, _mm_srli_epi16(half, 8))));
+#else
+        return minimum();
 #endif
     }
 

@@ -23,18 +23,13 @@ HDP_DISPATCH(aggregateRangeStripe)
 
 void RangeScratch::prepare(const RangeProblem& problem, int rows)
 {
-    const size_t pixelsOfLine = problem.size.width + (size_t)1, pixelsOfBlock = (size_t)block * problem.size.width;
-    const size_t count = pixelsOfLine * (3 * block + 1 + rows), bytes = problem.lineBytes();
-    costs.resize(pixelsOfBlock * problem.costBytes());
-    sums.resize(problem.costBytes());
+    width = problem.size.width;
+    pixelBytes = problem.pixelBytes();
+    bytes.resize((block * (size_t)(width + 4) + width * (size_t)(1 + rows)) * pixelBytes + 3 * alignment);
+    const size_t pixelsOfBlock = (size_t)block * width;
     whole.resize(pixelsOfBlock);
     rise.resize(pixelsOfBlock);
     slope.resize(pixelsOfBlock);
-    minima.resize(count);
-    if (lineBytes != bytes ||
-        lines.size() < count * bytes + RangeProblem::row) // candidates are where others' ends were
-        lines.assign(count * bytes + RangeProblem::row, (uchar)UCHAR_MAX);
-    lineBytes = bytes;
 }
 
 void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candidates, const Mat& upper,
@@ -45,11 +40,11 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
                      RangePenalties::largest &&
                  penalties.maxPrior <= RangePenalties::maxMaxPrior);
     const Size size = weights.size();
-    RangeProblem problem = { below, size, candidates, upper, weights, intervals, penalties.small, {}, {} };
+    RangeProblem problem = { below, size, candidates, upper, weights, intervals, (uchar)penalties.small, {}, {} };
     const EdgeSimilarity similarity(penalties.gamma);
     for (int w = 0; w < 256; ++w)
-        problem.large[w] = std::max(penalties.leastLarge, cvRound(penalties.large * similarity.table[w]));
-    for (int distance = -candidates; distance < candidates + RangeProblem::row; ++distance)
+        problem.large[w] = (uchar)std::max(penalties.leastLarge, cvRound(penalties.large * similarity.table[w]));
+    for (int distance = -candidates; distance < candidates + RangeProblem::longestVector; ++distance)
         problem.priors.push_back((uchar)std::min(std::abs(distance) / penalties.priorDistance, penalties.maxPrior));
 
     disparity.create(size, CV_16U);

@@ -33,15 +33,14 @@ struct RangeProblem
     Size size;      // of the layer
     int candidates; // their number
     const Mat &upper, &weights, &intervals;
-    int small, large[256];     // penalties; large: by the edge's weight
+    uchar small, large[256];   // penalties; large: by the edge's weight
     std::vector<uchar> priors; // by the distance from the predicted candidate, from -candidates on
 
     enum
     {
-        row = 32 // costs that are stored together
+        longestVector = 32 // bytes
     };
-    int costBytes() const { return (int)alignSize(candidates, row); } // of a pixel
-    int lineBytes() const { return costBytes() + row; }               // of a pixel in a line of L
+    int pixelBytes() const { return (int)alignSize(candidates, longestVector); } // of the candidates, at most
 };
 
 //! Memory of a stripe
@@ -49,33 +48,36 @@ struct RangeScratch
 {
     enum
     {
-        block = 4 // rows that are followed side by side
-    };
-    //! L of a row of pixels and of one more, and their minima. Before the first candidate of each pixel and behind its
-    //! last one, to the end of the row of bytes and beyond, are UCHAR_MAX.
-    struct Line
-    {
-        uchar *costs, *minima;
+        block = 2 // rows that are followed side by side
     };
 
     //! Provides the memory for stripes of so many rows.
     CV_EXPORTS void prepare(const RangeProblem& problem, int rows);
 
-    //! Line number i: block + 1 from above, as many from the right and from the left as a block has rows, then one for
-    //! each row of the stripe from below
-    Line line(const RangeProblem& problem, int i)
-    {
-        const size_t pixels = problem.size.width + (size_t)1;
-        const Line of = { lines.data() + i * pixels * problem.lineBytes() + RangeProblem::row,
-                          minima.data() + i * pixels };
-        return of;
-    }
+    // Bytes of the candidates of pixels, pixel by pixel. One more may be read before and behind those of each.
+    //! C of row r of a block
+    uchar* costs(int r) { return at((size_t)r * width); }
+    //! E from the left or from the right, of a pixel of row r of a block
+    uchar* beside(int r) { return at((size_t)block * width + 2 * r); }
+    //! The sums of a pixel of row r of a block
+    uchar* sums(int r) { return at((size_t)block * (width + 2) + 2 * r); }
+    //! E from above, of a row
+    uchar* vertical() { return at((size_t)block * (width + 4)); }
+    //! E from below, of a row of the stripe
+    uchar* below(int row) { return at((size_t)block * (width + 4) + (size_t)width * (1 + row)); }
 
-    std::vector<uchar> costs, sums; // of the rows of a block, of a pixel
-    std::vector<uchar> lines, minima;
     std::vector<ushort> whole;      // winners of the rows of a block
     std::vector<short> rise, slope; // what winnerFraction() is given
-    size_t lineBytes = 0;           // what the lines are for
+
+private:
+    uchar* at(size_t pixel) { return alignPtr(bytes.data(), alignment) + alignment + pixel * pixelBytes; }
+
+    enum
+    {
+        alignment = 64
+    };
+    int width, pixelBytes;
+    std::vector<uchar> bytes;
 };
 
 struct RangeBuffers
@@ -90,14 +92,15 @@ census cost C' of the layer below, candidate h, a disparity of h / 2 pixels, of 
 C(p, h) = C'((2 x, 2 y), h) + C'((2 x + 1, 2 y + 1), h) + min(floor(|h - predicted| / priorDistance), maxPrior),
 
 predicted being the candidate next to what the layer above has found; 255 if h is not in the pixel's interval. With
-L(p, h) of a direction and q the pixel before p,
+E(p, h) of a direction and q the pixel before p,
 
-L(p, h) = C(p, h) + min(L(q, h), L(q, h - 1) + small, L(q, h + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
+L(p, h) = C(p, h) + min(E(q, h), E(q, h - 1) + small, E(q, h + 1) + small, large(p, q)),
+E(p, h) = L(p, h) - min_k L(p, k),
 large(p, q) = max(leastLarge, round(large * exp(-w(p, q) / gamma))),
 
-all sums at most 255; L = C where there is no q. The winner has the lowest sum of the directions, each less its own
-minimum, at most 255, the first of them if there are several; its sum and those of both candidates beside it give the
-sub-pixel part, as of aggregateVolume().
+all sums at most 255; L = C where there is no q. The winner has the lowest sum of E over the directions, at most 255, the
+first of them if there are several; its sum and those of both candidates beside it give the sub-pixel part, as of
+aggregateVolume().
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
 start anew some rows before each of them. A tile has those of the image that it lies in.

@@ -25,264 +25,328 @@ void aggregateRangeStripe(const RangeProblem& problem, const ScanlineStripe& str
 
 namespace {
 
-/** The directions over a stripe. Rows are followed in blocks, side by side: so one does not wait for the minimum of
-another. */
-class RangeSweep
+/** The directions over a stripe. Rows of a block are followed side by side, each a column behind the one above it: so
+none waits for the minimum of another.
+@tparam count Vectors of a pixel's candidates, which then stay in registers; 0 for any number. */
+template <int count> class RangeSweep
 {
 public:
     RangeSweep(const RangeProblem& problem, RangeScratch& scratch)
-        : p_(problem), own_(scratch), width_(problem.size.width), costBytes_(problem.costBytes()),
-          small_(ByteLanes::repeat(problem.small))
+        : p_(problem), own_(scratch), width_(problem.size.width), vectors_(count > 0 ? count : vectorsOf(problem)),
+          planes_(problem.below.planes()), small_(ByteLanes::repeat(problem.small)), vertical_(scratch.vertical())
     {
-        for (int r = 0; r <= block; ++r)
-            above_[r] = own_.line(problem, r);
-        for (int r = 0; r < block; ++r)
-        {
-            right_[r] = own_.line(problem, block + 1 + r);
-            left_[r] = own_.line(problem, 2 * block + 1 + r);
-        }
+        CV_DbgAssert(vectors_ == vectorsOf(problem) && vectors_ <= mostVectors);
+        const ptrdiff_t tail = bytes() - problem.candidates;
+        uchar marked[3 * vector] = {};
+        marked[vector] = UCHAR_MAX;
+        beforeFirst_ = ByteLanes::load(marked + vector);
+        afterLast_ = ByteLanes::load(marked + 1);
+        std::fill_n(marked + 3 * vector - tail, tail, (uchar)UCHAR_MAX);
+        tail_ = ByteLanes::load(marked + 2 * vector);
     }
+
+    static int vectorsOf(const RangeProblem& problem) { return (problem.candidates + vector - 1) / vector; }
 
     //! From below, over the rows of a stripe's reach; those of the stripe are kept.
     void followUpward(const ScanlineStripe& stripe)
     {
-        begin(above_[0]);
-        Line before = above_[0];
+        const uchar* before = own_.vertical();
         for (int y = stripe.reach.end - 1; y >= stripe.rows.start; --y)
         {
-            const Line here = y < stripe.rows.end ? below(y - stripe.rows.start) : above_[1];
-            followVertical(y, 1, before, here);
+            uchar* const here = y < stripe.rows.end ? own_.below(y - stripe.rows.start) : own_.vertical();
+            followVertical(y, y + 1 < stripe.reach.end ? edges(y, 1) : nullptr, before, here);
             before = here;
-            std::swap(above_[0], above_[1]);
         }
     }
 
     //! From above, over the rows of its reach before a stripe
     void warmUp(const ScanlineStripe& stripe)
     {
-        begin(above_[0]);
         for (int y = stripe.reach.start; y < stripe.rows.start; ++y)
-        {
-            followVertical(y, 1 - 2 * width_, above_[0], above_[1]);
-            std::swap(above_[0], above_[1]);
-        }
+            followVertical(y, y > stripe.reach.start ? edges(y - 1, 1) : nullptr, own_.vertical(), own_.vertical());
     }
 
-    //! All directions of a block of rows, and their winners; first: of the stripe
-    void run(const Range& rows, int first, Mat& disparity)
+    //! All directions of a block of rows, and their winners
+    void run(const Range& rows, const ScanlineStripe& stripe, Mat& disparity)
     {
-        const int count = rows.size();
-        for (int r = 0; r < count; ++r)
-        {
-            computeCosts(rows.start + r, costs(r));
-            begin(left_[r], 1);
-            beginPixel(right_[r], width_);
-        }
+        const int height = rows.size();
+        enterBlock(rows, stripe);
         for (int x = width_ - 1; x >= 0; --x)
-            for (int r = 0; r < count; ++r)
-                step(costs(r, x), x + 1 < width_ ? largeOf(rows.start + r, x, 0) : 0, right_[r], x + 1, right_[r], x);
-        for (int x = 0; x < width_; ++x)
-            for (int r = 0; r < count; ++r)
-                finishPixel(rows.start + r, x, r, below(rows.start + r - first));
-        for (int r = 0; r < count; ++r)
+            for (int r = 0; r < height; ++r)
+                followRight(r, x);
+        for (int t = 0; t < width_ + height - 1; ++t)
+        {
+            const Range active(std::max(t - width_ + 1, 0), std::min(t + 1, height));
+            for (int r = active.start; r < active.end; ++r)
+                row_[r].winner = finishPixel(r, t - r);
+            for (int r = active.start; r < active.end; ++r)
+                setWinner(r, t - r);
+        }
+        for (int r = 0; r < height; ++r)
             takeDisparities(r, disparity.ptr<ushort>(rows.start + r));
-        std::swap(above_[0], above_[count]);
     }
 
 private:
-    typedef RangeScratch::Line Line;
     enum
     {
         vector = 16 * ByteLanes::groups,
+        mostVectors = 64,
         block = RangeScratch::block
     };
 
-    uchar* costs(int r, int x = 0) const { return own_.costs.data() + ((size_t)r * width_ + x) * costBytes_; }
-    Line below(int row) const { return own_.line(p_, 3 * block + 1 + row); }
-    uchar* at(const Line& line, int x) const { return line.costs + x * (size_t)(costBytes_ + RangeProblem::row); }
-
-    //! L of what is before the first pixel: L = C follows, whatever the penalties are.
-    void beginPixel(const Line& line, int x) const
+    //! The candidates of a pixel
+    struct Pixel
     {
-        std::fill_n(at(line, x), costBytes_, (uchar)0);
-        line.minima[x] = 0;
-    }
-    void begin(const Line& line, int pixels) const
-    {
-        for (int x = 0; x < pixels; ++x)
-            beginPixel(line, x);
-    }
-    void begin(const Line& line) const { begin(line, width_); }
-
-    //! C(p, h) of a row
-    void computeCosts(int y, uchar* costs) const
-    {
-        const int planes = p_.below.planes();
-        if (p_.below.limits().isEmpty())
-            planes == 1   ? computeCosts<1, false>(y, costs)
-            : planes == 2 ? computeCosts<2, false>(y, costs)
-                          : computeCosts<3, false>(y, costs);
-        else
-            planes == 1   ? computeCosts<1, true>(y, costs)
-            : planes == 2 ? computeCosts<2, true>(y, costs)
-                          : computeCosts<3, true>(y, costs);
-        if (!p_.intervals.empty())
-            excludeOthers(p_.intervals.ptr<DisparityInterval>(y), costs);
-    }
-
-    //! A row of the layer below
-    struct RowBelow
-    {
-        const uchar *left, *right, *leftLimits, *rightLimits; // of its first pixel
-
-        RowBelow(const CensusCost& cost, int y)
-            : left(cost.leftPixels(y)), right(cost.rightPlane(0, y) + cost.size().width - 1), leftLimits(nullptr),
-              rightLimits(nullptr)
-        {
-            if (cost.limits().isEmpty())
-                return;
-            leftLimits = cost.limits().left(y);
-            rightLimits = cost.limits().right(y) + cost.size().width - 1;
-        }
+        ByteLanes lanes[count > 0 ? count : +mostVectors];
     };
 
-    //! A pixel of it; what is stored elsewhere meanwhile does not change it.
-    template <int planes, bool hasLimits> struct PixelBelow
+    //! What gives the costs of a row of pixels
+    struct CostRow
     {
-        ByteLanes left[planes], leftLimit;
-        const uchar *right[planes], *rightLimits;
+        const uchar *left[2], *right[2], *leftLimits[2], *rightLimits[2]; // of the first pixel of two rows below
+        const ushort* upper;
+        const DisparityInterval* intervals;
+    };
 
-        CV_ALWAYS_INLINE PixelBelow(const RowBelow& row, int x, size_t planeStride)
+    //! A row of a block
+    struct BlockRow
+    {
+        CostRow costRow;
+        const uchar *toRight, *toAbove;       // edges of the first column; to the row above: or none
+        uchar *costs, *beside, *sums, *below; // see RangeScratch
+        ushort* whole;
+        short *rise, *slope;
+        int winner; // of the last pixel
+    };
+
+    CostRow costRow(int y) const
+    {
+        CostRow row = {};
+        for (int i = 0; i < 2; ++i)
         {
-            for (int k = 0; k < planes; ++k)
+            const int lastBelow = p_.below.size().width - 1;
+            row.left[i] = p_.below.leftPixels(2 * y + i);
+            row.right[i] = p_.below.rightPlane(0, 2 * y + i) + lastBelow;
+            if (p_.below.limits().isEmpty())
+                continue;
+            row.leftLimits[i] = p_.below.limits().left(2 * y + i);
+            row.rightLimits[i] = p_.below.limits().right(2 * y + i) + lastBelow;
+        }
+        row.upper = p_.upper.ptr<ushort>(std::min(y / 2, p_.upper.rows - 1));
+        row.intervals = p_.intervals.empty() ? nullptr : p_.intervals.ptr<DisparityInterval>(y);
+        return row;
+    }
+
+    //! The edges of a row to the right or to the row below, see weighEdges()
+    const uchar* edges(int y, int below) const { return p_.weights.ptr(y) + below; }
+
+    void enterBlock(const Range& rows, const ScanlineStripe& stripe)
+    {
+        for (int r = 0; r < rows.size(); ++r)
+        {
+            const int y = rows.start + r;
+            const ptrdiff_t first = r * (ptrdiff_t)width_;
+            const BlockRow row = { costRow(y),
+                                   edges(y, 0),
+                                   y > stripe.reach.start ? edges(y - 1, 1) : nullptr,
+                                   own_.costs(r),
+                                   own_.beside(r),
+                                   own_.sums(r),
+                                   own_.below(y - stripe.rows.start),
+                                   own_.whole.data() + first,
+                                   own_.rise.data() + first,
+                                   own_.slope.data() + first,
+                                   0 };
+            row_[r] = row;
+        }
+    }
+
+    //! C'(., h) of one of the two pixels below, whose right neighbours are `right` in each plane
+    CV_ALWAYS_INLINE void addCosts(const uchar* left, const uchar* right, Pixel& costs) const
+    {
+        const int n = vectors();
+        const size_t stride = p_.below.planeStride();
+        if (planes_ == 3)
+        {
+            const ByteLanes first = ByteLanes::repeat(left[0]), second = ByteLanes::repeat(left[1]),
+                            third = ByteLanes::repeat(left[2]);
+            HDP_UNROLLED for (int k = 0; k < n; ++k)
             {
-                left[k] = ByteLanes::repeat(row.left[4 * x + k]);
-                right[k] = row.right - x + k * planeStride;
+                const uchar* const candidates = right + k * vector;
+                costs.lanes[k] =
+                    costs.lanes[k] + ByteLanes::countBits(first ^ ByteLanes::load(candidates),
+                                                          second ^ ByteLanes::load(candidates + stride),
+                                                          third ^ ByteLanes::load(candidates + 2 * stride));
             }
-            if (!hasLimits)
-                return;
-            leftLimit = ByteLanes::repeat(row.leftLimits[x]);
-            rightLimits = row.rightLimits - x;
+            return;
         }
-
-        //! C' of some candidates from d on
-        CV_ALWAYS_INLINE ByteLanes costs(int d) const
+        for (int plane = 0; plane < planes_; ++plane)
         {
-            ByteLanes cost = (left[0] ^ ByteLanes::load(right[0] + d)).countBits();
-            for (int k = 1; k < planes; ++k)
-                cost = cost + (left[k] ^ ByteLanes::load(right[k] + d)).countBits();
-            return hasLimits ? cost.min(leftLimit).min(ByteLanes::load(rightLimits + d)) : cost;
-        }
-    };
-
-    template <int planes, bool hasLimits> void computeCosts(int y, uchar* costs) const
-    {
-        const RowBelow first(p_.below, 2 * y), last(p_.below, 2 * y + 1);
-        const size_t planeStride = p_.below.planeStride();
-        const ushort* const upper = p_.upper.ptr<ushort>(std::min(y / 2, p_.upper.rows - 1));
-        const uchar* const priors = p_.priors.data() + p_.candidates;
-        const int width = width_, candidates = p_.candidates, costBytes = costBytes_, lastUpper = p_.upper.cols - 1,
-                  unit = subpixelScale / 4; // of a candidate in the layer above
-        for (int x = 0; x < width; ++x, costs += costBytes)
-        {
-            const int predicted = (upper[std::min(x / 2, lastUpper)] + unit / 2) / unit;
-            const uchar* const prior = priors - std::min(predicted, candidates);
-            const PixelBelow<planes, hasLimits> a(first, 2 * x, planeStride), b(last, 2 * x + 1, planeStride);
-            for (int d = 0; d < costBytes; d += vector)
-                (a.costs(d) + b.costs(d) + ByteLanes::load(prior + d)).store(costs + d);
-            std::fill(costs + candidates, costs + costBytes, (uchar)UCHAR_MAX);
+            const ByteLanes census = ByteLanes::repeat(left[plane]);
+            const uchar* const candidates = right + plane * stride;
+            HDP_UNROLLED for (int k = 0; k < n; ++k) costs.lanes[k] =
+                costs.lanes[k] + (census ^ ByteLanes::load(candidates + k * vector)).countBits();
         }
     }
 
-    void excludeOthers(const DisparityInterval* intervals, uchar* costs) const
+    //! C(p, h) of a pixel
+    CV_ALWAYS_INLINE void costsOf(const CostRow& row, int x, Pixel& costs) const
     {
-        const int candidates = p_.candidates;
-        for (int x = 0; x < width_; ++x, costs += costBytes_)
+        const int n = vectors();
+        const int lastUpper = p_.upper.cols - 1, unit = subpixelScale / 4; // of a candidate in the layer above
+        const int predicted = (row.upper[std::min(x / 2, lastUpper)] + unit / 2) / unit;
+        const uchar* const prior = p_.priors.data() + p_.candidates - std::min(predicted, p_.candidates);
+        if (row.leftLimits[0] || row.intervals)
+            return restrictedCosts(row, x, prior, costs);
+        HDP_UNROLLED for (int k = 0; k < n; ++k) costs.lanes[k] = ByteLanes::load(prior + k * vector);
+        addCosts(row.left[0] + 8 * x, row.right[0] - 2 * x, costs);
+        addCosts(row.left[1] + 8 * x + 4, row.right[1] - 2 * x - 1, costs);
+        costs.lanes[n - 1] = costs.lanes[n - 1] | tail_;
+    }
+
+    //! The same where some pixels have no data or not all candidates
+    void restrictedCosts(const CostRow& row, int x, const uchar* prior, Pixel& costs) const
+    {
+        const int n = vectors();
+        for (int k = 0; k < n; ++k)
+            costs.lanes[k] = ByteLanes::load(prior + k * vector);
+        for (int i = 0; i < 2; ++i)
         {
-            std::fill(costs, costs + std::min<int>(intervals[x].first, candidates), (uchar)UCHAR_MAX);
-            std::fill(costs + std::min(intervals[x].last + 1, candidates), costs + candidates, (uchar)UCHAR_MAX);
+            Pixel below;
+            std::fill_n(below.lanes, vectors(), ByteLanes::repeat(0));
+            addCosts(row.left[i] + 4 * (2 * x + i), row.right[i] - 2 * x - i, below);
+            if (row.leftLimits[i])
+                limit(row, i, 2 * x + i, below);
+            for (int k = 0; k < n; ++k)
+                costs.lanes[k] = costs.lanes[k] + below.lanes[k];
+        }
+        if (row.intervals)
+            excludeOthers(row.intervals[x], costs);
+        costs.lanes[n - 1] = costs.lanes[n - 1] | tail_;
+    }
+
+    void limit(const CostRow& row, int i, int xBelow, Pixel& costs) const
+    {
+        const ByteLanes left = ByteLanes::repeat(row.leftLimits[i][xBelow]);
+        const uchar* const right = row.rightLimits[i] - xBelow;
+        const int n = vectors();
+        for (int k = 0; k < n; ++k)
+            costs.lanes[k] = costs.lanes[k].min(left).min(ByteLanes::load(right + k * vector));
+    }
+
+    void excludeOthers(const DisparityInterval& interval, Pixel& costs) const
+    {
+        uchar* const bytes = own_.sums(0);
+        store(costs, bytes);
+        const int first = std::min<int>(interval.first, p_.candidates), end = interval.last + 1;
+        std::fill_n(bytes, first, (uchar)UCHAR_MAX);
+        if (end < p_.candidates)
+            std::fill(bytes + end, bytes + p_.candidates, (uchar)UCHAR_MAX);
+        load(bytes, costs);
+    }
+
+    CV_ALWAYS_INLINE void load(const uchar* from, Pixel& pixel) const
+    {
+        const int n = vectors();
+        HDP_UNROLLED for (int k = 0; k < n; ++k) pixel.lanes[k] = ByteLanes::load(from + k * vector);
+    }
+    CV_ALWAYS_INLINE void store(const Pixel& pixel, uchar* to) const
+    {
+        const int n = vectors();
+        HDP_UNROLLED for (int k = 0; k < n; ++k) pixel.lanes[k].store(to + k * vector);
+    }
+    CV_ALWAYS_INLINE ByteLanes lowest(const Pixel& pixel) const
+    {
+        const int n = vectors();
+        ByteLanes least = pixel.lanes[0];
+        HDP_UNROLLED for (int k = 1; k < n; ++k) least = least.min(pixel.lanes[k]);
+        return least.minimumOfAll();
+    }
+
+    /** E of a pixel in a direction, from its costs and E of the pixel before. No edge: there is none before.
+    @param edge Its weight. */
+    CV_ALWAYS_INLINE void step(const Pixel& costs, const uchar* before, const uchar* edge, Pixel& e) const
+    {
+        const ByteLanes jump = ByteLanes::repeat(edge ? p_.large[*edge] : 0);
+        const int last = vectors() - 1;
+        HDP_UNROLLED for (int k = 0; k <= last; ++k)
+        {
+            ByteLanes lower = ByteLanes::load(before + k * vector - 1),
+                      higher = ByteLanes::load(before + k * vector + 1);
+            if (k == 0)
+                lower = lower | beforeFirst_;
+            if (k == last)
+                higher = higher | afterLast_;
+            const ByteLanes beside = lower.min(higher) + small_;
+            e.lanes[k] = costs.lanes[k] + ByteLanes::load(before + k * vector).min(beside).min(jump);
+        }
+        const ByteLanes least = lowest(e);
+        HDP_UNROLLED for (int k = 0; k <= last; ++k) e.lanes[k] = e.lanes[k] - least;
+        e.lanes[last] = e.lanes[last] | tail_;
+    }
+
+    //! E of a row of pixels from above or below. edges: to the row before, or none
+    void followVertical(int y, const uchar* edges, const uchar* before, uchar* here) const
+    {
+        const CostRow row = costRow(y);
+        for (int x = 0; x < width_; ++x, before += bytes(), here += bytes())
+        {
+            Pixel costs, e;
+            costsOf(row, x, costs);
+            step(costs, before, edges ? edges + 2 * x : nullptr, e);
+            store(e, here);
         }
     }
 
-    //! L of a pixel in a direction, from that of the pixel before
-    CV_ALWAYS_INLINE void step(const uchar* costs, int large, const Line& before, int xBefore, const Line& line,
-                               int x) const
+    //! From the right: adds E to that from below.
+    CV_ALWAYS_INLINE void followRight(int r, int x)
     {
-        const int least = before.minima[xBefore], count = costBytes_;
-        const uchar* const from = at(before, xBefore);
-        uchar* const here = at(line, x);
-        const ByteLanes leastOfAll = ByteLanes::repeat(least), jump = ByteLanes::repeat(std::min(least + large, 255)),
-                        small = small_;
-        ByteLanes minimum = ByteLanes::repeat(UCHAR_MAX);
-        for (int d = 0; d < count; d += vector)
+        const int n = vectors();
+        const BlockRow& row = row_[r];
+        Pixel costs, e;
+        costsOf(row.costRow, x, costs);
+        store(costs, row.costs + x * bytes());
+        step(costs, row.beside, x + 1 < width_ ? row.toRight + 2 * x : nullptr, e);
+        store(e, row.beside);
+        uchar* const sums = row.below + x * bytes();
+        HDP_UNROLLED for (int k = 0; k < n; ++k)(e.lanes[k] + ByteLanes::load(sums + k * vector))
+            .store(sums + k * vector);
+    }
+
+    //! From the left and from above; returns the winner.
+    CV_ALWAYS_INLINE int finishPixel(int r, int x)
+    {
+        const int n = vectors();
+        const BlockRow& row = row_[r];
+        Pixel costs, fromLeft, fromAbove, sums;
+        load(row.costs + x * bytes(), costs);
+        step(costs, row.beside, x > 0 ? row.toRight + 2 * x - 2 : nullptr, fromLeft);
+        store(fromLeft, row.beside);
+        uchar* const above = vertical_ + x * bytes();
+        step(costs, above, row.toAbove ? row.toAbove + 2 * x : nullptr, fromAbove);
+        store(fromAbove, above);
+        load(row.below + x * bytes(), sums);
+        HDP_UNROLLED for (int k = 0; k < n; ++k) sums.lanes[k] =
+            sums.lanes[k] + (fromLeft.lanes[k] + fromAbove.lanes[k]);
+        store(sums, row.sums);
+        const ByteLanes least = lowest(sums);
+        for (int k = 0; k < n; ++k)
         {
-            const ByteLanes beside = ByteLanes::load(from + d - 1).min(ByteLanes::load(from + d + 1)) + small;
-            const ByteLanes best = ByteLanes::load(from + d).min(beside).min(jump);
-            const ByteLanes l = ByteLanes::load(costs + d) + (best - leastOfAll);
-            l.store(here + d);
-            minimum = minimum.min(l);
-        }
-        line.minima[x] = (uchar)minimum.lowest();
-    }
-
-    //! The large penalty of an edge of a pixel, which is `edge` from twice its number, see weighEdges()
-    int largeOf(int y, int x, int edge) const
-    {
-        return p_.large[p_.weights.ptr()[2 * (y * (ptrdiff_t)width_ + x) + edge]];
-    }
-
-    void followVertical(int y, int edge, const Line& before, const Line& here)
-    {
-        computeCosts(y, costs(0));
-        const bool isInside = edge > 0 ? y + 1 < p_.size.height : y > 0;
-        for (int x = 0; x < width_; ++x)
-            step(costs(0, x), isInside ? largeOf(y, x, edge) : 0, before, x, here, x);
-    }
-
-    //! From the left and from above, and the winner
-    void finishPixel(int y, int x, int r, const Line& below)
-    {
-        const Line &left = left_[r], &right = right_[r], &above = above_[r + 1];
-        const int to = (x + 1) & 1;
-        step(costs(r, x), x > 0 ? largeOf(y, x, -2) : 0, left, x & 1, left, to);
-        step(costs(r, x), y > 0 ? largeOf(y, x, 1 - 2 * width_) : 0, above_[r], x, above, x);
-        const uchar* const lines[] = { at(left, to), at(right, x), at(above, x), at(below, x) };
-        const ByteLanes minima[] = { ByteLanes::repeat(left.minima[to]), ByteLanes::repeat(right.minima[x]),
-                                     ByteLanes::repeat(above.minima[x]), ByteLanes::repeat(below.minima[x]) };
-        uchar* const sums = own_.sums.data();
-        const int count = costBytes_;
-        ByteLanes minimum = ByteLanes::repeat(UCHAR_MAX);
-        for (int d = 0; d < count; d += vector)
-        {
-            const auto excess = [&](int i) { return ByteLanes::load(lines[i] + d) - minima[i]; };
-            const ByteLanes sum = (excess(0) + excess(1)) + (excess(2) + excess(3));
-            sum.store(sums + d);
-            minimum = minimum.min(sum);
-        }
-        setWinner(std::min(positionOf(minimum.lowest()), p_.candidates - 1), r, x);
-    }
-
-    //! Of the first sum that is this
-    int positionOf(int lowest) const
-    {
-        const uchar* const sums = own_.sums.data();
-        const ByteLanes searched = ByteLanes::repeat(lowest);
-        for (int d = 0; d < costBytes_; d += vector)
-        {
-            const int lane = ByteLanes::load(sums + d).firstEqual(searched);
+            const int lane = sums.lanes[k].firstEqual(least);
             if (lane >= 0)
-                return d + lane;
+                return std::min(k * vector + lane, p_.candidates - 1);
         }
         return 0;
     }
 
-    void setWinner(int winner, int r, int x)
+    void setWinner(int r, int x)
     {
-        const WinnerSlope beside = slopeOfWinner(own_.sums.data(), winner, p_.candidates - 1);
-        const size_t i = (size_t)r * width_ + x;
-        own_.whole[i] = (ushort)winner;
-        own_.rise[i] = (short)beside.rise;
-        own_.slope[i] = (short)beside.slope;
+        const BlockRow& row = row_[r];
+        const int winner = row.winner;
+        const WinnerSlope beside = slopeOfWinner(row.sums, winner, p_.candidates - 1);
+        row.whole[x] = (ushort)winner;
+        row.rise[x] = (short)beside.rise;
+        row.slope[x] = (short)beside.slope;
     }
 
     void takeDisparities(int r, ushort* disparity) const
@@ -295,24 +359,42 @@ private:
             disparityOfSums(whole[x], rise[x], slope[x], bit, 1);
     }
 
+    //! Of the candidates of a pixel, a number that the compiler knows
+    CV_ALWAYS_INLINE int vectors() const { return count > 0 ? count : vectors_; }
+    CV_ALWAYS_INLINE ptrdiff_t bytes() const { return (ptrdiff_t)vectors() * vector; }
+
     const RangeProblem& p_;
     RangeScratch& own_;
-    const int width_, costBytes_;
+    const int width_, vectors_, planes_;
     const ByteLanes small_;
-    Line above_[block + 1], right_[block], left_[block];
+    ByteLanes beforeFirst_, afterLast_, tail_; // 255 in lanes that no candidate is in
+    uchar* const vertical_;                    // see RangeScratch
+    BlockRow row_[block];
 };
+
+template <int count>
+void sweepStripe(const RangeProblem& problem, const ScanlineStripe& stripe, RangeScratch& scratch, Mat& disparity)
+{
+    const Range& rows = stripe.rows;
+    RangeSweep<count> sweep(problem, scratch);
+    sweep.followUpward(stripe);
+    sweep.warmUp(stripe);
+    for (int y = rows.start; y < rows.end; y += RangeScratch::block)
+        sweep.run(Range(y, std::min(y + RangeScratch::block, rows.end)), stripe, disparity);
+}
 
 } // namespace
 
 void aggregateRangeStripe(const RangeProblem& problem, const ScanlineStripe& stripe, RangeScratch& scratch,
                           Mat& disparity)
 {
-    const Range& rows = stripe.rows;
-    RangeSweep sweep(problem, scratch);
-    sweep.followUpward(stripe);
-    sweep.warmUp(stripe);
-    for (int y = rows.start; y < rows.end; y += RangeScratch::block)
-        sweep.run(Range(y, std::min(y + RangeScratch::block, rows.end)), rows.start, disparity);
+    static void (*const sweeps[])(const RangeProblem&, const ScanlineStripe&, RangeScratch&,
+                                  Mat&) = { sweepStripe<1>, sweepStripe<2>, sweepStripe<3>, sweepStripe<4> };
+    const int vectors = RangeSweep<0>::vectorsOf(problem);
+    const auto sweep = vectors <= 4   ? sweeps[vectors - 1]
+                       : vectors == 8 ? sweepStripe<8> // of 16 bytes: 128 candidates, as four of 32
+                                      : sweepStripe<0>;
+    sweep(problem, stripe, scratch, disparity);
 }
 
 #endif

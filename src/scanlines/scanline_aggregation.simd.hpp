@@ -233,10 +233,7 @@ private:
         if (planes == 2)
             return contrast + first.countBits() + second.countBits();
         const ByteLanes third = ByteLanes::repeatByte<at + 2>(left) ^ ofPlane(2);
-        // Sum and carry of three bits: two counts instead of three
-        const ByteLanes difference = first ^ second;
-        const ByteLanes carries = ((first & second) | (difference & third)).countBits();
-        return contrast + (difference ^ third).countBits() + (carries + carries);
+        return contrast + ByteLanes::countBits(first, second, third);
     }
 
     //! L(p, d) - m of a direction; cost: C(p, d) + large; h: H of the pixel before, which becomes that of this one;
