@@ -4,6 +4,9 @@
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "../base/vectorized.hpp"
 #include "edge_vote_rows.hpp"
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#include "../base/word_lanes.simd.hpp"
+#endif
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
@@ -20,22 +23,19 @@ void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* f
 
 namespace {
 
-//! The disparities of two surfaces: (middle, nearest] and [farthest, middle]
-struct TwoSurfaces
+//! Disparities from the first to the last one
+struct Surface
 {
-    ushort nearest, middle, farthest;
-};
+    WordLanes first, last;
 
-//! The vote of a pixel for one of the surfaces, added to its votes
-CV_ALWAYS_INLINE void addVote(ushort change, ushort d, ushort likeness, ushort nearness, const TwoSurfaces& surfaces,
-                              ushort& near, ushort& far)
-{
-    const ushort vote = (ushort)((ushort)(std::max(likeness, change) - change) * nearness);
-    const ushort isNear = (ushort) - (ushort)((d > surfaces.middle) & (d <= surfaces.nearest));
-    const ushort isFar = (ushort) - (ushort)((d >= surfaces.farthest) & (d <= surfaces.middle));
-    near = (ushort)(near + (vote & isNear));
-    far = (ushort)(far + (vote & isFar));
-}
+    Surface(int first_, int last_) : first(WordLanes::repeat(first_)), last(WordLanes::repeat(last_)) {}
+
+    //! The votes of those pixels whose disparities it has
+    CV_ALWAYS_INLINE WordLanes votes(const WordLanes& all, const WordLanes& disparity) const
+    {
+        return all.whereEqual(disparity, disparity.max(first).min(last));
+    }
+};
 
 /** Whether a pixel of the nearer surface is in a bar: across it the farther surface begins within barWidth pixels both
 ways, along it the nearer one goes on for as many at least one way. Beyond the image it goes on. */
@@ -55,12 +55,13 @@ inline bool isInBar(const VoteRows& rows, int x, ushort middle)
     return (!left && !right && (up || down)) || (!up && !down && (left || right));
 }
 
-//! The largest absolute difference over the channels of pixels u and x, of row number r and the one in the middle
-template <int channels> CV_ALWAYS_INLINE ushort differenceOf(const VoteRows& rows, int r, int u, const uchar* colour)
+//! Differences of 16 pixels of a row from a colour: of the channel that has the largest one
+template <int channels>
+CV_ALWAYS_INLINE WordLanes differenceOf(const VoteRows& rows, int r, int start, const WordLanes* colour)
 {
-    uchar largest = difference(rows.colour[0][r][u], colour[0]);
+    WordLanes largest = WordLanes::load(rows.colour[0][r] + start).difference(colour[0]);
     for (int c = 1; c < channels; ++c)
-        largest = std::max(largest, difference(rows.colour[c][r][u], colour[c]));
+        largest = largest.max(WordLanes::load(rows.colour[c][r] + start).difference(colour[c]));
     return largest;
 }
 
@@ -69,31 +70,27 @@ template <int channels>
 inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort nearest, ushort farthest)
 {
     const int start = std::min(std::max(x - VoteRows::columnsBefore, 0), rows.width - VoteRows::columns);
-    const ushort* const columnNearness = rule.columnNearness + start - x;
-    const ushort own = rows.disparity[VoteRows::rows / 2][x];
-    uchar colour[channels];
+    const int middle = (nearest + farthest) / 2;
+    const Surface near(middle + 1, std::min(nearest + rule.reach, (int)USHRT_MAX));
+    const Surface far(std::max(farthest - rule.reach, 0), middle);
+    const WordLanes columnNearness = WordLanes::load(rule.columnNearness + start - x);
+    const WordLanes likeness = WordLanes::repeat(rule.likeness);
+    WordLanes colour[channels], majority = WordLanes::repeat(0);
     for (int c = 0; c < channels; ++c)
-        colour[c] = rows.colour[c][VoteRows::rows / 2][x];
-    const TwoSurfaces surfaces = { (ushort)std::min(nearest + rule.reach, (int)USHRT_MAX),
-                                   (ushort)((nearest + farthest) / 2), (ushort)std::max(farthest - rule.reach, 0) };
-    const ushort likeness = rule.likeness;
-    ushort near[VoteRows::columns], far[VoteRows::columns];
-    HDP_VECTORIZED for (int k = 0; k < VoteRows::columns; ++k)
+        colour[c] = WordLanes::repeat(rows.colour[c][VoteRows::rows / 2][x]);
+    HDP_UNROLLED for (int r = 0; r < VoteRows::rows; ++r)
     {
-        near[k] = far[k] = 0;
-        HDP_UNROLLED for (int r = 0; r < VoteRows::rows; ++r)
-            addVote(differenceOf<channels>(rows, r, start + k, colour), rows.disparity[r][start + k], likeness,
-                    std::min(columnNearness[k], rule.rowNearness[r]), surfaces, near[k], far[k]);
+        const WordLanes change = differenceOf<channels>(rows, r, start, colour).min(likeness);
+        const WordLanes votes =
+            likeness.minus(change).times(columnNearness.min(WordLanes::repeat(rule.rowNearness[r])));
+        const WordLanes disparity = WordLanes::load(rows.disparity[r] + start);
+        majority = majority.plus(near.votes(votes, disparity)).minus(far.votes(votes, disparity));
     }
-    int nearVotes = 0, farVotes = 0;
-    for (int k = 0; k < VoteRows::columns; ++k)
-    {
-        nearVotes += near[k];
-        farVotes += far[k];
-    }
-    if (own <= surfaces.middle)
-        return nearVotes > farVotes ? nearest : own;
-    return farVotes > nearVotes && !isInBar(rows, x, surfaces.middle) ? farthest : own;
+    const int nearVotes = majority.sum(); // less those for the other one
+    const ushort own = rows.disparity[VoteRows::rows / 2][x];
+    if (own <= middle)
+        return nearVotes > 0 ? nearest : own;
+    return nearVotes < 0 && !isInBar(rows, x, (ushort)middle) ? farthest : own;
 }
 
 CV_ALWAYS_INLINE ushort largestOfThree(const ushort* v) { return std::max(std::max(v[0], v[2]), v[1]); }

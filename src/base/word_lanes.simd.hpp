@@ -1,0 +1,105 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set, as the *.simd.hpp that include it: no include guard.
+#include "byte_lanes.simd.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+//! 16 words without sign, in one vector or two, under names that all versions of OpenCV have in common
+struct WordLanes
+{
+#if HDP_LANES_AVX2
+    typedef v_uint16x16 Vector;
+    enum
+    {
+        parts = 1
+    };
+    static Vector all(int word) { return v256_setall_u16((ushort)word); }
+    static Vector loadPart(const ushort* words) { return v256_load(words); }
+    static Vector loadPart(const uchar* bytes) { return v256_load_expand(bytes); }
+#else
+    typedef v_uint16x8 Vector;
+    enum
+    {
+        parts = 2
+    };
+    static Vector all(int word) { return v_setall_u16((ushort)word); }
+    static Vector loadPart(const ushort* words) { return v_load(words); }
+    static Vector loadPart(const uchar* bytes) { return v_load_expand(bytes); }
+#endif
+    Vector v[parts];
+
+    WordLanes() {}
+
+    static WordLanes repeat(int word)
+    {
+        return of([=](int) { return all(word); });
+    }
+    //! Of words or bytes
+    template <typename T> static WordLanes load(const T* from)
+    {
+        return of([=](int i) { return loadPart(from + i * 16 / parts); });
+    }
+
+    WordLanes max(const WordLanes& b) const
+    {
+        return of([&](int i) { return v_max(v[i], b.v[i]); });
+    }
+    WordLanes min(const WordLanes& b) const
+    {
+        return of([&](int i) { return v_min(v[i], b.v[i]); });
+    }
+    WordLanes difference(const WordLanes& b) const // its absolute value
+    {
+        return of([&](int i) { return v_absdiff(v[i], b.v[i]); });
+    }
+
+    // Modulo 2^16
+    WordLanes plus(const WordLanes& b) const
+    {
+        return of([&](int i) { return v_add_wrap(v[i], b.v[i]); });
+    }
+    WordLanes minus(const WordLanes& b) const
+    {
+        return of([&](int i) { return v_sub_wrap(v[i], b.v[i]); });
+    }
+    WordLanes times(const WordLanes& b) const
+    {
+        return of([&](int i) { return v_mul_wrap(v[i], b.v[i]); });
+    }
+
+    //! Its own lanes where those of a and b are the same, 0 elsewhere
+    WordLanes whereEqual(const WordLanes& a, const WordLanes& b) const
+    {
+        return of([&](int i) { return v_select(equal(a.v[i], b.v[i]), v[i], all(0)); });
+    }
+
+    //! The sum of all lanes, as numbers with sign, which is one of 16 bits
+    int sum() const
+    {
+        int result = 0;
+        for (int i = 0; i < parts; ++i)
+            result += v_reduce_sum(v_reinterpret_as_s16(v[i]));
+        return result;
+    }
+
+private:
+    template <class Part> static CV_ALWAYS_INLINE WordLanes of(const Part& part)
+    {
+        WordLanes result;
+        HDP_UNROLLED for (int i = 0; i < parts; ++i) result.v[i] = part(i);
+        return result;
+    }
+
+#if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9
+    static Vector equal(const Vector& a, const Vector& b) { return a == b; }
+#else
+    static Vector equal(const Vector& a, const Vector& b) { return v_eq(a, b); }
+#endif
+};
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}}} // namespace cv::stereo::hdp
