@@ -38,7 +38,7 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
 {
     CV_DbgAssert(std::max(std::max(penalties.small, penalties.large), penalties.leastLarge) <=
                      RangePenalties::largest &&
-                 penalties.maxPrior <= RangePenalties::maxMaxPrior);
+                 penalties.maxPrior <= RangePenalties::maxMaxPrior && candidates <= RangeProblem::mostCandidates);
     const Size size = weights.size();
     RangeProblem problem = { below, size, candidates, upper, weights, intervals, (uchar)penalties.small, {}, {} };
     const EdgeSimilarity similarity(penalties.gamma);

@@ -38,7 +38,8 @@ struct RangeProblem
 
     enum
     {
-        longestVector = 32 // bytes
+        longestVector = 32, // bytes
+        mostCandidates = 1024
     };
     int pixelBytes() const { return (int)alignSize(candidates, longestVector); } // of the candidates, at most
 };
@@ -106,7 +107,7 @@ The image is cut into stripes that do not depend on the number of threads; the d
 start anew some rows before each of them. A tile has those of the image that it lies in.
 @param below The census cost of the layer below.
 @param frame Where the layer lies in a larger image, if it is that of a tile.
-@param candidates Their number.
+@param candidates Their number, at most RangeProblem::mostCandidates.
 @param upper The disparities of the layer above, CV_16UC1, a disparity map.
 @param weights w, CV_8UC2, of the layer, see weighEdges().
 @param intervals The candidates of the layer's pixels, DisparityInterval, or an empty Mat: all of them.
