@@ -5,7 +5,7 @@
 #include "../base/vectorized.hpp"
 #include "edge_vote_rows.hpp"
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "../base/word_lanes.simd.hpp"
+#include "../base/sixteen_words.simd.hpp"
 #endif
 
 namespace cv { namespace stereo { namespace hdp {
@@ -26,12 +26,12 @@ namespace {
 //! Disparities from the first to the last one
 struct Surface
 {
-    WordLanes first, last;
+    SixteenWords first, last;
 
-    Surface(int first_, int last_) : first(WordLanes::repeat(first_)), last(WordLanes::repeat(last_)) {}
+    Surface(int first_, int last_) : first(SixteenWords::repeat(first_)), last(SixteenWords::repeat(last_)) {}
 
     //! The votes of those pixels whose disparities it has
-    CV_ALWAYS_INLINE WordLanes votes(const WordLanes& all, const WordLanes& disparity) const
+    CV_ALWAYS_INLINE SixteenWords votes(const SixteenWords& all, const SixteenWords& disparity) const
     {
         return all.whereEqual(disparity, disparity.max(first).min(last));
     }
@@ -57,11 +57,11 @@ inline bool isInBar(const VoteRows& rows, int x, ushort middle)
 
 //! Differences of 16 pixels of a row from a colour: of the channel that has the largest one
 template <int channels>
-CV_ALWAYS_INLINE WordLanes differenceOf(const VoteRows& rows, int r, int start, const WordLanes* colour)
+CV_ALWAYS_INLINE SixteenWords differenceOf(const VoteRows& rows, int r, int start, const SixteenWords* colour)
 {
-    WordLanes largest = WordLanes::load(rows.colour[0][r] + start).difference(colour[0]);
+    SixteenWords largest = SixteenWords::load(rows.colour[0][r] + start).difference(colour[0]);
     for (int c = 1; c < channels; ++c)
-        largest = largest.max(WordLanes::load(rows.colour[c][r] + start).difference(colour[c]));
+        largest = largest.max(SixteenWords::load(rows.colour[c][r] + start).difference(colour[c]));
     return largest;
 }
 
@@ -73,17 +73,17 @@ inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort n
     const int middle = (nearest + farthest) / 2;
     const Surface near(middle + 1, std::min(nearest + rule.reach, (int)USHRT_MAX));
     const Surface far(std::max(farthest - rule.reach, 0), middle);
-    const WordLanes columnNearness = WordLanes::load(rule.columnNearness + start - x);
-    const WordLanes likeness = WordLanes::repeat(rule.likeness);
-    WordLanes colour[channels], majority = WordLanes::repeat(0);
+    const SixteenWords columnNearness = SixteenWords::load(rule.columnNearness + start - x);
+    const SixteenWords likeness = SixteenWords::repeat(rule.likeness);
+    SixteenWords colour[channels], majority = SixteenWords::repeat(0);
     for (int c = 0; c < channels; ++c)
-        colour[c] = WordLanes::repeat(rows.colour[c][VoteRows::rows / 2][x]);
+        colour[c] = SixteenWords::repeat(rows.colour[c][VoteRows::rows / 2][x]);
     HDP_UNROLLED for (int r = 0; r < VoteRows::rows; ++r)
     {
-        const WordLanes change = differenceOf<channels>(rows, r, start, colour).min(likeness);
-        const WordLanes votes =
-            likeness.minus(change).times(columnNearness.min(WordLanes::repeat(rule.rowNearness[r])));
-        const WordLanes disparity = WordLanes::load(rows.disparity[r] + start);
+        const SixteenWords change = differenceOf<channels>(rows, r, start, colour).min(likeness);
+        const SixteenWords votes =
+            likeness.minus(change).times(columnNearness.min(SixteenWords::repeat(rule.rowNearness[r])));
+        const SixteenWords disparity = SixteenWords::load(rows.disparity[r] + start);
         majority = majority.plus(near.votes(votes, disparity)).minus(far.votes(votes, disparity));
     }
     const int nearVotes = majority.sum(); // less those for the other one

@@ -9,7 +9,7 @@ namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 //! 16 words without sign, in one vector or two, under names that all versions of OpenCV have in common
-struct WordLanes
+struct SixteenWords
 {
 #if HDP_LANES_AVX2
     typedef v_uint16x16 Vector;
@@ -32,47 +32,47 @@ struct WordLanes
 #endif
     Vector v[parts];
 
-    WordLanes() {}
+    SixteenWords() {}
 
-    static WordLanes repeat(int word)
+    static SixteenWords repeat(int word)
     {
         return of([=](int) { return all(word); });
     }
     //! Of words or bytes
-    template <typename T> static WordLanes load(const T* from)
+    template <typename T> static SixteenWords load(const T* from)
     {
         return of([=](int i) { return loadPart(from + i * 16 / parts); });
     }
 
-    WordLanes max(const WordLanes& b) const
+    SixteenWords max(const SixteenWords& b) const
     {
         return of([&](int i) { return v_max(v[i], b.v[i]); });
     }
-    WordLanes min(const WordLanes& b) const
+    SixteenWords min(const SixteenWords& b) const
     {
         return of([&](int i) { return v_min(v[i], b.v[i]); });
     }
-    WordLanes difference(const WordLanes& b) const // its absolute value
+    SixteenWords difference(const SixteenWords& b) const // its absolute value
     {
         return of([&](int i) { return v_absdiff(v[i], b.v[i]); });
     }
 
     // Modulo 2^16
-    WordLanes plus(const WordLanes& b) const
+    SixteenWords plus(const SixteenWords& b) const
     {
         return of([&](int i) { return v_add_wrap(v[i], b.v[i]); });
     }
-    WordLanes minus(const WordLanes& b) const
+    SixteenWords minus(const SixteenWords& b) const
     {
         return of([&](int i) { return v_sub_wrap(v[i], b.v[i]); });
     }
-    WordLanes times(const WordLanes& b) const
+    SixteenWords times(const SixteenWords& b) const
     {
         return of([&](int i) { return v_mul_wrap(v[i], b.v[i]); });
     }
 
     //! Its own lanes where those of a and b are the same, 0 elsewhere
-    WordLanes whereEqual(const WordLanes& a, const WordLanes& b) const
+    SixteenWords whereEqual(const SixteenWords& a, const SixteenWords& b) const
     {
         return of([&](int i) { return v_select(equal(a.v[i], b.v[i]), v[i], all(0)); });
     }
@@ -87,9 +87,9 @@ struct WordLanes
     }
 
 private:
-    template <class Part> static CV_ALWAYS_INLINE WordLanes of(const Part& part)
+    template <class Part> static CV_ALWAYS_INLINE SixteenWords of(const Part& part)
     {
-        WordLanes result;
+        SixteenWords result;
         HDP_UNROLLED for (int i = 0; i < parts; ++i) result.v[i] = part(i);
         return result;
     }
