@@ -158,11 +158,15 @@ struct ByteLanes
 #endif
     }
 
-    //! The same of three together: two counts, of their sums and carries
+    //! The same of three together. Without an instruction for it, their sums and carries take two counts, not three.
     static ByteLanes countBits(const ByteLanes& a, const ByteLanes& b, const ByteLanes& c)
     {
+#if HDP_LANES_NEON || HDP_LANES_WASM
+        return a.countBits() + b.countBits() + c.countBits();
+#else
         const ByteLanes difference = a ^ b, carries = ((a & b) | (difference & c)).countBits();
         return (difference ^ c).countBits() + (carries + carries);
+#endif
     }
 
     //! The byte in place `at`, of the first 16, in all lanes of its group
@@ -291,7 +295,13 @@ struct ByteLanes
     int firstEqual(const ByteLanes& b) const
     {
         const Vector isEqual = equals(b);
+#if HDP_LANES_NEON && defined(__GNUC__)
+        const uint8x8_t halves = vshrn_n_u16(vreinterpretq_u16_u8(isEqual.val), 4); // of each lane, in order
+        const uint64_t mask = vget_lane_u64(vreinterpret_u64_u8(halves), 0);
+        return mask ? __builtin_ctzll(mask) / 4 : -1;
+#else
         return v_check_any(isEqual) ? v_scan_forward(isEqual) : -1;
+#endif
     }
 
     //! The first of the smallest lanes of each group
