@@ -119,7 +119,7 @@ inline bool isCut(const Mat& before, const Mat& now)
             change += std::abs(now.at<uchar>(y, x) - before.at<uchar>(y, x));
             contrast += std::abs(now.at<uchar>(y, x) - mean);
         }
-    return contrast < 4 * (int)now.total() || (change > 4 * (int)now.total() && 100 * change > 60 * contrast);
+    return 100 * change > 60 * contrast;
 }
 
 //! See hdp::joinLastFrame(); for frames that continue and images of at least a cell.

@@ -31,9 +31,6 @@ HDP_TUNABLE(int, minDeviation, 12, "grey levels", "before brightening: a darker 
 // What is no cut, on the coarsest level
 HDP_TUNABLE(int, cutShare, 60, "percent of the contrast",
             "of changes: less is motion and noise, more is another scene");
-HDP_TUNABLE(int, cutNoise, 4, "grey levels", "of changes on average: images without contrast change by noise");
-HDP_TUNABLE(int, cutContrast, 4, "grey levels",
-            "of contrast on average, before brightening: a darker image does not tell, fewer levels are steps");
 HDP_TUNABLE(int, cutKnown, 25, "percent of the pixels", "that were in the last frame: fewer do not tell");
 
 // What is the same in two frames
@@ -103,8 +100,7 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
     return scaled(fitMotion(points, size, smallError), cell);
 }
 
-//! Whether this frame shows another scene, or none: on the coarsest level, about as much changed as there is contrast,
-//! or there is hardly any.
+//! Whether this frame shows another scene: on the coarsest level, about as much changed as there is contrast.
 bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const FramePrediction& p)
 {
     const int level = (int)greyNow.size() - 1, side = cell << level;
@@ -127,8 +123,7 @@ bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const Frame
             change += std::abs(now.ptr(y)[x] - before.ptr(at.y)[at.x]);
             contrast += std::abs(now.ptr(y)[x] - mean);
         }
-    return 100 * known < cutKnown * (int64)now.total() || contrast < (cutContrast * known * last.brightness) ||
-           (change > cutNoise * known && 100 * change > cutShare * contrast);
+    return 100 * known < cutKnown * (int64)now.total() || 100 * change > cutShare * contrast;
 }
 
 //! The median of CV_8UC1

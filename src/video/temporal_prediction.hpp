@@ -29,11 +29,11 @@ enum TemporalSource
 //! What the last frame tells of this one before it is matched
 struct FramePrediction
 {
-    Verdict verdict = FIRST; // or CONTINUED
-    FrameKey key;            // of this frame
-    CameraMotion motion;     // from the last frame, in pixels of the layer; none for a first frame
-    std::vector<Mat> grey;   // of this frame, see FrameMemory
-    double brightness = 1;   // the same
+    Verdict verdict = FIRST;   // or CONTINUED
+    FrameKey key = FrameKey(); // of this frame
+    CameraMotion motion;       // from the last frame, in pixels of the layer; none for a first frame
+    std::vector<Mat> grey;     // of this frame, see FrameMemory
+    double brightness = 1;     // the same
 
     // Only if the frame continues
     BackwardMotion backward; // the same motion
