@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set, as the *.simd.hpp that include it: no include guard.
 #include "byte_lanes.simd.hpp"
+#include "vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
