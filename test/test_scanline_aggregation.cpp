@@ -2,19 +2,11 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The stage once more, with OpenCV's emulation of vectors in place of those of the machine
-#define CV_FORCE_SIMD128_CPP
-
-#include "test_precomp.hpp"
+#include "emulated_vectors.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "../src/scanlines/scanline_aggregation.hpp"
 #include "../src/scanlines/other_surfaces.hpp"
-
-#undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-#undef CV_CPU_OPTIMIZATION_NAMESPACE_END
-#define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_emulated {
-#define CV_CPU_OPTIMIZATION_NAMESPACE_END }
 #include "../src/scanlines/scanline_aggregation.simd.hpp"
 
 namespace opencv_test { namespace {

@@ -2,16 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// OpenCV's emulation of vectors; the vote at edges is tested with those of the machine.
-#define CV_FORCE_SIMD128_CPP
-
-#include "test_precomp.hpp"
+// The vote at edges is tested with the vectors of the machine.
+#include "emulated_vectors.hpp"
 #include "helpers.hpp"
-
-#undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-#undef CV_CPU_OPTIMIZATION_NAMESPACE_END
-#define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_emulated {
-#define CV_CPU_OPTIMIZATION_NAMESPACE_END }
 #include "../src/base/sixteen_words.simd.hpp"
 
 namespace opencv_test { namespace {
