@@ -265,21 +265,6 @@ struct ByteLanes
 #endif
     }
 
-    //! The smallest lane of all
-    int lowest() const
-    {
-#if HDP_LANES_AVX2
-        const __m128i half = _mm_min_epu8(_mm256_castsi256_si128(v.val), _mm256_extracti128_si256(v.val, 1));
-        return _mm_cvtsi128_si32(_mm_minpos_epu16(_mm_min_epu8(half, _mm_srli_epi16(half, 8)))) & 255;
-#elif HDP_LANES_SSE4
-        return _mm_cvtsi128_si32(_mm_minpos_epu16(_mm_min_epu8(v.val, _mm_srli_epi16(v.val, 8)))) & 255;
-#elif HDP_LANES_WASM
-        return wasm_u8x16_extract_lane(minimum().v.val, 0);
-#else
-        return v_reduce_min(v);
-#endif
-    }
-
     //! The smallest lane of all, in all lanes
     ByteLanes minimumOfAll() const
     {

@@ -95,7 +95,7 @@ public:
     Row row(int y) const
     {
         Row row = {};
-        row.intervals = p_.intervals.empty() ? nullptr : p_.intervals.template ptr<DisparityInterval>(y);
+        row.intervals = p_.intervals.empty() ? nullptr : p_.intervals.ptr<DisparityInterval>(y);
         const CensusCost& below = p_.below;
         const int last = below.size().width - 1;
         for (int i = 0; i < 2; ++i)
@@ -107,7 +107,7 @@ public:
             row.leftLimits[i] = below.limits().left(2 * y + i);
             row.rightLimits[i] = below.limits().right(2 * y + i) + last;
         }
-        row.upper = p_.upper.template ptr<ushort>(std::min(y / 2, p_.upper.rows - 1));
+        row.upper = p_.upper.ptr<ushort>(std::min(y / 2, p_.upper.rows - 1));
         return row;
     }
 

@@ -99,8 +99,8 @@ L(p, h) = C(p, h) + min(E(q, h), E(q, h - 1) + small, E(q, h + 1) + small, large
 E(p, h) = L(p, h) - min_k L(p, k),
 large(p, q) = max(leastLarge, round(large * exp(-w(p, q) / gamma))),
 
-all sums at most 255; L = C where there is no q. The winner has the lowest sum of E over the directions, at most 255, the
-first of them if there are several; its sum and those of both candidates beside it give the sub-pixel part, as of
+all sums at most 255; L = C where there is no q. The winner has the lowest sum of E over the directions, at most 255,
+the first of them if there are several; its sum and those of both candidates beside it give the sub-pixel part, as of
 aggregateVolume().
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
