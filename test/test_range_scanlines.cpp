@@ -168,11 +168,13 @@ TEST_P(HDPStereo_RangeScanlines, lanes_without_vectors)
             layer.mask(rng);
         const hdp::CensusCost cost = layer.cost();
         hdp::RangeProblem problem = {
-            cost, layer.weights.size(), candidates, layer.upper, layer.weights, layer.intervals, 18, {}, {}
+            cost, layer.weights.size(), candidates, layer.upper, layer.weights, layer.intervals, 18, {}, {}, {}
         };
         std::fill_n(problem.large, 256, 100);
         for (int distance = -candidates; distance < candidates + 32; ++distance)
             problem.priors.push_back((uchar)std::min(std::abs(distance) / 3, 2));
+        problem.outside.assign(3 * problem.pixelBytes(), 255);
+        std::fill_n(problem.outside.begin() + problem.pixelBytes(), problem.pixelBytes(), (uchar)0);
         hdp::RangeScratch scratch;
         scratch.prepare(problem, layer.weights.rows);
         Mat disparity(layer.weights.size(), CV_16UC1);

@@ -7,7 +7,6 @@
 #include "left_right_check.hpp"
 #include "upsampling.hpp"
 #include "../base/disparity_units.hpp"
-#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -37,24 +36,6 @@ void convert(const Mat& map, int depth, double scale, double shift, Mat& convert
     parallel_for_(Range(0, map.rows), [&](const Range& rows) {
         Mat part = converted.rowRange(rows);
         map.rowRange(rows).convertTo(part, depth, scale, shift);
-    });
-}
-
-//! The nearest disparity that a pixel may have
-void keepRanges(const PixelRanges& ranges, short invalid, Mat& disparity)
-{
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const short *smallest = ranges.smallest.ptr<short>(y), *largest = ranges.largest.ptr<short>(y);
-            short* const row = disparity.ptr<short>(y);
-            HDP_VECTORIZED for (int x = 0; x < disparity.cols; ++x)
-            {
-                const int first = smallest[x], last = largest[x], above = row[x] > first ? row[x] : first;
-                const int inside = above < last ? above : last;
-                row[x] = (short)(first <= last ? inside : invalid);
-            }
-        }
     });
 }
 
@@ -96,7 +77,7 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
     const short invalid = (short)((plan.minDisparity - 1) * unit);
     if (!ranges.isEmpty())
     {
-        keepRanges(ranges, invalid, fixedPoint);
+        moveIntoRanges(ranges, invalid, fixedPoint);
         if (isFloat)
             convert(fixedPoint, CV_32F, 1. / unit, 0, disparity);
     }

@@ -13,33 +13,7 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_DISPATCH(predictRow)
-
-//! upper and lower: the intervals of two rows, of so many columns, that the windows' pixels stand for
-void restrictRow(const DisparityInterval* upper, const DisparityInterval* lower, int columns, int numDisparities,
-                 int width, CandidateWindow* windows)
-{
-    const int length = CandidateWindow::runLength;
-    for (int x = 0; x < width; ++x)
-    {
-        CandidateWindow& window = windows[x];
-        const int left = std::min(2 * x, columns - 1), right = std::min(2 * x + 1, columns - 1);
-        const int first =
-            std::min(std::min(upper[left].first, upper[right].first), std::min(lower[left].first, lower[right].first));
-        const int last =
-            std::max(std::max(upper[left].last, upper[right].last), std::max(lower[left].last, lower[right].last));
-        const auto isUsed = [&](int run) { return window.first[run] <= last && window.first[run] + length > first; };
-        const bool used[] = { isUsed(0), isUsed(1) };
-        if (used[0] && used[1])
-            continue;
-        const int run = used[1] ? 1 : 0;
-        const int centre = std::min(std::max(wholeDisparity(window.predicted[run]), first), last);
-        const int begin = firstCandidate(centre, CandidateWindow::candidates, numDisparities);
-        window.first[0] = (short)begin;
-        window.first[1] = (short)(begin + length);
-        window.predicted[0] = window.predicted[1] =
-            (ushort)(used[run] ? window.predicted[run] : centre * subpixelScale);
-    }
-}
+HDP_DISPATCH(restrictRow)
 
 } // namespace
 
@@ -55,11 +29,11 @@ void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat
 
 void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows)
 {
+    CV_DbgAssert(intervals.cols >= 2 * windows.cols && intervals.rows >= 2 * windows.rows);
     parallel_for_(Range(0, windows.rows), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
-            restrictRow(intervals.ptr<DisparityInterval>(std::min(2 * y, intervals.rows - 1)),
-                        intervals.ptr<DisparityInterval>(std::min(2 * y + 1, intervals.rows - 1)), intervals.cols,
-                        numDisparities, windows.cols, windows.ptr<CandidateWindow>(y));
+            dispatched::restrictRow(intervals.ptr<ushort>(2 * y), intervals.ptr<ushort>(2 * y + 1), windows.cols,
+                                    numDisparities, windows.ptr<ushort>(y));
     });
 }
 

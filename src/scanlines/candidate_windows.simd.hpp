@@ -13,6 +13,9 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 //! A row of predictWindows(): of so many pixels of the layer above. windows: receives a CandidateWindow each.
 void predictRow(const ushort* upper, const ushort* others, int width, int numDisparities, ushort* windows);
 
+//! A row of restrictWindows(). upper and lower: the first and the last candidates of the two rows of pixels below
+void restrictRow(const ushort* upper, const ushort* lower, int width, int numDisparities, ushort* windows);
+
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 void predictRow(const ushort* upper, const ushort* others, int width, int numDisparities, ushort* windows)
@@ -37,6 +40,31 @@ void predictRow(const ushort* upper, const ushort* others, int width, int numDis
         windows[4 * x + 1] = (ushort)choose(isApart, beyond, low + length);
         windows[4 * x + 2] = (ushort)choose(overlaps, std::min(here, other), here);
         windows[4 * x + 3] = (ushort)choose(overlaps, std::max(here, other), choose(isApart, other, here));
+    }
+}
+
+void restrictRow(const ushort* upper, const ushort* lower, int width, int numDisparities, ushort* windows)
+{
+    const int length = CandidateWindow::runLength, all = CandidateWindow::candidates;
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) // without branches, so that it can be
+    {
+        const ushort *const a = upper + 4 * x, *const b = lower + 4 * x;
+        const int first = std::min(std::min<int>(a[0], a[2]), std::min<int>(b[0], b[2])),
+                  last = std::max(std::max<int>(a[1], a[3]), std::max<int>(b[1], b[3]));
+        ushort* const window = windows + 4 * x;
+        const int runs[] = { (short)window[0], (short)window[1] }, predicted[] = { window[2], window[3] };
+        const int usesFirst = (int)(runs[0] <= last) & (int)(runs[0] + length > first),
+                  usesOther = (int)(runs[1] <= last) & (int)(runs[1] + length > first);
+        const int usesBoth = usesFirst & usesOther, usesAny = usesFirst | usesOther;
+
+        const int surface = choose(usesOther, predicted[1], predicted[0]);
+        const int centre = std::min(std::max(wholeDisparity(surface), first), last);
+        const int begin = firstCandidate(centre, all, numDisparities);
+        const int moved = choose(usesAny, surface, centre * subpixelScale);
+        window[0] = (ushort)choose(usesBoth, runs[0], begin);
+        window[1] = (ushort)choose(usesBoth, runs[1], begin + length);
+        window[2] = (ushort)choose(usesBoth, predicted[0], moved);
+        window[3] = (ushort)choose(usesBoth, predicted[1], moved);
     }
 }
 

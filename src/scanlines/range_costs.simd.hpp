@@ -62,8 +62,8 @@ public:
     CV_ALWAYS_INLINE ByteLanes lowest(const Pixel& pixel) const
     {
         const int n = vectors();
-        ByteLanes least = pixel.of[0];
-        HDP_UNROLLED for (int k = 1; k < n; ++k) least = least.min(pixel.of[k]);
+        ByteLanes least = pixel.of[n - 1];
+        HDP_UNROLLED for (int k = 0; k < n - 1; ++k) least = least.min(pixel.of[k]);
         return least.minimumOfAll();
     }
     //! Fills the lanes behind the last candidate by 255.
@@ -111,8 +111,8 @@ public:
         return row;
     }
 
-    //! Those of a pixel; bytes: memory of a pixel
-    CV_ALWAYS_INLINE void of(const Row& row, int x, uchar* bytes, Pixel& costs) const
+    //! Those of a pixel
+    CV_ALWAYS_INLINE void of(const Row& row, int x, Pixel& costs) const
     {
         if (row.leftLimits[0])
             ofMasked(row, x, costs);
@@ -123,7 +123,7 @@ public:
             addCensus(row, 1, x, costs);
         }
         if (row.intervals)
-            excludeOthers(row.intervals[x], bytes, costs);
+            excludeOthers(row.intervals[x], costs);
         lanes_.closeTail(costs);
     }
 
@@ -182,14 +182,17 @@ private:
         }
     }
 
-    void excludeOthers(const DisparityInterval& interval, uchar* bytes, Pixel& costs) const
+    //! Candidates that are not in the interval
+    CV_ALWAYS_INLINE void excludeOthers(const DisparityInterval& interval, Pixel& costs) const
     {
-        const int first = std::min<int>(interval.first, p_.candidates),
+        const int n = lanes_.vectors(), first = std::min<int>(interval.first, p_.candidates),
                   end = std::min<int>(std::max(interval.last + 1, first), p_.candidates);
-        lanes_.store(costs, bytes);
-        std::fill(bytes, bytes + first, (uchar)UCHAR_MAX);
-        std::fill(bytes + end, bytes + p_.candidates, (uchar)UCHAR_MAX);
-        lanes_.load(bytes, costs);
+        const uchar *const before = p_.insideFrom(first), *const behind = p_.outsideFrom(end);
+        HDP_UNROLLED for (int k = 0; k < n; ++k)
+        {
+            const ptrdiff_t at = k * Lanes::vector;
+            costs.of[k] = costs.of[k] | ByteLanes::load(before + at) | ByteLanes::load(behind + at);
+        }
     }
 
     const RangeProblem& p_;

@@ -33,8 +33,9 @@ struct RangeProblem
     Size size;      // of the layer
     int candidates; // their number
     const Mat &upper, &weights, &intervals;
-    uchar small, large[256];   // penalties; large: by the edge's weight
-    std::vector<uchar> priors; // by the distance from the predicted candidate, from -candidates on
+    uchar small, large[256];    // penalties; large: by the edge's weight
+    std::vector<uchar> priors;  // by the distance from the predicted candidate, from -candidates on
+    std::vector<uchar> outside; // 255, 0 and 255 again, pixelBytes() each
 
     enum
     {
@@ -42,6 +43,10 @@ struct RangeProblem
         mostCandidates = 1024
     };
     int pixelBytes() const { return (int)alignSize(candidates, longestVector); } // of the candidates, at most
+
+    // Of each candidate, 255 if it is before this one, or if it is not
+    const uchar* insideFrom(int candidate) const { return outside.data() + pixelBytes() - candidate; }
+    const uchar* outsideFrom(int candidate) const { return outside.data() + 2 * pixelBytes() - candidate; }
 };
 
 //! Memory of a stripe

@@ -149,7 +149,7 @@ private:
         for (int x = 0; x < width_; ++x, before += bytes, here += bytes)
         {
             Pixel costs, e;
-            costs_.of(row, x, own_.sums(0), costs);
+            costs_.of(row, x, costs);
             step(costs, before, edges ? edges + 2 * x : nullptr, e);
             lanes_.store(e, here);
         }
@@ -160,7 +160,7 @@ private:
     {
         uchar* const below = row.below + x * lanes_.bytes();
         Pixel costs, e, sums;
-        costs_.of(row.costRow, x, row.sums, costs);
+        costs_.of(row.costRow, x, costs);
         lanes_.store(costs, row.costs + x * lanes_.bytes());
         step(costs, row.beside, x + 1 < width_ ? row.toRight + 2 * x : nullptr, e);
         lanes_.store(e, row.beside);
