@@ -160,7 +160,7 @@ private:
                 return false;
         }
         if (plan_.prefersLastFrame)
-            preferPredicted(shared_.predicted, true, volume);
+            preferPredicted(shared_.predicted, volume);
         const bool hasPlanes = plan_.trees.prefersPlanes && volume.isUniform; // which ranges may change
         if (hasPlanes)
             preferLargestSurfaces(own_.census, volume);
@@ -209,7 +209,7 @@ private:
             if (!plan_.prefersLastFrame)
                 return;
             predictFromLastFrame();
-            preferPredicted(shared_.predicted, false, shared_.volume);
+            preferPredicted(shared_.predicted, shared_.volume);
         });
         clock_.run("cost aggregation", [&] {
             weighEdges(guide(), own_.edgeWeights);

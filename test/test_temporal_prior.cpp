@@ -30,10 +30,10 @@ CostVolume flatVolume(Size size)
     return volume;
 }
 
-//! What the last frame's disparity adds to the cost of a candidate, or to its mean
-int penalty(double disparity, int candidate, bool isMean)
+//! What the last frame's disparity adds to the cost of a candidate
+int penalty(double disparity, int candidate)
 {
-    return std::min(cvRound(CostVolume::scale * std::abs(candidate - disparity)), (isMean ? 3 : 6) * CostVolume::scale);
+    return std::min(cvRound(CostVolume::scale * std::abs(candidate - disparity)), 6 * CostVolume::scale);
 }
 
 //! The third frame of a video: everything moved to the left by a cell, and nothing else is known to be as it was.
@@ -58,22 +58,21 @@ struct MovedVideo
     FramePrediction next;
 };
 
-//! As a layer does it; means are asked first.
+//! As a layer does it; means over trees are asked first.
 void prefer(const MovedVideo& video, bool areMeans, CostVolume& volume)
 {
     Mat predicted;
     predictDisparities(video.last, video.next, side, volume.size, predicted);
     const bool isRefused = areMeans && refusesLastFrame(volume, predicted);
     EXPECT_FALSE(isRefused);
-    preferPredicted(predicted, areMeans, volume);
+    preferPredicted(predicted, volume);
 }
 
-void expectCosts(const CostVolume& volume, int x, int y, double disparity, bool areMeans)
+void expectCosts(const CostVolume& volume, int x, int y, double disparity)
 {
     const uchar* costs = &volume.costs[volume.candidates[y * volume.size.width + x].start()];
     for (int k = 0; k < candidates; ++k)
-        EXPECT_EQ(flatCost + (disparity < 0 ? 0 : penalty(disparity, k, areMeans)), costs[k])
-            << Point(x, y) << ", " << k;
+        EXPECT_EQ(flatCost + (disparity < 0 ? 0 : penalty(disparity, k)), costs[k]) << Point(x, y) << ", " << k;
 }
 
 //! In columns of the volume: where the motion leads, at the same place, at both with one disparity or with two, new
@@ -97,7 +96,7 @@ TEST(HDPStereo_TemporalPrior, sources)
         prefer(video, areMeans, volume);
         for (int y = 0; y < volume.size.height; ++y)
             for (int i = 0; i < 5; ++i)
-                expectCosts(volume, 3 * i, y, expected[i], areMeans);
+                expectCosts(volume, 3 * i, y, expected[i]);
     }
 }
 
@@ -130,8 +129,8 @@ TEST(HDPStereo_TemporalPrior, contradiction)
         const std::vector<uchar> before = volume.costs;
         prefer(video, areMeans, volume);
         for (int k = 0; k < candidates; ++k)
-            EXPECT_EQ(before[k] + (areMeans ? 0 : penalty(10, k, false)), volume.costs[k]) << k;
-        expectCosts(volume, 1, 0, 10, areMeans);
+            EXPECT_EQ(before[k] + (areMeans ? 0 : penalty(10, k)), volume.costs[k]) << k;
+        expectCosts(volume, 1, 0, 10);
     }
 }
 

@@ -337,7 +337,7 @@ private:
             return set(x, y, here, 1);
         if (std::abs(here - there) > tolerance())
             return choiceAt(x, y) >= hdp::KEPT ? set(x, y, there, count - 1) : set(x, y, here, 1);
-        const int weight = std::min(count, choice == hdp::MOVED ? 1 : isStill_ ? 4 : 2);
+        const int weight = std::min(count, isStill_ ? 4 : 1);
         const double step = std::max(std::min(here - there, 256), -256) / (weight + 1.);
         set(x, y, there + (int)std::floor(step + 0.5), std::min(count + 1, 7));
     }

@@ -14,8 +14,7 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(int, minPoints, 30, "points", "for eleven terms: with fewer of them, there is no motion");
-HDP_TUNABLE(double, inertia, 1e-5, "points' weight",
+HDP_TUNABLE(double, inertia, 1e-5, "weight of a point, for each of them",
             "that the camera is at rest: decides what the points leave open, more pulls motions to 0");
 HDP_TUNABLE(double, disparityUnits, 6, "per half width of the image",
             "units of disparity: usual ones are as large, and so are all numbers in the equations");
@@ -23,24 +22,20 @@ HDP_TUNABLE(double, disparityUnits, 6, "per half width of the image",
 // A first guess
 HDP_TUNABLE(int, guesses, 60, "samples of points", "of which the best is taken: more cost time, fewer are all wrong");
 HDP_TUNABLE(int, guessPoints, 7, "points", "of a sample: fewer leave terms open, more are less often all right");
-HDP_TUNABLE(double, guessInertia, 1e-4, "points' weight", "that the camera is at rest, in a sample");
 HDP_TUNABLE(double, goodGuess, 0.7, "share of the points", "that agree with a guess which is good enough");
 
 // Reweighted least squares
-HDP_TUNABLE(double, minTolerance, 0.25, "pixels", "of the last rounds: tracked points are as exact");
+HDP_TUNABLE(double, minTolerance, 0.25, "pixels", "of the last round, at least: tracked points are as exact");
 HDP_TUNABLE(double, toleranceFall, 0.6, "factor from a round to the next",
             "less loses points before the motion is near them, more costs rounds");
-HDP_TUNABLE(int, finalRounds, 3, "rounds", "with the last tolerance: the weights hardly change after these");
 
 // The median error at rest has to be larger than that of a motion.
 HDP_TUNABLE(double, motionFactor, 1.25, "errors of the motion",
             "less takes things that move by themselves for the camera, more overlooks slow cameras");
-HDP_TUNABLE(double, motionDistance, 0.05, "pixels", "beside that: less takes the noise of the points for motion");
 
 // Corrected disparities
 HDP_TUNABLE(double, measuredDeviation, 0.15, "pixels",
             "of a measured disparity: more lets outliers pull, less takes noise for them");
-HDP_TUNABLE(double, offsetDeviation, 1, "pixels", "expected of the offset: cameras turn against each other");
 HDP_TUNABLE(double, factorDeviation, 0.02, "difference from 1", "expected of the factor: motions are estimates");
 
 // What a motion has: the rows of X, Y and W, but for the 1 that is the last of W
@@ -84,8 +79,9 @@ double squaredError(const Matx44d& forward, const TrackedPoint& point)
 }
 
 //! The motion that fits best to these points, each of its weight, and to a camera at rest
-Terms solve(const std::vector<TrackedPoint>& points, const std::vector<double>& weights, double rest)
+Terms solve(const std::vector<TrackedPoint>& points, const std::vector<double>& weights)
 {
+    const double rest = inertia * points.size();
     NormalMatrix a = rest * NormalMatrix::eye();
     Terms b = Terms::zeros();
     b(0) = b(5) = rest;
@@ -115,7 +111,7 @@ std::vector<double> guessMotion(const std::vector<TrackedPoint>& points, double 
     {
         for (TrackedPoint& point : sample)
             point = points[rng.uniform(0, (int)points.size())];
-        weigh(i == 0 ? Matx44d::eye() : matrixOf(solve(sample, equal, guessInertia)), points, scale, weights);
+        weigh(i == 0 ? Matx44d::eye() : matrixOf(solve(sample, equal)), points, scale, weights);
         const double sum = std::accumulate(weights.begin(), weights.end(), 0.);
         if (!(sum > highest))
             continue;
@@ -148,7 +144,7 @@ void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>
 CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance)
 {
     CameraMotion motion;
-    if ((int)points.size() < minPoints)
+    if ((int)points.size() < CameraMotion::minPoints)
         return motion;
     // Numbers of about the same size in all equations
     const double unit = size.width / 2., disparityUnit = unit / disparityUnits;
@@ -163,18 +159,17 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, doubl
 
     std::vector<double> weights = guessMotion(normed, tolerance / unit);
     Matx44d forward = Matx44d::eye();
-    for (int rounds = finalRounds; rounds > 0; rounds -= tolerance == minTolerance)
+    for (; tolerance > minTolerance; tolerance *= toleranceFall)
     {
-        forward = matrixOf(solve(normed, weights, inertia * points.size()));
+        forward = matrixOf(solve(normed, weights));
         weigh(forward, normed, tolerance / unit, weights);
-        tolerance = std::max<double>(tolerance * toleranceFall, minTolerance);
     }
 
     // Things that move by themselves may look as if the camera did, but most points tell whether it is at rest.
     const double moved = std::sqrt(medianSquaredError(forward, normed)) * unit;
     const double still = std::sqrt(medianSquaredError(Matx44d::eye(), normed)) * unit;
     motion.error = still;
-    if (!(still > motionFactor * moved + motionDistance))
+    if (!(still > motionFactor * moved))
         return motion;
     motion.error = moved;
     const Matx44d toNormed(1 / unit, 0, 0, -centre.x / unit, 0, 1 / unit, 0, -centre.y / unit, 0, 0, 1 / disparityUnit,
@@ -202,7 +197,7 @@ CameraMotion scaled(const CameraMotion& motion, double scale)
 DisparityChange correctedChange(const DisparityChange& change, const std::vector<float>& predicted,
                                 const std::vector<float>& measured)
 {
-    const FitPrior<2> none = { Vec2d(), Vec2d(offsetDeviation, factorDeviation) };
+    const FitPrior<2> none = { Vec2d(), Vec2d(1, factorDeviation) }; // cameras shake by a pixel
     std::vector<FitSample<2>> samples(predicted.size());
     for (size_t i = 0; i < samples.size(); ++i)
     {

@@ -15,6 +15,10 @@ Every rigid motion is such a matrix, whatever focal length and baseline are: the
 homography of points at infinity, the column of d is the epipole. */
 struct CameraMotion
 {
+    enum
+    {
+        minPoints = 30 // that tell one, for eleven terms: fewer may agree by chance
+    };
     Matx44d forward = Matx44d::eye();
     bool isStill = true; // forward is the identity
     double error = 0;    // median distance of the points from where it takes them, in pixels
@@ -30,7 +34,7 @@ CV_EXPORTS void movePoints(const CameraMotion& motion, Size size, std::vector<Tr
 @param points The points.
 @param size That of the image that their positions are in.
 @param tolerance How far from a first guess they may be, in pixels.
-@return The motion; none if most of the points are where they were. */
+@return The motion; none if most of the points are where they were, or if there are less than minPoints. */
 CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance);
 
 //! The motion in pixels of an image that is scale times as large

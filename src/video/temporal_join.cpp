@@ -38,10 +38,6 @@ HDP_TUNABLE(int, driftStep, 12, "cells", "between those that correct the predict
 HDP_TUNABLE(int, tolerance, 2, "pixels of the image", "between disparities that agree: more joins two surfaces");
 HDP_TUNABLE(int, maxStep, 1, "pixels", "towards the measured one, before its share is taken: it may be an outlier");
 HDP_TUNABLE(int, maxCount, 7, "frames", "that a disparity may stand for: more flickers less and follows changes later");
-HDP_TUNABLE(int, maxUnmovedWeight, 2, "frames",
-            "that it counts for at the same place if the camera moved: it may be by chance");
-HDP_TUNABLE(int, maxMovedWeight, 1, "frames",
-            "that it counts for where the motion leads, which blurs from frame to frame");
 HDP_TUNABLE(int, stripeHeight, 32, "rows of cells", "for a thread: fewer compute the rows between stripes more often");
 
 const int cell = FrameMemory::cell;
@@ -242,9 +238,8 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
         scratch.unmovedCounts.data(),      scratch.movedCounts.data()
     };
     const int maxDistance = std::max(tolerance / frame.prediction.key.scale, 1) * FrameMemory::scale;
-    const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale,
-                            std::min<int>(frame.isStill() ? maxCount : maxUnmovedWeight, T::maxWeight),
-                            std::min<int>(maxMovedWeight, T::maxWeight), maxCount };
+    // The motion is an estimate: what it moves counts for one frame.
+    const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale, frame.isStill() ? +T::maxWeight : 1, maxCount };
     dispatched::joinRow(measured.ptr<ushort>(y), row, width, rule, next.disparity.ptr<ushort>(y), next.detail.ptr(y));
 }
 

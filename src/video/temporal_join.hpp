@@ -18,7 +18,8 @@ struct TemporalJoin
                     // one has two surfaces
         fringe = 2, // pixels beside one that agrees: what disagrees there, where the motion leads, is measured;
                     // fewer leave a rim of the last frame, more drop what is right
-        maxWeight = 4 // frames that a disparity may count for: joinRow() divides by one more
+        maxWeight =
+            4 // frames that a disparity may count for where the camera stands still: joinRow() divides by one more
     };
 };
 
@@ -78,7 +79,9 @@ struct ChoiceShares
 //! How disparities are joined, in FrameMemory's units
 struct JoinRule
 {
-    int tolerance, maxStep, maxUnmovedWeight, maxMovedWeight, maxCount; // weights: up to TemporalJoin::maxWeight
+    int tolerance, maxStep;
+    int maxWeight; // frames that the one before counts for, up to TemporalJoin::maxWeight
+    int maxCount;  // frames that a disparity may stand for
 };
 
 /** Joins the disparities of a pair, before the median, with those of the frame before. Each pixel has up to three: the

@@ -255,8 +255,8 @@ int chooseCells(const short* sums, const uchar* sources, const uchar* shares, in
 void joinRow(const ushort* measured, const TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
              uchar* detail)
 {
-    const int tolerance = rule.tolerance, maxStep = rule.maxStep, maxCount = rule.maxCount;
-    const int maxUnmoved = rule.maxUnmovedWeight, maxMoved = rule.maxMovedWeight;
+    const int tolerance = rule.tolerance, maxStep = rule.maxStep;
+    const int maxWeight = rule.maxWeight, maxCount = rule.maxCount;
     const int half = 1 << (FrameMemory::detailBits - 1);
     const int *unmoved = row.unmoved, *moved = row.moved;
     const uchar *unmovedCounts = row.unmovedCounts, *movedCounts = row.movedCounts, *choices = row.choices;
@@ -277,7 +277,7 @@ void joinRow(const ushort* measured, const TemporalRow& row, int width, const Jo
         const int there = select(isMoved, moved[x], unmoved[x]), difference = here - there;
         const int count = select(isMoved, movedCounts[x], unmovedCounts[x]) & -(choice != MEASURED);
         const int limited = std::max(std::min(difference, maxStep), -maxStep);
-        const int weight = std::min(count, select(isMoved, maxMoved, maxUnmoved));
+        const int weight = std::min(count, maxWeight);
         // 2^16 / (weight + 1)
         const int share = select(weight > 2, select(weight > 3, 13107, 16384), select(weight > 1, 21845, 32768));
         const int approached = there + ((limited * share + 32768) >> 16);

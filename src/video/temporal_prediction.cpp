@@ -15,8 +15,7 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(double, maxError, 2, "cells", "of the points of a first guess: more follows what moves by itself");
-HDP_TUNABLE(double, smallError, 1, "cells", "of a guess that is good, and of points that are near the motion");
+HDP_TUNABLE(double, maxError, 1, "cells", "of the points near a motion: more follows what moves by itself");
 HDP_TUNABLE(
     double, noMotion, 1.25, "cells",
     "median distance of the points from a motion that is none: more warps by wrong ones, less loses fast cameras");
@@ -25,13 +24,11 @@ HDP_TUNABLE(
 HDP_TUNABLE(double, sameGain, 0.15, "difference from 1", "that frames are compared without: scenes change by as much");
 HDP_TUNABLE(double, sameMean, 10, "grey levels", "the same, of the mean");
 HDP_TUNABLE(double, maxGain, 2, "factor", "between two frames: more makes noise of what has hardly any levels");
-HDP_TUNABLE(int, exposurePoints, 30, "points", "that tell an exposure from another scene: fewer may be by chance");
 HDP_TUNABLE(int, minDeviation, 12, "grey levels", "before brightening: a darker image has steps for levels");
 
 // What is no cut, on the coarsest level
 HDP_TUNABLE(int, cutShare, 60, "percent of the contrast",
             "of changes: less is motion and noise, more is another scene");
-HDP_TUNABLE(int, cutKnown, 25, "percent of the pixels", "that were in the last frame: fewer do not tell");
 
 // What is the same in two frames
 HDP_TUNABLE(double, stillness, 2.5, "grey levels",
@@ -90,14 +87,14 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
     movePoints(scaled(last.motion, 1. / cell), size, points);
     trackNearby(before, now, points);
     CameraMotion motion = fitMotion(points, size, maxError);
-    if (motion.error > smallError)
+    if (motion.error > maxError)
     {
         trackPoints(before, now, points);
         motion = fitMotion(points, size, maxError);
     }
     movePoints(motion, size, points);
     trackNearby(before, now, points);
-    return scaled(fitMotion(points, size, smallError), cell);
+    return scaled(fitMotion(points, size, maxError), cell);
 }
 
 //! Whether this frame shows another scene: on the coarsest level, about as much changed as there is contrast.
@@ -106,7 +103,7 @@ bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const Frame
     const int level = (int)greyNow.size() - 1, side = cell << level;
     const Mat &before = last.grey[level], &now = greyNow[level];
     const int mean = cvRound(cv::mean(now)[0]);
-    int64 known = 0, change = 0, contrast = 0;
+    int64 change = 0, contrast = 0;
     for (int y = 0; y < now.rows; ++y)
         for (int x = 0; x < now.cols; ++x)
         {
@@ -119,11 +116,10 @@ bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const Frame
                 at = p.warp(centre.x, centre.y) / side;
                 at = Point(std::min(at.x, before.cols - 1), std::min(at.y, before.rows - 1));
             }
-            ++known;
             change += std::abs(now.ptr(y)[x] - before.ptr(at.y)[at.x]);
             contrast += std::abs(now.ptr(y)[x] - mean);
         }
-    return 100 * known < cutKnown * (int64)now.total() || 100 * change > cutShare * contrast;
+    return 100 * change > cutShare * contrast;
 }
 
 //! The median of CV_8UC1
@@ -224,7 +220,8 @@ void predictFrame(const Mat& left, const FrameKey& key, double brightness, const
         return;
     const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, brightness, scratch.exposed);
     p.motion = findMotion(last, exposed, scratch.points);
-    const std::vector<Mat>& grey = (int)scratch.points.size() < exposurePoints ? p.grey : exposed;
+    const bool isOtherScene = (int)scratch.points.size() < CameraMotion::minPoints;
+    const std::vector<Mat>& grey = isOtherScene ? p.grey : exposed;
     if (p.motion.error > noMotion * cell)
     {
         p.motion = CameraMotion();

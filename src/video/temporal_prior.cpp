@@ -16,7 +16,6 @@ HDP_TUNABLE(int, maxRefused, 10, "percent of the predicted pixels",
             "whose costs may contradict: more believes wrong motions, less begins anew where much moves by itself");
 HDP_TUNABLE(int, maxPenalty, 6, "bits",
             "of disparities other than the predicted one: more keeps errors, less adds noise");
-HDP_TUNABLE(int, maxPenaltyOfMeans, 3, "bits", "the same over means, which vary less and contradict more clearly");
 
 //! Whether more than one pair has had a disparity
 bool isConfirmed(const FrameMemory& last, int x, int y) { return (last.detail.ptr(y)[x] & FrameMemory::countMask) > 1; }
@@ -87,9 +86,9 @@ bool refusesLastFrame(const CostVolume& volume, Mat& predicted)
     return 100 * std::accumulate(refused.begin(), refused.end(), (int64)0) > maxRefused * all;
 }
 
-void preferPredicted(const Mat& predicted, bool areMeans, CostVolume& volume)
+void preferPredicted(const Mat& predicted, CostVolume& volume)
 {
-    const CostPreference preference(CostVolume::scale * (areMeans ? maxPenaltyOfMeans : maxPenalty));
+    const CostPreference preference(CostVolume::scale * maxPenalty);
     parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
         for (int y = rows.start; y < rows.end; ++y)
         {

@@ -32,9 +32,8 @@ CV_EXPORTS bool refusesLastFrame(const CostVolume& volume, Mat& predicted);
 
 /** P(D_t | D_(t-1)): raises the costs of disparities other than the predicted one, see CostPreference.
 @param predicted The disparities; see hasPrior().
-@param areMeans Whether the costs are means over trees.
 @param volume The costs, changed. */
-CV_EXPORTS void preferPredicted(const Mat& predicted, bool areMeans, CostVolume& volume);
+CV_EXPORTS void preferPredicted(const Mat& predicted, CostVolume& volume);
 
 /** What the winners will be, without scanlines: the predicted disparities, and the lowest costs beside them.
 @param predicted The disparities.
