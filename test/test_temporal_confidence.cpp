@@ -62,4 +62,22 @@ TEST(HDPStereo_TemporalConfidence, of_a_video)
     }
 }
 
+//! Of rows that are smaller than a cell, a frame leaves nothing to the next one.
+TEST(HDPStereo_TemporalConfidence, smaller_than_a_cell)
+{
+    RNG rng(92);
+    const Ptr<HDPTreeMatcher> single = HDPTreeMatcher::create(0, 16), temporal = HDPTreeMatcher::create(0, 16);
+    temporal->setUseTemporalPrediction(true);
+    for (const Size size : { Size(40, 1), Size(60, 50), Size(40, 1), Size(1, 40) })
+    {
+        const Mat left = randomImage(rng, size, CV_8UC1), right = randomImage(rng, size, CV_8UC1);
+        Mat disparity, alone, joined;
+        single->compute(left, right, disparity);
+        single->getConfidence(alone);
+        temporal->compute(left, right, disparity);
+        temporal->getConfidence(joined);
+        expectIdentical(alone, joined);
+    }
+}
+
 }} // namespace opencv_test

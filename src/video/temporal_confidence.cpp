@@ -10,6 +10,8 @@ namespace cv { namespace stereo { namespace hdp {
 
 void trustStable(const FrameMemory& frame, Mat& confidence)
 {
+    if (frame.detail.size() != confidence.size()) // of a layer that is smaller than a cell nothing is left
+        return;
     double most;
     const Mat counts = frame.detail & Scalar(FrameMemory::countMask);
     minMaxLoc(counts, nullptr, &most);
