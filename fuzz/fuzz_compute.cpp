@@ -500,7 +500,7 @@ Mat anyMask(Input& input, Size size)
 PairModel anyModel(Input& input, const PairModel& last)
 {
     PairModel model = last;
-    switch (input.ConsumeIntegralInRange(0, 9))
+    switch (input.ConsumeIntegralInRange(0, 10))
     {
     case 0:
         model.minDisparity = input.ConsumeIntegralInRange(-100, 100);
@@ -531,6 +531,10 @@ PairModel anyModel(Input& input, const PairModel& last)
     case 8:
         model.leftBlockStep = model.rightBlockStep = anyDisparity(input);
         model.leftBlockStart = input.ConsumeIntegralInRange(-1, 8);
+        break;
+    case 9:
+        model.black = anyDisparity(input);
+        model.white = anyDisparity(input);
         break;
     default:
         model.noise = anyDisparity(input);

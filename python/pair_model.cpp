@@ -38,7 +38,7 @@ void defFields(py::class_<PairModel>& type)
 {
     type.def_readwrite("width", &PairModel::width, "of the images, in pixels, > 0; 0: the model is empty");
     type.def_readwrite("height", &PairModel::height, "of the images, in pixels, > 0");
-    type.def_readwrite("depth", &PairModel::depth, "of the images: 0 for uint8, 2 for uint16");
+    type.def_readwrite("depth", &PairModel::depth, "of the images: 0 for uint8, 2 for uint16, 5 for float32");
     type.def_readwrite("x", &PairModel::x, "first column of the tile that is matched, >= 0; 0 without tiles");
     type.def_readwrite("y", &PairModel::y, "first row of the tile, >= 0");
     type.def_readwrite("tileWidth", &PairModel::tileWidth, "of the tile, in pixels, > 0; width without tiles");
@@ -56,6 +56,9 @@ void defFields(py::class_<PairModel>& type)
                        "whether the light of the right image is changed by them, for COST_CENSUS");
     type.def_readwrite("noise", &PairModel::noise, "as HDPTreeMatcher.Findings.noise, of noiseLayer: finite, >= 0");
     type.def_readwrite("noiseLayer", &PairModel::noiseLayer, "layer in which it was measured, 0 to 15; 0 is the image");
+    type.def_readwrite("black", &PairModel::black,
+                       "level of float32 that is matched as 0 of uint16; 0 for other depths");
+    type.def_readwrite("white", &PairModel::white, "level of float32 that is matched as 65535, >= black");
     type.def_readwrite("bits", &PairModel::bits, "that levels of uint16 have: 8 to 16. For uint8 8");
     type.def_readwrite("brightness", &PairModel::brightness,
                        "what a dark pair is brightened by, for COST_CENSUS: 1..4");

@@ -56,7 +56,11 @@ public:
         clock_.restart();
 
         const bool mayMiss = inputs_.hasMasks() || left.depth() == CV_32F;
-        const auto complete = [&] { completePair(left, right, inputs_.leftMask, inputs_.rightMask, pair_); };
+        const FloatLevels given = { pairModel_.black, pairModel_.white };
+        const auto complete = [&] {
+            completePair(left, right, inputs_.leftMask, inputs_.rightMask, pairModel_.empty() ? nullptr : &given,
+                         pair_);
+        };
         if (mayMiss)
             clock_.run("missing pixels", complete);
         else
@@ -85,10 +89,10 @@ public:
         });
         pair_.forgetImages();
         result_.isMatched = true;
-        result_.model = pairPlan.given.isGiven
-                            ? pairModel_
-                            : toPairModel(pairPlan.pyramids, left.size(), left.depth(),
-                                          pairPlan.alignment.numDisparities, pyramids_.levels, result_.findings);
+        result_.model = pairPlan.given.isGiven ? pairModel_
+                                               : toPairModel(pairPlan.pyramids, left.size(), left.depth(),
+                                                             pairPlan.alignment.numDisparities, pair_.floats,
+                                                             pyramids_.levels, result_.findings);
     }
 
     // cv::StereoMatcher
@@ -125,11 +129,7 @@ public:
         checkPairModel(model);
         pairModel_ = model;
     }
-    PairModel getPairModel() const CV_OVERRIDE
-    {
-        const bool hasScale = result_.model.depth == CV_32F; // which is that of its levels, and no other's
-        return result_.isMatched && !hasScale ? result_.model : PairModel();
-    }
+    PairModel getPairModel() const CV_OVERRIDE { return result_.isMatched ? result_.model : PairModel(); }
     void setMasks(InputArray leftMask, InputArray rightMask) CV_OVERRIDE
     {
         hdp::setMasks(leftMask, rightMask, inputs_);

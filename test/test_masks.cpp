@@ -269,7 +269,12 @@ TEST(HDPStereo_Masks, floats_are_levels_of_16_bits)
     for (int i = 0; i < 2; ++i)
         images[i].convertTo(floats[i], CV_32F, 1. / 256, -7);
     const hdp::PairMasks all = { Mat(pair.left.size(), CV_8U, Scalar(255)), Mat(pair.left.size(), CV_8U, Scalar(255)) };
-    hdp::wholeLevels(floats[0], floats[1], all, whole);
+    const hdp::FloatLevels levels = hdp::findLevels(floats[0], floats[1], all);
+    const auto toWhole = [&] {
+        for (int i = 0; i < 2; ++i)
+            hdp::wholeLevels(floats[i], all.left, levels, whole[i]);
+    };
+    toWhole();
     for (const System& preset : presets)
     {
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45);
@@ -282,7 +287,7 @@ TEST(HDPStereo_Masks, floats_are_levels_of_16_bits)
         const Mat masked = match(*matcher, whole[0], whole[1]).clone();
         pair.set(*matcher);
         expectIdentical(masked, match(*matcher, floats[0], floats[1]));
-        hdp::wholeLevels(floats[0], floats[1], all, whole);
+        toWhole();
     }
 }
 
@@ -303,7 +308,9 @@ TEST(HDPStereo_Masks, scale_of_floats)
                 if ((i ? masks.right : masks.left).ptr(k / size.width)[k % size.width])
                     values.push_back(images[i].ptr<float>(k / size.width)[k % size.width]);
         }
-        hdp::wholeLevels(images[0], images[1], masks, levels);
+        const hdp::FloatLevels floats = hdp::findLevels(images[0], images[1], masks);
+        hdp::wholeLevels(images[0], masks.left, floats, levels[0]);
+        hdp::wholeLevels(images[1], masks.right, floats, levels[1]);
         std::sort(values.begin(), values.end());
         const size_t outliers = values.size() / 1024;
         for (int i = 0; i < 2 && !values.empty(); ++i)

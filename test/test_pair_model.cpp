@@ -6,6 +6,7 @@
 #include "synthetic_pair.hpp"
 
 #include "../src/pair/image_levels.hpp"
+#include "../src/pair/missing_pixels.hpp"
 #include "../src/plan/pair_plan.hpp"
 
 #include <fstream>
@@ -73,6 +74,8 @@ PairModel makeUnusualModel()
     model.isLightChanged = true;
     model.noise = 1. / 7;
     model.noiseLayer = 1;
+    model.black = -1. / 3;
+    model.white = 7.25;
     model.bits = 12;
     model.brightness = 2.59375;
     model.leftBlockStart = 3;
@@ -90,15 +93,15 @@ TEST(HDPStereo_PairModel, the_pair_again)
     for (const int preset :
          { +M::PRESET_PAPER, +M::PRESET_FAST, +M::PRESET_ULTRAFAST, +M::PRESET_QUALITY, +M::PRESET_TREE })
         for (const int minDisparity : { 0, -5 })
-            for (const int depth : { CV_8U, CV_16U })
+            for (const int depth : { CV_8U, CV_16U, CV_32F })
             {
                 SCOPED_TRACE(format("preset %d, minDisparity %d, depth %d", preset, minDisparity, depth));
                 Mat left = pair.left, right = pair.right;
-                if (depth == CV_16U)
+                if (depth != CV_8U)
                     for (Mat* image : { &left, &right })
                     {
                         cvtColor(*image, *image, COLOR_BGR2GRAY);
-                        image->convertTo(*image, CV_16U, 3); // dark 10 bits
+                        image->convertTo(*image, depth, 3); // dark 10 bits
                     }
                 const Ptr<HDPTreeMatcher> matcher = M::create(minDisparity, 32, preset);
                 EXPECT_TRUE(matcher->getPairModel().empty());
@@ -106,7 +109,8 @@ TEST(HDPStereo_PairModel, the_pair_again)
                 const PairModel model = matcher->getPairModel();
                 const M::Findings found = matcher->getFindings();
                 EXPECT_EQ(preset != M::PRESET_PAPER, model.areRowsMoved);
-                EXPECT_EQ(depth == CV_16U ? 9 : 8, model.bits);
+                EXPECT_EQ(depth == CV_8U ? 8 : depth == CV_16U ? 9 : 16, model.bits);
+                EXPECT_EQ(depth == CV_32F, model.black < model.white);
 
                 const Ptr<HDPTreeMatcher> other = M::create(minDisparity, 32, preset);
                 other->setPairModel(readFrom(textOf(model)));
@@ -191,7 +195,7 @@ TEST(HDPStereo_PairModel, levels_of_a_tile)
             levels.rightBlocks.begin = 6;
             levels.leftBlocks.step = levels.rightBlocks.step = 5;
             hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, pyramids, whole, &levels);
-            model = hdp::toPairModel(plan, size, CV_8U, 16, levels, hdp::PairFindings());
+            model = hdp::toPairModel(plan, size, CV_8U, 16, hdp::FloatLevels(), levels, hdp::PairFindings());
         }
         const Rect tile(84, 40, 160, 120);
         const hdp::GivenPair given = hdp::toGivenPair(model.tile(tile), plan, tile.size());
@@ -210,6 +214,34 @@ TEST(HDPStereo_PairModel, levels_of_a_tile)
 }
 
 //! A model is about places in the right image, whatever range moves it.
+//! A tile of floats has the levels of the whole, not of its own range.
+TEST(HDPStereo_PairModel, floats_of_a_tile)
+{
+    const SyntheticPair pair = makeMisalignedPair(Size(240, 180), 32, 4);
+    Mat floats[2], levels[2];
+    const Mat images[2] = { pair.left, pair.right };
+    for (int i = 0; i < 2; ++i)
+    {
+        cvtColor(images[i], floats[i], COLOR_BGR2GRAY);
+        floats[i].convertTo(floats[i], CV_32F, 1. / 7, -5);
+    }
+    const Ptr<HDPTreeMatcher> matcher = M::create(0, 32);
+    match(*matcher, floats[0], floats[1]);
+    PairModel model = matcher->getPairModel();
+    const Mat all(pair.left.size(), CV_8U, Scalar(255));
+    const hdp::FloatLevels found = hdp::findLevels(floats[0], floats[1], { all, all });
+    EXPECT_EQ(found.black, model.black);
+    EXPECT_EQ(found.white, model.white);
+    for (int i = 0; i < 2; ++i)
+        hdp::wholeLevels(floats[i], all, found, levels[i]);
+    const Rect tile(48, 16, 100, 120);
+    matcher->setPairModel(model.tile(tile));
+    const Mat actual = match(*matcher, floats[0](tile), floats[1](tile)).clone();
+    model.depth = CV_16U;
+    matcher->setPairModel(model.tile(tile));
+    expectIdentical(match(*matcher, levels[0](tile), levels[1](tile)), actual);
+}
+
 TEST(HDPStereo_PairModel, another_range)
 {
     RNG rng(73);
@@ -333,7 +365,7 @@ TEST(HDPStereo_PairModel, files)
         expectRejected([&] { readFrom(without); }, name);
         ++fields;
     }
-    EXPECT_EQ(22, fields);
+    EXPECT_EQ(24, fields);
 }
 
 TEST(HDPStereo_PairModel, bad_values)
@@ -355,6 +387,8 @@ TEST(HDPStereo_PairModel, bad_values)
         { "light", [](PairModel& m) { m.light.push_back(0); } },
         { "noise", [](PairModel& m) { m.noise = -1; } },
         { "noiseLayer", [](PairModel& m) { m.noiseLayer = 16; } },
+        { "black", [=](PairModel& m) { m.black = nan; } },
+        { "white", [](PairModel& m) { m.white = m.black - 1; } },
         { "bits", [](PairModel& m) { m.bits = 17; } },
         { "bits", [](PairModel& m) { m.depth = CV_8U; } },
         { "brightness", [](PairModel& m) { m.brightness = 4.5; } },
@@ -405,7 +439,8 @@ TEST(HDPStereo_PairModel, other_images)
         image.convertTo(image, CV_32F);
     expectRejected([&] { compute(model, deep[0], deep[1]); }, "left must have 8 bits");
     compute(PairModel(), deep[0], deep[1]);
-    EXPECT_TRUE(matcher->getPairModel().empty()) << "levels of floats are scaled by their own range";
+    const PairModel ofFloats = matcher->getPairModel();
+    expectRejected([&] { compute(ofFloats, pair.left, pair.right); }, "left must have levels of CV_32F");
     matcher->setPairModel(PairModel());
     expectIdentical(expected, match(*matcher, pair.left, pair.right));
 }

@@ -17,10 +17,12 @@ Disparity Prediction" @cite Luo2015HDP .
 
 Tree-based (non-local) matching @cite Yang2012MST aggregates the matching cost over a spanning tree of
 the image instead of over a window. It is slow because it searches the whole disparity range, and greedy
-over large areas of one colour. This module matches a pyramid of the pair instead: the coarsest layer over
+over large areas of one colour. The paper matches a pyramid of the pair instead: the coarsest layer over
 the full range, and every finer one only within the small disparity interval that Bayes' theorem predicts
 for each pixel from the layer above. Pixels with similar intervals are joined into a forest of disparity
-trees, and costs are aggregated inside each tree, over its few candidates only.
+trees, and costs are aggregated inside each tree, over its few candidates only. This is PRESET_PAPER. The
+other presets have trees on the coarsest layer, and semi-global matching below it, over the candidates
+that the layer above predicts.
 
 cv::stereo::HDPTreeMatcher is a cv::StereoMatcher, so a program that uses cv::StereoSGBM changes one line:
 
@@ -36,7 +38,7 @@ is a cv::stereo::DisparityPredictionModel.
 cv::stereo::StereoRig leads from raw images of two cameras, and calibrations of several programs, to depth.
 
 Tutorials: @ref tutorial_hdpstereo_matching, @ref tutorial_hdpstereo_own_tree, @ref tutorial_hdpstereo_cameras,
-@ref tutorial_hdpstereo_beforehand
+@ref tutorial_hdpstereo_beforehand, @ref tutorial_hdpstereo_photogrammetry
 */
 
 #endif

@@ -5,6 +5,7 @@
 #include "missing_pixels.hpp"
 
 #include "../base/tunable.hpp"
+#include "../base/vectorized.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -87,7 +88,7 @@ void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
     }
 }
 
-void wholeLevels(const Mat& left, const Mat& right, const PairMasks& masks, Mat (&levels)[2])
+FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks)
 {
     std::vector<float> values;
     values.reserve(2 * left.total());
@@ -97,34 +98,39 @@ void wholeLevels(const Mat& left, const Mat& right, const PairMasks& masks, Mat 
             for (int x = 0; x < left.cols; ++x)
                 if (valid[i].ptr(y)[x])
                     values.push_back(images[i].ptr<float>(y)[x]);
-    double lowest = 0, highest = 0;
-    if (!values.empty())
-    {
-        const size_t outliers = values.size() / pixelsPerOutlier;
-        const auto low = values.begin() + outliers, high = values.end() - 1 - outliers;
-        std::nth_element(values.begin(), low, values.end());
-        lowest = *low;
-        std::nth_element(low, high, values.end());
-        highest = *high;
-    }
-    const double scale = highest > lowest ? USHRT_MAX / (highest - lowest) : 0;
-    for (int i = 0; i < 2; ++i)
-    {
-        levels[i].create(left.size(), CV_16U);
-        for (int y = 0; y < left.rows; ++y)
-        {
-            const float* const row = images[i].ptr<float>(y);
-            const uchar* const has = valid[i].ptr(y);
-            ushort* const level = levels[i].ptr<ushort>(y);
-            for (int x = 0; x < left.cols; ++x)
-                level[x] = (ushort)(has[x] ? std::min(std::max((row[x] - lowest) * scale, 0.), 65535.) + 0.5 : 0);
-        }
-    }
+    FloatLevels floats = { 0, 0 };
+    if (values.empty())
+        return floats;
+    const size_t outliers = values.size() / pixelsPerOutlier;
+    const auto low = values.begin() + outliers, high = values.end() - 1 - outliers;
+    std::nth_element(values.begin(), low, values.end());
+    floats.black = *low;
+    std::nth_element(low, high, values.end());
+    floats.white = *high;
+    return floats;
 }
 
-void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask, CompletePair& complete)
+void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, Mat& levels)
+{
+    const double scale = floats.white > floats.black ? USHRT_MAX / (floats.white - floats.black) : 0;
+    levels.create(image.size(), CV_16U);
+    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+        {
+            const float* const row = image.ptr<float>(y);
+            const uchar* const has = mask.ptr(y);
+            ushort* const level = levels.ptr<ushort>(y);
+            for (int x = 0; x < image.cols; ++x)
+                level[x] = (ushort)(has[x] ? clamped((row[x] - floats.black) * scale, 0., 65535.) + 0.5 : 0);
+        }
+    });
+}
+
+void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
+                  const FloatLevels* given, CompletePair& complete)
 {
     complete.masks = PairMasks();
+    complete.floats = FloatLevels();
     const bool isFloat = left.depth() == CV_32F;
     if (!isFloat && leftMask.empty() && rightMask.empty())
     {
@@ -135,7 +141,11 @@ void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const 
     PairMasks masks = { maskOf(left, leftMask), maskOf(right, rightMask) };
     Mat images[2] = { left, right };
     if (isFloat)
-        wholeLevels(left, right, masks, images);
+    {
+        complete.floats = given ? *given : findLevels(left, right, masks);
+        wholeLevels(left, masks.left, complete.floats, images[0]);
+        wholeLevels(right, masks.right, complete.floats, images[1]);
+    }
     const bool isComplete =
         countNonZero(masks.left) == (int)left.total() && countNonZero(masks.right) == (int)right.total();
     if (isComplete)

@@ -8,12 +8,19 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
+//! What the levels of a pair of floats are matched as
+struct FloatLevels
+{
+    double black, white; // become 0 and 65535; others are clamped
+};
+
 //! A pair of which each pixel has a level, and which of them are data
 struct CompletePair
 {
     Mat left, right;
     PairMasks masks;
-    Mat filled[2]; // memory, kept from pair to pair
+    FloatLevels floats; // if it was of floats
+    Mat filled[2];      // memory, kept from pair to pair
 
     //! Which may be the caller's
     void forgetImages() { left = right = Mat(); }
@@ -24,17 +31,24 @@ struct CompletePair
 @param right Of the same size and type.
 @param leftMask CV_8UC1 of the same size, 0 where there is no data; empty: there is everywhere.
 @param rightMask The same of the right image.
+@param given What floats are matched as; none: that of this pair.
 @param complete Receives the pair: the images themselves if nothing is to be done. */
 CV_EXPORTS void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
-                             CompletePair& complete);
+                             const FloatLevels* given, CompletePair& complete);
 
-/** The levels of a pair in CV_16UC1, by one scale for both: the darkest pixel becomes 0 and the brightest 65535, but
-for one pixel in 1024 at each end, which are black or white, as defects and highlights are.
+/** One scale for both images of a pair: the darkest pixel becomes black and the brightest white, but for one pixel in
+1024 at each end, as defects and highlights are.
 @param left CV_32FC1.
 @param right The same.
-@param masks Which pixels count; those that are not finite must not be among them.
-@param levels Receives both images; 0 without data. */
-CV_EXPORTS void wholeLevels(const Mat& left, const Mat& right, const PairMasks& masks, Mat (&levels)[2]);
+@param masks Which pixels count; those that are not finite must not be among them. */
+CV_EXPORTS FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks);
+
+/** Levels in CV_16UC1.
+@param image CV_32FC1.
+@param mask Which pixels have data; the others become 0.
+@param floats What is black and white; all is black if these are the same.
+@param levels Receives the image. */
+CV_EXPORTS void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, Mat& levels);
 
 /** Fills the pixels without data. A run of them in a row gets the levels at its ends, each half of it the nearer one's.
 A row without any gets what the nearest row has that has some, the upper one of two; black if there is none.

@@ -24,7 +24,7 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     const char* const notNegative = "finite and >= 0";
     visit("width", m.width, m.width > 0 && m.width <= maxWhole, "1..2^24");
     visit("height", m.height, m.height > 0 && m.height <= maxWhole, "1..2^24");
-    visit("depth", m.depth, m.depth == CV_8U || m.depth == CV_16U, "CV_8U or CV_16U");
+    visit("depth", m.depth, m.depth == CV_8U || m.depth == CV_16U || m.depth == CV_32F, "CV_8U, CV_16U or CV_32F");
     visit("tileWidth", m.tileWidth, m.tileWidth > 0 && m.tileWidth <= m.width, "1..width");
     visit("tileHeight", m.tileHeight, m.tileHeight > 0 && m.tileHeight <= m.height, "1..height");
     visit("x", m.x, m.x >= 0 && m.x <= m.width - m.tileWidth, "0..width - tileWidth");
@@ -36,6 +36,8 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("isLightChanged", m.isLightChanged, true, "");
     visit("noise", m.noise, isStep(m.noise), notNegative);
     visit("noiseLayer", m.noiseLayer, m.noiseLayer >= 0 && m.noiseLayer <= 15, "0..15");
+    visit("black", m.black, std::isfinite(m.black), "finite");
+    visit("white", m.white, std::isfinite(m.white) && m.white >= m.black, "finite and >= black");
     visit("bits", m.bits, m.bits >= 8 && m.bits <= (m.depth == CV_8U ? 8 : 16), "8..16, and 8 for CV_8U");
     visit("brightness", m.brightness, m.brightness >= 1 && m.brightness <= 4, "1..4");
     visit("leftBlockStart", m.leftBlockStart, m.leftBlockStart >= 0 && m.leftBlockStart < BlockGrid::side, "0..7");
@@ -113,8 +115,8 @@ int blockStart(int column) { return (column % BlockGrid::side + BlockGrid::side)
 PairModel::PairModel()
     : width(0), height(0), depth(CV_8U), x(0), y(0), tileWidth(0), tileHeight(0), minDisparity(0), numDisparities(0),
       addedColumns(0), rows(RowModel::terms, 0.), areRowsMoved(false), light(LightModel::terms, 0.),
-      isLightChanged(false), noise(0), noiseLayer(0), bits(8), brightness(1), leftBlockStart(0), leftBlockStep(0),
-      rightBlockStart(0), rightBlockStep(0)
+      isLightChanged(false), noise(0), noiseLayer(0), black(0), white(0), bits(8), brightness(1), leftBlockStart(0),
+      leftBlockStep(0), rightBlockStart(0), rightBlockStep(0)
 {
     light[0] = 1;
 }
@@ -219,9 +221,10 @@ void checkPairModelOf(const PairModel& model, Size size, int type, int layers)
     if (model.empty())
         return;
     if (model.depth != CV_MAT_DEPTH(type))
-        CV_Error(Error::StsUnmatchedFormats,
-                 format("left must have %d bits per level as the pair model, see setPairModel()",
-                        model.depth == CV_8U ? 8 : 16));
+        CV_Error(Error::StsUnmatchedFormats, format("left must have %s as the pair model, see setPairModel()",
+                                                    model.depth == CV_32F  ? "levels of CV_32F"
+                                                    : model.depth == CV_8U ? "8 bits per level"
+                                                                           : "16 bits per level"));
     if (size != Size(model.tileWidth, model.tileHeight))
         CV_Error(Error::StsUnmatchedSizes,
                  format("left must have %d x %d pixels as the pair model, not %d x %d, see setPairModel()",
@@ -268,8 +271,8 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     return given;
 }
 
-PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities, const LevelFindings& levels,
-                      const PairFindings& findings)
+PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities, const FloatLevels& floats,
+                      const LevelFindings& levels, const PairFindings& findings)
 {
     PairModel model;
     const int brightness = roundedBrightness(levels.brightness);
@@ -287,6 +290,8 @@ PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisp
     model.isLightChanged = findings.hasLight;
     model.noise = findings.noise.deviation / brightness;
     model.noiseLayer = findings.noise.layer;
+    model.black = floats.black;
+    model.white = floats.white;
     model.bits = levels.bits;
     model.brightness = levels.brightness;
     model.leftBlockStart = blockStart(levels.leftBlocks.begin - plan.extension);

@@ -7,6 +7,7 @@
 #include "opencv2/hdpstereo/pair_model.hpp"
 
 #include "../pair/pair_alignment.hpp"
+#include "../pair/missing_pixels.hpp"
 #include "../pair/pair_pyramids.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -39,10 +40,11 @@ CV_EXPORTS GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan
 @param size Of its images.
 @param depth Of its images.
 @param numDisparities Of its images.
+@param floats Of its images, if they are of floats.
 @param levels What was found.
 @param findings What was found. */
 CV_EXPORTS PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities,
-                                 const LevelFindings& levels, const PairFindings& findings);
+                                 const FloatLevels& floats, const LevelFindings& levels, const PairFindings& findings);
 
 }}} // namespace cv::stereo::hdp
 

@@ -85,9 +85,20 @@ Mat readDisparity(const String& path)
 
 Mat readPicture(const String& path)
 {
-    Mat image = readImage(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
-    if (image.depth() != CV_8U)
-        cvtColor(image, image, COLOR_BGR2GRAY);
+    Mat image;
+    try
+    {
+        image = imread(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
+    }
+    catch (const cv::Exception&) // of some formats, grey floats cannot be read so
+    {
+    }
+    if (image.empty())
+        image = readImage(path, IMREAD_UNCHANGED);
+    if (image.depth() != CV_8U && image.channels() > 1)
+        cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);
+    if (image.depth() == CV_64F)
+        image.convertTo(image, CV_32F);
     return image;
 }
 

@@ -16,7 +16,8 @@ using namespace cv;
 static const char* const keys =
     "{help h ?        |      | print this and exit }"
     "{version         |      | print the version and exit }"
-    "{@left           |      | left image of a rectified pair, or of a raw one with --calibration, of 8 or 16 bit }"
+    "{@left           |      | left image of a rectified pair, or of a raw one with --calibration, of 8 or 16 bit "
+    "or grey floats }"
     "{@right          |      | right image }"
     "{@out            |      | disparities, as --output; with --batch a folder }"
     "{batch           |      | --batch LEFTS RIGHTS OUT: matches files of the same name in two folders, or --batch "

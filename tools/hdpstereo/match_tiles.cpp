@@ -55,7 +55,7 @@ Mat reduced(ImageWindows& image, int times)
 //! Memory that a matcher takes, in bytes per pixel, at most; see BENCHMARK.md
 double bytesPerPixel(const String& preset)
 {
-    return preset == "ultrafast" ? 40 : preset == "fast" ? 60 : preset == "quality" ? 100 : 200;
+    return preset == "ultrafast" ? 40 : preset == "fast" ? 85 : preset == "quality" ? 120 : 200;
 }
 
 //! How a pair is cut
@@ -167,12 +167,13 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
     const int side = (int)std::sqrt(std::min(overviewPixels, pixels));
     const Rect all(Point(), size), middle = Rect((size.width - side) / 2, (size.height - side) / 2, side, side) & all;
     const Rect part = times == 0 ? all : middle;
-    const Ptr<HDPTreeMatcher> ofPart =
+    Ptr<HDPTreeMatcher> ofPart =
         matchAlone(parser, size.width, pair.left->read(part), pair.right->read(part), min, count);
     layers = (int)ofPart->getFindings().searchRatios.size();
     if (parser.has("findings"))
         return PairModel::load(parser.get<String>("findings"));
     const PairModel found = ofPart->getPairModel();
+    ofPart.release(); // its memory, before that of the next one
     if (times == 0)
         return found;
 
@@ -182,7 +183,8 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
                           .enlarged(times, size.width, size.height);
     if (found.noise > 0)
     {
-        model.noise = found.noise;
+        const bool isFloat = model.depth == CV_32F && model.white > model.black;
+        model.noise = found.noise * (isFloat ? (found.white - found.black) / (model.white - model.black) : 1);
         model.noiseLayer = found.noiseLayer;
     }
     model.leftBlockStart = (found.leftBlockStart + part.x) % 8;

@@ -63,7 +63,7 @@ template <typename T> T fieldOf(TIFF* file, uint32_t tag)
     return value;
 }
 
-//! A TIFF of strips or tiles, of one to four interleaved samples of 8 or 16 bit
+//! A TIFF of strips or tiles, of one to four interleaved samples of 8 or 16 bit, or one of floats
 class TiffWindows : public ImageWindows
 {
 public:
@@ -89,18 +89,19 @@ public:
                   format = fieldOf<uint16_t>(f, TIFFTAG_SAMPLEFORMAT);
         const bool isGrey = samples_ == 1 && photometric == PHOTOMETRIC_MINISBLACK;
         const bool isColored = (samples_ == 3 || samples_ == 4) && photometric == PHOTOMETRIC_RGB;
-        return (bits_ == 8 || bits_ == 16) && format == SAMPLEFORMAT_UINT && (isGrey || isColored) &&
-               fieldOf<uint16_t>(f, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_CONTIG && size_.area() > 0 &&
-               block_.area() > 0 && (isTiled_ || block_.height < size_.height);
+        const bool isWhole = (bits_ == 8 || bits_ == 16) && format == SAMPLEFORMAT_UINT && (isGrey || isColored),
+                   isFloat = bits_ == 32 && format == SAMPLEFORMAT_IEEEFP && isGrey;
+        return (isWhole || isFloat) && fieldOf<uint16_t>(f, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_CONTIG &&
+               size_.area() > 0 && block_.area() > 0 && (isTiled_ || block_.height < size_.height);
     }
 
     Size size() const CV_OVERRIDE { return size_; }
-    int type() const CV_OVERRIDE { return bits_ == 16 ? CV_16UC1 : samples_ == 1 ? CV_8UC1 : CV_8UC3; }
+    int type() const CV_OVERRIDE { return CV_MAKETYPE(depth(), depth() == CV_8U && samples_ > 1 ? 3 : 1); }
     int bytesInMemory() const CV_OVERRIDE { return 0; }
 
     Mat read(const Rect& part) CV_OVERRIDE
     {
-        const int stored = CV_MAKETYPE(bits_ == 16 ? CV_16U : CV_8U, samples_);
+        const int stored = CV_MAKETYPE(depth(), samples_);
         Mat pixels(part.size(), stored), block(block_, stored);
         for (int y = part.y / block_.height * block_.height; y < part.br().y; y += block_.height)
             for (int x = part.x / block_.width * block_.width; x < part.br().x; x += block_.width)
@@ -121,6 +122,8 @@ public:
     }
 
 private:
+    int depth() const { return bits_ == 8 ? CV_8U : bits_ == 16 ? CV_16U : CV_32F; }
+
     void readBlock(int x, int y, Mat& block)
     {
         TIFF* const f = file_.get();

@@ -4,8 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_HDP_TREE_MATCHER_HPP
 #define OPENCV_HDPSTEREO_HDP_TREE_MATCHER_HPP
 
-// The only code that knows OpenCV's versions: what opencv_calib3d and opencv_imgproc of 4.x have for stereo matching is
-// in opencv_stereo and opencv_geometry since 5.0.
+// What opencv_calib3d and opencv_imgproc of 4.x have for stereo matching is in opencv_stereo and opencv_geometry since 5.0.
 #include "opencv2/core/version.hpp"
 #if CV_VERSION_MAJOR >= 5
 #include "opencv2/geometry/2d.hpp"
@@ -47,7 +46,7 @@ column. getConfidence() tells how reliable each disparity is, getFindings() what
 - minDisparity, numDisparities: the range of disparities in pixels, minDisparity to minDisparity + numDisparities - 1.
   minDisparity has any sign; a negative one adds up to numDisparities columns on the left of the images. numDisparities
   is > 0, and not necessarily a multiple of 16, or 0: both are found in the pair, see Findings::numDisparities, and the
-  parameter minDisparity has no meaning. This takes 10 to 30 ms, and a range that is some 40 % larger than necessary.
+  parameter minDisparity has no meaning. This takes 10 to 40 ms, and a range that is 40 to 130 % larger than necessary.
   A pair in which fewer than 10 corners have matches, as in images without texture, is an error. The frames of a video
   keep the range of the first one while it has all disparities that are found, and is not twice as large.
 - the preset, see HDPTreeMatcher::Preset: what to spend on accuracy.
@@ -201,8 +200,8 @@ public:
 
         Rectified images have the same point in the same row. Temperature, a knock or a poor calibration change that,
         and half a row already costs accuracy. compute() matches some hundred corners, and moves the rows of the right
-        image if these are certain that rows are off. >= 0, at the worst corner of the image; larger differences are not
-        believed. 0: off. PAPER: 0, others: 64. */
+        image if these say that rows are off by more than an eighth of a pixel. >= 0, at the worst corner of the image;
+        larger differences are not believed. 0: off. PAPER: 0, others: 64. */
         CV_PROP_RW int maxRowOffset;
 
         /** @brief Whether the right image gets the light of the left one before they are matched.
@@ -598,14 +597,14 @@ public:
 
     What the model says is done, whatever Params::maxRowOffset and Params::useLightAlignment are; Params::noiseThreshold
     is compared with its noise. HDPTreeMatcher::Findings are then those of the model, which are about its whole images.
-    The disparity range is not taken from it. save() does not store it, and clear() does not forget it.
+    The disparity range is taken from it if numDisparities is 0. save() does not store it, and clear() does not forget it.
     @param model That of an earlier pair, or of a tile of it. An empty one: pairs are estimated again.
     @throws cv::Exception if a value is not valid; the matcher is unchanged.
      */
     CV_WRAP virtual void setPairModel(const PairModel& model) = 0;
 
-    //! Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute(),
-    //! after one that threw an exception, and for images of CV_32FC1, whose levels are scaled by their own range.
+    //! Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute() and
+    //! after one that threw an exception.
     CV_WRAP virtual PairModel getPairModel() const = 0;
 
     //! Returns what the last compute() found out about the pair.
@@ -616,7 +615,7 @@ public:
     With PRESET_FAST, ULTRAFAST and QUALITY this is the top layer, whose trees search the full range; with PRESET_TREE
     the lowest layer above the finest one. Either may be cv::noArray().
     @param trees Receives the number of each pixel's tree, from 0: CV_32SC1 of the layer's size. Empty before the first
-    compute(), after one that threw an exception, and without trees: Params::topAggregation, temporal prediction.
+    compute(), after one that threw an exception, and without trees, see Params::topAggregation.
     @param intervals Receives the first and the last candidate of each pixel's tree, TreeIntv, counted from
     minDisparity: CV_16UC2 of the same size.
      */
@@ -625,7 +624,7 @@ public:
     /** @brief Returns the \f$P(D_l)\f$ that predicted a layer's intervals in the last compute() (section 3.1).
     @param layer l >= 0, 0 being the image.
     @param prior Receives a number >= 0 per candidate of the layer, from its first disparity on, up to a factor. Empty
-    if nothing was predicted there, as in the top layer and with scanlines.
+    if nothing was predicted there, as in the top layer, and in layers of scanlines over windows or all candidates.
      */
     CV_WRAP virtual void getLayerPrior(int layer, CV_OUT std::vector<double>& prior) const = 0;
 

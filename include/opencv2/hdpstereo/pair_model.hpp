@@ -63,12 +63,12 @@ struct CV_EXPORTS_W_SIMPLE PairModel
 
     CV_PROP_RW int width;          //!< of the images, in pixels, > 0; 0: the model is empty. Up to 2^24
     CV_PROP_RW int height;         //!< of the images, in pixels, likewise
-    CV_PROP_RW int depth;          //!< of the images: CV_8U or CV_16U; CV_32F has no model
+    CV_PROP_RW int depth;          //!< of the images: CV_8U, CV_16U or CV_32F
     CV_PROP_RW int x;              //!< first column of the tile that is matched, >= 0; 0 without tiles
     CV_PROP_RW int y;              //!< first row of the tile, >= 0
     CV_PROP_RW int tileWidth;      //!< of the tile, in pixels, > 0; width without tiles
     CV_PROP_RW int tileHeight;     //!< of the tile, likewise
-    CV_PROP_RW int minDisparity;   //!< that the images were matched with. A matcher keeps its own range
+    CV_PROP_RW int minDisparity;   //!< that the images were matched with. A matcher keeps its own range, if it has one
     CV_PROP_RW int numDisparities; //!< the same, > 0
     CV_PROP_RW int addedColumns;   //!< that a negative minDisparity added on the left of the images, >= 0
 
@@ -85,7 +85,9 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     CV_PROP_RW double noise;   //!< as HDPTreeMatcher::Findings::noise, of noiseLayer: finite, >= 0
     CV_PROP_RW int noiseLayer; //!< the layer in which it was measured, 0..15; 0 is the image
 
-    CV_PROP_RW int bits; //!< that levels of CV_16U have: 8..16. For CV_8U 8
+    CV_PROP_RW double black; //!< level of CV_32F that is matched as 0 of CV_16U: finite; 0 for other depths
+    CV_PROP_RW double white; //!< level of CV_32F that is matched as 65535: finite, >= black
+    CV_PROP_RW int bits;     //!< that levels of CV_16U have: 8..16. For CV_8U 8
     //! What the dark levels of a dark pair are brightened by, for HDPTreeMatcher::COST_CENSUS: 1..4. From 1 to 2 and
     //! from 2 to 4, ever fewer of the bright levels are held back.
     CV_PROP_RW double brightness;
