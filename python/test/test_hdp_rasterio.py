@@ -84,6 +84,16 @@ def main():
         other = np.mean(~(np.abs(part - whole[150:570, 700:1600]) <= 0.1))
         assert other < 0.001, other
 
+        for name in 'left.tif', 'right.tif':
+            with rasterio.open(folder / name) as raster:
+                levels = raster.read(1).astype(np.float32) / 4096
+            save(folder / name, levels)
+        result = run(folder, '--tile=500')
+        assert result.returncode == 0, result.stdout
+        floats, _ = load(folder)
+        wrong = np.mean(~(np.abs(floats - truth)[judged] <= 0.5))
+        assert np.isnan(floats[:100, :150]).all() and wrong < 0.01, wrong
+
         for window in '1900,0,200,100', '0,0,10', 'left':
             result = run(folder, '--window=' + window)
             assert result.returncode == 1 and 'error: --window must be X,Y,WIDTH,HEIGHT inside of 2000 x 900' in \
