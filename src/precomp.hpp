@@ -8,4 +8,17 @@
 #include "opencv2/core/utils/trace.hpp"
 #include "opencv2/imgproc.hpp"
 
+namespace cv { namespace stereo { namespace hdp {
+
+//! f(i) for each i of 0 .. count - 1, by all threads
+template <typename F> void parallelFor(int count, const F& f)
+{
+    parallel_for_(Range(0, count), [&](const Range& range) {
+        for (int i = range.start; i < range.end; ++i)
+            f(i);
+    });
+}
+
+}}} // namespace cv::stereo::hdp
+
 #endif

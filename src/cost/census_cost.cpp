@@ -95,13 +95,10 @@ void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, uc
 void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
 {
     costs.create(disparity.size(), CV_8U);
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            dispatched::censusCostOfRow(planes_, y, disparity.ptr<ushort>(y), costs.ptr(y));
-            if (!limits_.isEmpty())
-                limits_.apply(y, disparity.ptr<ushort>(y), costs.ptr(y));
-        }
+    parallelFor(disparity.rows, [&](int y) {
+        dispatched::censusCostOfRow(planes_, y, disparity.ptr<ushort>(y), costs.ptr(y));
+        if (!limits_.isEmpty())
+            limits_.apply(y, disparity.ptr<ushort>(y), costs.ptr(y));
     });
 }
 

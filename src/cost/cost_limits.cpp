@@ -22,15 +22,12 @@ void CostLimits::prepare(const PairMasks& masks, int numDisparities)
     right_.create(left.rows, margin + width_ + numDisparities + costPadding + margin, CV_8U);
     copyBordered(left, 0, 0, margin, margin, false, left_);
     copyBordered(right, 0, 0, margin, right_.cols - margin - width_, true, right_);
-    parallel_for_(Range(0, left.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            uchar *const l = left_.ptr(y), *const r = right_.ptr(y);
-            for (int x = 0; x < left_.cols; ++x)
-                l[x] = (uchar)(hasData(l[x]) ? +none : 0);
-            for (int x = 0; x < right_.cols; ++x)
-                r[x] = (uchar)(hasData(r[x]) ? +none : +ordinary);
-        }
+    parallelFor(left.rows, [&](int y) {
+        uchar *const l = left_.ptr(y), *const r = right_.ptr(y);
+        for (int x = 0; x < left_.cols; ++x)
+            l[x] = (uchar)(hasData(l[x]) ? +none : 0);
+        for (int x = 0; x < right_.cols; ++x)
+            r[x] = (uchar)(hasData(r[x]) ? +none : +ordinary);
     });
 }
 

@@ -28,15 +28,12 @@ template <typename T>
 void copyRows(const Mat& image, int channel, int first, int before, int after, bool mirrored, Mat& bordered)
 {
     const int step = image.channels(), width = image.cols;
-    parallel_for_(Range(0, bordered.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const T* from = image.ptr<T>(std::min(std::max(first + y, 0), image.rows - 1)) + channel;
-            T* to = bordered.ptr<T>(y);
-            copyColumns(mirrored ? from + (width - 1) * step : from, mirrored ? -step : step, width, to + before);
-            std::fill(to, to + before, to[before]);
-            std::fill(to + before + width, to + before + width + after, to[before + width - 1]);
-        }
+    parallelFor(bordered.rows, [&](int y) {
+        const T* from = image.ptr<T>(std::min(std::max(first + y, 0), image.rows - 1)) + channel;
+        T* to = bordered.ptr<T>(y);
+        copyColumns(mirrored ? from + (width - 1) * step : from, mirrored ? -step : step, width, to + before);
+        std::fill(to, to + before, to[before]);
+        std::fill(to + before + width, to + before + width + after, to[before + width - 1]);
     });
 }
 
@@ -47,15 +44,14 @@ MatchingCost::~MatchingCost() {}
 void MatchingCost::ofDisparities(const Mat& disparity, Mat& costs) const
 {
     costs.create(disparity.size(), CV_32S);
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
+    parallelFor(disparity.rows, [&](int y) {
         float cost[4];
-        for (int y = rows.start; y < rows.end; ++y)
-            for (int x = 0; x < disparity.cols; ++x)
-            {
-                const int pixel = y * disparity.cols + x;
-                evaluate(&pixel, 1, wholeDisparity(disparity.ptr<ushort>(y)[x]), 4, cost);
-                costs.ptr<int>(y)[x] = cvRound(512 * cost[0]);
-            }
+        for (int x = 0; x < disparity.cols; ++x)
+        {
+            const int pixel = y * disparity.cols + x;
+            evaluate(&pixel, 1, wholeDisparity(disparity.ptr<ushort>(y)[x]), 4, cost);
+            costs.ptr<int>(y)[x] = cvRound(512 * cost[0]);
+        }
     });
 }
 

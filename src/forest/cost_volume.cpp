@@ -102,20 +102,19 @@ void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pi
 
 void excludeCandidates(const Mat& intervals, CostVolume& volume)
 {
-    parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            for (int x = 0; x < volume.size.width; ++x)
-            {
-                const DisparityInterval& own = intervals.ptr<DisparityInterval>(y)[x];
-                const CostVolume::Candidates all = volume.of(y * volume.size.width + x);
-                uchar* const costs = volume.costs.data() + all.start();
-                const int count = all.interval.size(), before = own.first - all.interval.first,
-                          after = own.last + 1 - all.interval.first;
-                if (before > 0)
-                    std::fill(costs, costs + std::min(before, count), (uchar)UCHAR_MAX);
-                if (after < count)
-                    std::fill(costs + std::max(after, 0), costs + count, (uchar)UCHAR_MAX);
-            }
+    parallelFor(volume.size.height, [&](int y) {
+        for (int x = 0; x < volume.size.width; ++x)
+        {
+            const DisparityInterval& own = intervals.ptr<DisparityInterval>(y)[x];
+            const CostVolume::Candidates all = volume.of(y * volume.size.width + x);
+            uchar* const costs = volume.costs.data() + all.start();
+            const int count = all.interval.size(), before = own.first - all.interval.first,
+                      after = own.last + 1 - all.interval.first;
+            if (before > 0)
+                std::fill(costs, costs + std::min(before, count), (uchar)UCHAR_MAX);
+            if (after < count)
+                std::fill(costs + std::max(after, 0), costs + count, (uchar)UCHAR_MAX);
+        }
     });
 }
 

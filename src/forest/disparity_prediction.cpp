@@ -79,14 +79,11 @@ void upperHistogram(const Mat& upper, int numDisparities, std::vector<double>& h
 void assignIntervals(const Mat& upper, Size size, const std::vector<DisparityInterval>& intervals, Mat& pixelIntv)
 {
     pixelIntv.create(size, CV_16UC2);
-    parallel_for_(Range(0, size.height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const ushort* above = upper.ptr<ushort>(std::min(y / 2, upper.rows - 1));
-            DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
-            for (int x = 0; x < size.width; ++x)
-                interval[x] = intervals[wholeDisparity(above[std::min(x / 2, upper.cols - 1)])];
-        }
+    parallelFor(size.height, [&](int y) {
+        const ushort* above = upper.ptr<ushort>(std::min(y / 2, upper.rows - 1));
+        DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
+        for (int x = 0; x < size.width; ++x)
+            interval[x] = intervals[wholeDisparity(above[std::min(x / 2, upper.cols - 1)])];
     });
 }
 

@@ -29,12 +29,9 @@ bool isKept(int weight, const DisparityInterval& a, const DisparityInterval& b)
 void weighEdges(const Mat& image, Mat& weights)
 {
     weights.create(image.size(), CV_8UC2);
-    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const uchar* const next = image.ptr(std::min(y + 1, image.rows - 1)); // the last row itself below it
-            dispatched::weighRow(image.ptr(y), next, image.cols, image.channels(), weights.ptr(y));
-        }
+    parallelFor(image.rows, [&](int y) {
+        const uchar* const next = image.ptr(std::min(y + 1, image.rows - 1)); // the last row itself below it
+        dispatched::weighRow(image.ptr(y), next, image.cols, image.channels(), weights.ptr(y));
     });
 }
 

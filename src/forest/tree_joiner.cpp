@@ -216,18 +216,15 @@ void joinTrees(const TreeStrategy& strategy, const Mat& weights, const Mat& pixe
     const int count = std::max(std::min(maxCount, height / minStripeRows), 1);
     if ((int)stripes.size() < count + 1) // a small layer leaves the memory of the large ones
         stripes.resize(count + 1);
-    parallel_for_(Range(0, count), [&](const Range& range) {
-        for (int s = range.start; s < range.end; ++s)
-        {
-            JoinerStripe& stripe = stripes[s];
-            const Range rows((int)((int64)height * s / count), (int)((int64)height * (s + 1) / count));
-            stripe.undecidedEdges.clear();
-            stripe.frozenRoots.clear();
-            startTrees(pixelIntv, rows, trees);
-            selectEdges(weights, pixelIntv, rows, stripe.edges);
-            orderEdges(strategy, weights, stripe);
-            StripeJoiner(&strategy, weights, params.beta, rows, trees, stripe, links).tryEdges(stripe.edges);
-        }
+    parallelFor(count, [&](int s) {
+        JoinerStripe& stripe = stripes[s];
+        const Range rows((int)((int64)height * s / count), (int)((int64)height * (s + 1) / count));
+        stripe.undecidedEdges.clear();
+        stripe.frozenRoots.clear();
+        startTrees(pixelIntv, rows, trees);
+        selectEdges(weights, pixelIntv, rows, stripe.edges);
+        orderEdges(strategy, weights, stripe);
+        StripeJoiner(&strategy, weights, params.beta, rows, trees, stripe, links).tryEdges(stripe.edges);
     });
 
     const Range all(0, height);

@@ -235,19 +235,16 @@ int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVo
         if (forest.trees[t].size >= minPixels)
             trees.push_back(t);
     std::vector<uchar> hasPlane(trees.size());
-    parallel_for_(Range(0, (int)trees.size()), [&](const Range& range) {
-        for (int t = range.start; t < range.end; ++t)
-        {
-            const DisparityTree& tree = forest.trees[trees[t]];
-            const int* const pixels = volume.pixelsOf(trees[t]);
-            const TreeSamples of(pixels, tree, disparity, volume);
-            if (!of.haveContrast())
-                continue;
-            const Plane plane = of.findPlane();
-            hasPlane[t] = of.rise(plane) < maxRise && of.shareOn(plane) >= minShare;
-            if (hasPlane[t])
-                prefer(plane, pixels, tree.size, volume);
-        }
+    parallelFor((int)trees.size(), [&](int t) {
+        const DisparityTree& tree = forest.trees[trees[t]];
+        const int* const pixels = volume.pixelsOf(trees[t]);
+        const TreeSamples of(pixels, tree, disparity, volume);
+        if (!of.haveContrast())
+            return;
+        const Plane plane = of.findPlane();
+        hasPlane[t] = of.rise(plane) < maxRise && of.shareOn(plane) >= minShare;
+        if (hasPlane[t])
+            prefer(plane, pixels, tree.size, volume);
     });
     return (int)std::count(hasPlane.begin(), hasPlane.end(), 1);
 }

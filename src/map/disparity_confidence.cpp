@@ -156,19 +156,16 @@ void compareAlternatives(const Mat& disparity, int numDisparities, const Matchin
 {
     Mat before(disparity.size(), CV_16U), after(disparity.size(), CV_16U), costs[2];
     const ushort step = (ushort)(alternative * subpixelScale), last = (ushort)((numDisparities - 1) * subpixelScale);
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
+    parallelFor(disparity.rows, [&](int y) {
+        const ushort* const row = disparity.ptr<ushort>(y);
+        ushort *const low = before.ptr<ushort>(y), *const high = after.ptr<ushort>(y);
+        HDP_VECTORIZED for (int x = 0; x < disparity.cols; ++x)
         {
-            const ushort* const row = disparity.ptr<ushort>(y);
-            ushort *const low = before.ptr<ushort>(y), *const high = after.ptr<ushort>(y);
-            HDP_VECTORIZED for (int x = 0; x < disparity.cols; ++x)
-            {
-                const int winner = wholeDisparity(row[x]) * subpixelScale;
-                const int above = winner + step <= last ? winner + step : winner;
-                const int below = winner >= step ? winner - step : above;
-                low[x] = (ushort)below;
-                high[x] = (ushort)(above > winner ? above : below);
-            }
+            const int winner = wholeDisparity(row[x]) * subpixelScale;
+            const int above = winner + step <= last ? winner + step : winner;
+            const int below = winner >= step ? winner - step : above;
+            low[x] = (ushort)below;
+            high[x] = (ushort)(above > winner ? above : below);
         }
     });
     cost.ofDisparities(disparity, own);

@@ -21,19 +21,18 @@ void findReasons(const Mat& disparity, const OutputPlan& plan, int width, Mat& r
     findStable(disparity, maxDiff, stable);
     const int scale = 1 << plan.finestLayer, half = subpixelScale / 2;
     reasons.create(disparity.size(), CV_8U);
-    parallel_for_(Range(0, reasons.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            for (int x = 0; x < reasons.cols; ++x)
-            {
-                // The column of the right image, in 1 / subpixelScale pixel
-                const int64 column = ((int64)x * scale - plan.extension - plan.minDisparity) * subpixelScale -
-                                     (int64)disparity.at<ushort>(y, x) * scale;
-                const bool isInside = column >= -half && column <= (width - 1) * (int64)subpixelScale + half;
-                const bool isStable = stable.at<uchar>(y, x) != 0;
-                reasons.at<uchar>(y, x) = (uchar)(!isInside  ? HDPTreeMatcher::REASON_OUTSIDE
-                                                  : isStable ? HDPTreeMatcher::REASON_MATCHED
-                                                             : HDPTreeMatcher::REASON_OCCLUDED);
-            }
+    parallelFor(reasons.rows, [&](int y) {
+        for (int x = 0; x < reasons.cols; ++x)
+        {
+            // The column of the right image, in 1 / subpixelScale pixel
+            const int64 column = ((int64)x * scale - plan.extension - plan.minDisparity) * subpixelScale -
+                                 (int64)disparity.at<ushort>(y, x) * scale;
+            const bool isInside = column >= -half && column <= (width - 1) * (int64)subpixelScale + half;
+            const bool isStable = stable.at<uchar>(y, x) != 0;
+            reasons.at<uchar>(y, x) = (uchar)(!isInside  ? HDPTreeMatcher::REASON_OUTSIDE
+                                              : isStable ? HDPTreeMatcher::REASON_MATCHED
+                                                         : HDPTreeMatcher::REASON_OCCLUDED);
+        }
     });
 }
 

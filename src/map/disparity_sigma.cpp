@@ -77,24 +77,22 @@ void levelMismatch(const Mat& disparity, const CensusCost& cost, Mat& mismatch)
 {
     const Size size = disparity.size();
     Mat differences(size, CV_32S), squares(size, CV_32S), gradients(size, CV_32S);
-    parallel_for_(Range(0, size.height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            compareRow(cost, disparity.ptr<ushort>(y), y, size.width, differences.ptr<int>(y), squares.ptr<int>(y),
-                       gradients.ptr<int>(y));
+    parallelFor(size.height, [&](int y) {
+        compareRow(cost, disparity.ptr<ushort>(y), y, size.width, differences.ptr<int>(y), squares.ptr<int>(y),
+                   gradients.ptr<int>(y));
     });
     for (Mat* values : { &differences, &squares, &gradients })
         sumOverWindows(*values);
     mismatch.create(size, CV_32F);
-    parallel_for_(Range(0, size.height), [&](const Range& rows) {
+    parallelFor(size.height, [&](int y) {
         const int count = window * window;
-        for (int y = rows.start; y < rows.end; ++y)
-            for (int x = 0; x < size.width; ++x)
-            {
-                const int64 sum = differences.at<int>(y, x), squared = squares.at<int>(y, x);
-                const double deviation = std::sqrt((double)(count * squared - sum * sum)) / (unit * count);
-                const double gradient = 0.5 * std::sqrt((double)gradients.at<int>(y, x) / count);
-                mismatch.at<float>(y, x) = (float)(deviation / (gradient + 0.5));
-            }
+        for (int x = 0; x < size.width; ++x)
+        {
+            const int64 sum = differences.at<int>(y, x), squared = squares.at<int>(y, x);
+            const double deviation = std::sqrt((double)(count * squared - sum * sum)) / (unit * count);
+            const double gradient = 0.5 * std::sqrt((double)gradients.at<int>(y, x) / count);
+            mismatch.at<float>(y, x) = (float)(deviation / (gradient + 0.5));
+        }
     });
 }
 
@@ -104,20 +102,19 @@ void disparitySigma(const Mat& confidence, const Mat& mismatch, float rounding, 
     for (int i = 0; i < 256; ++i)
         places[i] = placeOf((float)i, confidenceOf, confidences);
     sigma.create(confidence.size(), CV_32F);
-    parallel_for_(Range(0, sigma.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            for (int x = 0; x < sigma.cols; ++x)
-            {
-                const Place& row = places[confidence.at<uchar>(y, x)];
-                const Place column =
-                    placeOf(mismatch.empty() ? unknownMismatch : mismatch.at<float>(y, x), mismatchOf, mismatches);
-                const float* const upper = sigmas[row.first] + column.first;
-                const float* const lower = sigmas[row.first + 1] + column.first;
-                const float above = upper[0] + column.share * (upper[1] - upper[0]),
-                            below = lower[0] + column.share * (lower[1] - lower[0]);
-                const float value = above + row.share * (below - above);
-                sigma.at<float>(y, x) = rounding > 0 ? std::sqrt(value * value + rounding * rounding) : value;
-            }
+    parallelFor(sigma.rows, [&](int y) {
+        for (int x = 0; x < sigma.cols; ++x)
+        {
+            const Place& row = places[confidence.at<uchar>(y, x)];
+            const Place column =
+                placeOf(mismatch.empty() ? unknownMismatch : mismatch.at<float>(y, x), mismatchOf, mismatches);
+            const float* const upper = sigmas[row.first] + column.first;
+            const float* const lower = sigmas[row.first + 1] + column.first;
+            const float above = upper[0] + column.share * (upper[1] - upper[0]),
+                        below = lower[0] + column.share * (lower[1] - lower[0]);
+            const float value = above + row.share * (below - above);
+            sigma.at<float>(y, x) = rounding > 0 ? std::sqrt(value * value + rounding * rounding) : value;
+        }
     });
 }
 

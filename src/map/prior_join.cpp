@@ -74,10 +74,8 @@ public:
         if (points_.empty() || agreeing < minAgreement * points_.size())
             return false;
         std::vector<uchar> counts(points_.size());
-        parallel_for_(Range(0, (int)points_.size()), [&](const Range& range) {
-            for (int i = range.start; i < range.end; ++i)
-                counts[i] = states_[i] == FAILS && !isContradicted(i) && isSupported(i);
-        });
+        parallelFor((int)points_.size(),
+                    [&](int i) { counts[i] = states_[i] == FAILS && !isContradicted(i) && isSupported(i); });
         for (size_t i = 0; i < points_.size(); ++i)
             if (counts[i])
                 states_[i] = COUNTS;

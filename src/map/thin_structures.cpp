@@ -55,20 +55,17 @@ bool isInStructure(const Mat& disparity, int y, int x)
 void restoreThinStructures(const Mat& unfiltered, Mat& disparity)
 {
     const int minRise = minDistance * subpixelScale;
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
+    parallelFor(disparity.rows, [&](int y) {
+        const ushort* before = unfiltered.ptr<ushort>(y);
+        ushort* row = disparity.ptr<ushort>(y);
+        for (int begin = 0; begin < disparity.cols; begin += columns)
         {
-            const ushort* before = unfiltered.ptr<ushort>(y);
-            ushort* row = disparity.ptr<ushort>(y);
-            for (int begin = 0; begin < disparity.cols; begin += columns)
-            {
-                const int end = std::min(begin + columns, disparity.cols);
-                if (!isAnyNearer(before + begin, row + begin, end - begin))
-                    continue;
-                for (int x = begin; x < end; ++x)
-                    if (before[x] - row[x] >= minRise && isInStructure(unfiltered, y, x))
-                        row[x] = before[x];
-            }
+            const int end = std::min(begin + columns, disparity.cols);
+            if (!isAnyNearer(before + begin, row + begin, end - begin))
+                continue;
+            for (int x = begin; x < end; ++x)
+                if (before[x] - row[x] >= minRise && isInStructure(unfiltered, y, x))
+                    row[x] = before[x];
         }
     });
 }

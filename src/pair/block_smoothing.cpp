@@ -57,10 +57,9 @@ void smoothStep(ushort* row, int x, double limit)
 void smoothSteps(const BlockGrid& grid, Mat& grey)
 {
     const double limit = 2 * smoothedSteps * grid.step; // of twice a step
-    parallel_for_(Range(0, grey.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            for (int x = grid.begin < side / 2 ? grid.begin + side : grid.begin; x + side / 2 <= grey.cols; x += side)
-                smoothStep(grey.ptr<ushort>(y), x, limit);
+    parallelFor(grey.rows, [&](int y) {
+        for (int x = grid.begin < side / 2 ? grid.begin + side : grid.begin; x + side / 2 <= grey.cols; x += side)
+            smoothStep(grey.ptr<ushort>(y), x, limit);
     });
 }
 

@@ -268,10 +268,9 @@ void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows
 
 void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMatch>& matches)
 {
-    parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-            if (matches[i].isValid)
-                track(left, right, matches[i]);
+    parallelFor((int)matches.size(), [&](int i) {
+        if (matches[i].isValid)
+            track(left, right, matches[i]);
     });
 }
 

@@ -21,22 +21,13 @@ HDP_DISPATCH(intersectIntervals)
 HDP_DISPATCH(moveIntoIntervals)
 HDP_DISPATCH(moveIntoRanges)
 
-//! By all threads, for each row
-template <typename Function> void forRows(const Mat& map, const Function& function)
-{
-    parallel_for_(Range(0, map.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            function(y);
-    });
-}
-
 void resizeNearest(const Mat& map, Size size, Mat& resized)
 {
     std::vector<int> columns;
     for (int x = 0; x < size.width; ++x)
         columns.push_back((int)((int64)x * map.cols / size.width));
     resized.create(size, CV_16S);
-    forRows(resized, [&](int y) {
+    parallelFor(resized.rows, [&](int y) {
         const short* const row = map.ptr<short>((int)((int64)y * map.rows / size.height));
         for (int x = 0; x < size.width; ++x)
             resized.ptr<short>(y)[x] = row[columns[x]];
@@ -50,7 +41,7 @@ void expandLimits(const Mat& given, int limitOfAll, bool isWhole, bool isLargest
     Mat& limits = given.size() == size ? expanded : coarse;
     limits.create(given.size(), CV_16S);
     const Range range(isLargest ? SHRT_MIN : limitOfAll, isLargest ? limitOfAll : SHRT_MAX);
-    forRows(limits, [&](int y) {
+    parallelFor(limits.rows, [&](int y) {
         if (given.depth() == CV_16S)
             dispatched::wholeToUnits(given.ptr<short>(y), limits.cols, range, limits.ptr<short>(y));
         else
@@ -84,7 +75,7 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
     // In units of the image first, so that layers know fractions
     const int last = (numDisparities[0] - 1) * subpixelScale, offset = minDisparity * subpixelScale;
     units[0].create(ranges.smallest.rows, ranges.smallest.cols + extension, CV_16UC2);
-    forRows(units[0], [&](int y) {
+    parallelFor(units[0].rows, [&](int y) {
         ushort* const row = units[0].ptr<ushort>(y);
         ushort* const own = row + 2 * extension;
         dispatched::joinLimits(ranges.smallest.ptr<short>(y), ranges.largest.ptr<short>(y), ranges.smallest.cols,
@@ -99,14 +90,14 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
         {
             const Mat& above = units[layer - 1];
             exact.create(above.rows / 2, above.cols / 2, CV_16UC2);
-            forRows(exact, [&](int y) {
+            parallelFor(exact.rows, [&](int y) {
                 dispatched::halveIntervals(above.ptr<ushort>(2 * y), above.ptr<ushort>(2 * y + 1), exact.cols,
                                            exact.ptr<ushort>(y));
             });
         }
         Mat& ofLayer = intervals[layer];
         ofLayer.create(exact.size(), CV_16UC2);
-        forRows(exact, [&](int y) {
+        parallelFor(exact.rows, [&](int y) {
             dispatched::toCandidates(exact.ptr<ushort>(y), exact.cols, (int)layer, numDisparities[layer] - 1,
                                      ofLayer.ptr<ushort>(y));
         });
@@ -116,28 +107,28 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
 void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled)
 {
     doubled.create(intervals.size(), CV_16UC2);
-    forRows(intervals, [&](int y) {
+    parallelFor(intervals.rows, [&](int y) {
         dispatched::doubleIntervals(intervals.ptr<ushort>(y), intervals.cols, candidates - 1, doubled.ptr<ushort>(y));
     });
 }
 
 void intersectIntervals(const Mat& intervals, Mat& others)
 {
-    forRows(others, [&](int y) {
+    parallelFor(others.rows, [&](int y) {
         dispatched::intersectIntervals(intervals.ptr<ushort>(y), others.cols, others.ptr<ushort>(y));
     });
 }
 
 void moveIntoIntervals(const Mat& intervals, Mat& disparity)
 {
-    forRows(disparity, [&](int y) {
+    parallelFor(disparity.rows, [&](int y) {
         dispatched::moveIntoIntervals(intervals.ptr<ushort>(y), disparity.cols, disparity.ptr<ushort>(y));
     });
 }
 
 void moveIntoRanges(const PixelRanges& ranges, short invalid, Mat& disparity)
 {
-    forRows(disparity, [&](int y) {
+    parallelFor(disparity.rows, [&](int y) {
         dispatched::moveIntoRanges(ranges.smallest.ptr<short>(y), ranges.largest.ptr<short>(y), disparity.cols, invalid,
                                    disparity.ptr<short>(y));
     });

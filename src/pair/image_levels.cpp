@@ -56,10 +56,7 @@ int shifted(int level, int times) { return times >= 0 ? level << times : level >
 template <typename From, typename To, typename Convert>
 void convertRows(const Mat& image, Mat& converted, const Convert& convert)
 {
-    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            convert(image.ptr<From>(y), converted.ptr<To>(y), image.cols);
-    });
+    parallelFor(image.rows, [&](int y) { convert(image.ptr<From>(y), converted.ptr<To>(y), image.cols); });
 }
 
 } // namespace
@@ -70,17 +67,14 @@ int countBits(const Mat& left, const Mat& right, double share)
     if (left.depth() == CV_8U)
         return bits;
     Mat tooBright(left.rows, maxBits - minBits, CV_32S); // pixels of each row, for each number of bits
-    parallel_for_(Range(0, left.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
+    parallelFor(left.rows, [&](int y) {
+        const ushort *l = left.ptr<ushort>(y), *r = right.ptr<ushort>(y);
+        for (int i = 0; i < tooBright.cols; ++i)
         {
-            const ushort *l = left.ptr<ushort>(y), *r = right.ptr<ushort>(y);
-            for (int i = 0; i < tooBright.cols; ++i)
-            {
-                const int limit = 1 << (minBits + i);
-                int count = 0;
-                HDP_VECTORIZED for (int x = 0; x < left.cols; ++x) count += (l[x] >= limit) + (r[x] >= limit);
-                tooBright.at<int>(y, i) = count;
-            }
+            const int limit = 1 << (minBits + i);
+            int count = 0;
+            HDP_VECTORIZED for (int x = 0; x < left.cols; ++x) count += (l[x] >= limit) + (r[x] >= limit);
+            tooBright.at<int>(y, i) = count;
         }
     });
     while (bits < maxBits && sum(tooBright.col(bits - minBits))[0] > 2. * left.total() * share / pixelsPerBright)

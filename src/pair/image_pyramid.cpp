@@ -26,10 +26,8 @@ void halveRows(const ushort* upper, const ushort* lower, const Mat& half, ushort
 
 template <typename T> void halve(const Mat& image, Mat& half)
 {
-    parallel_for_(Range(0, half.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            halveRows(image.ptr<T>(2 * y), image.ptr<T>(2 * y + 1), half, half.ptr<T>(y));
-    });
+    parallelFor(half.rows,
+                [&](int y) { halveRows(image.ptr<T>(2 * y), image.ptr<T>(2 * y + 1), half, half.ptr<T>(y)); });
 }
 
 } // namespace

@@ -90,15 +90,12 @@ void alignLight(Mat& levels, const LightModel& model, const ImageFrame& frame)
     const Coefficients& c = model.coefficients;
     const float curve[3] = { (float)(c[7] * white), (float)(c[8] / white), (float)(c[9] / (white * white)) };
     const float step = 1.f / frame.whole.width, first = 0.5f * step - 0.5f;
-    parallel_for_(Range(0, levels.rows), [&](const Range& rows) {
-        for (int row = rows.start; row < rows.end; ++row)
-        {
-            const double y = (row + frame.origin.y + 0.5) / frame.whole.height - 0.5, y2 = y * y;
-            const float gain[4] = { (float)(c[0] + c[2] * y + c[5] * y2 + c[6] * y2 * y2), (float)(c[1] + c[4] * y),
-                                    (float)(c[3] + 2 * c[6] * y2), (float)c[6] };
-            dispatched::alignLightRow(levels.ptr<ushort>(row), frame.origin.x, levels.cols, first, step, gain, curve,
-                                      (float)white);
-        }
+    parallelFor(levels.rows, [&](int row) {
+        const double y = (row + frame.origin.y + 0.5) / frame.whole.height - 0.5, y2 = y * y;
+        const float gain[4] = { (float)(c[0] + c[2] * y + c[5] * y2 + c[6] * y2 * y2), (float)(c[1] + c[4] * y),
+                                (float)(c[3] + 2 * c[6] * y2), (float)c[6] };
+        dispatched::alignLightRow(levels.ptr<ushort>(row), frame.origin.x, levels.cols, first, step, gain, curve,
+                                  (float)white);
     });
 }
 

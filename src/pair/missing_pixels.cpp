@@ -65,13 +65,10 @@ void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
     const int rows = image.rows;
     filled.create(image.size(), image.type());
     std::vector<uchar> has(rows);
-    parallel_for_(Range(0, rows), [&](const Range& range) {
-        for (int y = range.start; y < range.end; ++y)
-        {
-            has[y] = std::memchr(mask.ptr(y), 255, (size_t)mask.cols) != nullptr;
-            if (has[y])
-                fillRow(image.ptr(y), mask.ptr(y), image.cols, image.elemSize(), filled.ptr(y));
-        }
+    parallelFor(rows, [&](int y) {
+        has[y] = std::memchr(mask.ptr(y), 255, (size_t)mask.cols) != nullptr;
+        if (has[y])
+            fillRow(image.ptr(y), mask.ptr(y), image.cols, image.elemSize(), filled.ptr(y));
     });
     std::vector<int> above(rows), below(rows); // the nearest rows with data, or far away
     for (int y = 0, last = -2 * rows; y < rows; ++y)

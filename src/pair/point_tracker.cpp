@@ -95,15 +95,6 @@ Point2d refine(const Mat& before, Point from, const Mat& now, Point match)
                    match.y + parabolaOffset<double>(sum(0, -1), middle, sum(0, 1)));
 }
 
-//! Calls track(point) for all points.
-template <typename Track> void forEachPoint(std::vector<TrackedPoint>& points, const Track& track)
-{
-    parallel_for_(Range(0, (int)points.size()), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-            track(points[i]);
-    });
-}
-
 } // namespace
 
 void bestOfCells(Size grid, int cell, int step, double minScore, const RowScores& scoreRow, std::vector<Point>& best)
@@ -165,7 +156,8 @@ void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& poi
 void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
 {
     const int top = (int)before.size() - 1;
-    forEachPoint(points, [&](TrackedPoint& point) {
+    parallelFor((int)points.size(), [&](int i) {
+        TrackedPoint& point = points[i];
         const Point from = point.before;
         Point match = search(before, now, top, from, onLevel(from, top), searchRadius);
         for (int level = top - 1; level >= 0 && match != nowhere; --level)
@@ -177,7 +169,8 @@ void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, st
 void trackNearby(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
 {
     const int coarse = std::min(1, (int)before.size() - 1);
-    forEachPoint(points, [&](TrackedPoint& point) {
+    parallelFor((int)points.size(), [&](int i) {
+        TrackedPoint& point = points[i];
         const Point from = point.before;
         Point match(cvFloor(point.now.x + 0.5), cvFloor(point.now.y + 0.5));
         for (int level : { coarse, 0 })

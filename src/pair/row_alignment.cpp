@@ -229,12 +229,11 @@ void alignRows(const Mat& right, const RowModel& model, const ImageFrame& frame,
     for (int i = 0; i < fractions; ++i)
         cubicWeights((double)i / fractions, weights[i]);
     aligned.create(right.size(), right.type());
-    parallel_for_(Range(0, right.rows), [&](const Range& range) {
-        for (int y = range.start; y < range.end; ++y)
-            if (right.depth() == CV_8U)
-                alignRow(right, model, frame, y, weights, aligned.ptr(y));
-            else
-                alignRow(right, model, frame, y, weights, aligned.ptr<ushort>(y));
+    parallelFor(right.rows, [&](int y) {
+        if (right.depth() == CV_8U)
+            alignRow(right, model, frame, y, weights, aligned.ptr(y));
+        else
+            alignRow(right, model, frame, y, weights, aligned.ptr<ushort>(y));
     });
 }
 

@@ -42,21 +42,19 @@ void describe(const Mat& grey, SupportPointBuffers& buffers, Mat& descriptors)
     Sobel(grey, buffers.derivative, CV_16S, 0, 1);
     buffers.derivative.convertTo(vertical, CV_8U, 0.25, 128 - 0.375);
     descriptors.create((grey.rows + 1) / 2, grey.cols * descriptorSize, CV_8U);
-    parallel_for_(Range(0, descriptors.rows), [&](const Range& rows) {
-        for (int y = 2 * rows.start; y < 2 * rows.end; y += 2)
+    parallelFor(descriptors.rows, [&](int row) {
+        const int y = 2 * row;
+        if (y < reach || y >= grey.rows - reach)
+            return;
+        const ptrdiff_t step = horizontal.step;
+        for (int x = reach; x < grey.cols - reach; ++x)
         {
-            if (y < reach || y >= grey.rows - reach)
-                continue;
-            const ptrdiff_t step = horizontal.step;
-            for (int x = reach; x < grey.cols - reach; ++x)
-            {
-                const uchar *h = horizontal.ptr(y) + x, *v = vertical.ptr(y) + x;
-                const uchar samples[descriptorSize] = { h[-2 * step], h[-step - 2], h[-step],    h[-step + 2],
-                                                        h[-1],        h[0],         h[0],        h[1],
-                                                        h[step - 2],  h[step],      h[step + 2], h[2 * step],
-                                                        v[-step],     v[-1],        v[1],        v[step] };
-                std::copy(samples, samples + descriptorSize, descriptors.ptr(y / 2) + x * descriptorSize);
-            }
+            const uchar *h = horizontal.ptr(y) + x, *v = vertical.ptr(y) + x;
+            const uchar samples[descriptorSize] = { h[-2 * step], h[-step - 2], h[-step],    h[-step + 2],
+                                                    h[-1],        h[0],         h[0],        h[1],
+                                                    h[step - 2],  h[step],      h[step + 2], h[2 * step],
+                                                    v[-step],     v[-1],        v[1],        v[step] };
+            std::copy(samples, samples + descriptorSize, descriptors.ptr(row) + x * descriptorSize);
         }
     });
 }
@@ -157,10 +155,9 @@ void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, Su
     Mat& matches = buffers.matches;
     matches.create((left.rows + spacing - 1) / spacing, (left.cols + spacing - 1) / spacing, CV_16S);
     points.create(matches.size(), CV_16S);
-    parallel_for_(Range(0, matches.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            for (int x = 0; x < matches.cols; ++x)
-                matches.at<short>(y, x) = (short)matcher.match(spacing * x, spacing * y);
+    parallelFor(matches.rows, [&](int y) {
+        for (int x = 0; x < matches.cols; ++x)
+            matches.at<short>(y, x) = (short)matcher.match(spacing * x, spacing * y);
     });
     for (int y = 0; y < matches.rows; ++y)
         for (int x = 0; x < matches.cols; ++x)

@@ -20,20 +20,18 @@ HDP_DISPATCH(restrictRow)
 void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat& windows)
 {
     windows.create(upper.size(), CV_16UC4);
-    parallel_for_(Range(0, upper.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            dispatched::predictRow(upper.ptr<ushort>(y), others.ptr<ushort>(y), upper.cols, numDisparities,
-                                   windows.ptr<ushort>(y));
+    parallelFor(upper.rows, [&](int y) {
+        dispatched::predictRow(upper.ptr<ushort>(y), others.ptr<ushort>(y), upper.cols, numDisparities,
+                               windows.ptr<ushort>(y));
     });
 }
 
 void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows)
 {
     CV_DbgAssert(intervals.cols >= 2 * windows.cols && intervals.rows >= 2 * windows.rows);
-    parallel_for_(Range(0, windows.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            dispatched::restrictRow(intervals.ptr<ushort>(2 * y), intervals.ptr<ushort>(2 * y + 1), windows.cols,
-                                    numDisparities, windows.ptr<ushort>(y));
+    parallelFor(windows.rows, [&](int y) {
+        dispatched::restrictRow(intervals.ptr<ushort>(2 * y), intervals.ptr<ushort>(2 * y + 1), windows.cols,
+                                numDisparities, windows.ptr<ushort>(y));
     });
 }
 
@@ -41,18 +39,15 @@ void halveDisparity(const Mat& disparity, Mat& upper)
 {
     upper.create(disparity.rows / 2, disparity.cols / 2, CV_16U);
     const int maxDistance = otherSurfaceDistance * subpixelScale;
-    parallel_for_(Range(0, upper.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
+    parallelFor(upper.rows, [&](int y) {
+        const ushort* above = disparity.ptr<ushort>(2 * y);
+        const ushort* below = disparity.ptr<ushort>(2 * y + 1);
+        ushort* middle = upper.ptr<ushort>(y);
+        for (int x = 0; x < upper.cols; ++x)
         {
-            const ushort* above = disparity.ptr<ushort>(2 * y);
-            const ushort* below = disparity.ptr<ushort>(2 * y + 1);
-            ushort* middle = upper.ptr<ushort>(y);
-            for (int x = 0; x < upper.cols; ++x)
-            {
-                const int a = above[2 * x], b = above[2 * x + 1], c = below[2 * x], d = below[2 * x + 1];
-                const int p = std::max(std::min(a, b), std::min(c, d)), q = std::min(std::max(a, b), std::max(c, d));
-                middle[x] = (ushort)(std::abs(p - q) < maxDistance ? (p + q) / 4 : std::min(p, q) / 2);
-            }
+            const int a = above[2 * x], b = above[2 * x + 1], c = below[2 * x], d = below[2 * x + 1];
+            const int p = std::max(std::min(a, b), std::min(c, d)), q = std::min(std::max(a, b), std::max(c, d));
+            middle[x] = (ushort)(std::abs(p - q) < maxDistance ? (p + q) / 4 : std::min(p, q) / 2);
         }
     });
 }

@@ -29,10 +29,8 @@ void runBlocks(const VolumeProblem& problem, int scanlines, int block, Mat& line
 {
     const int blocks = (scanlines + block - 1) / block;
     lines.create(blocks, problem.lineMemory(block), CV_16S);
-    parallel_for_(Range(0, blocks), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-            aggregate(Range(i * block, std::min((i + 1) * block, scanlines)), lines.ptr<short>(i));
-    });
+    parallelFor(blocks,
+                [&](int i) { aggregate(Range(i * block, std::min((i + 1) * block, scanlines)), lines.ptr<short>(i)); });
 }
 
 } // namespace

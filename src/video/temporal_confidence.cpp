@@ -18,14 +18,11 @@ void trustStable(const FrameMemory& frame, Mat& confidence)
     float factors[FrameMemory::countMask + 1];
     for (int count = 0; count <= FrameMemory::countMask; ++count)
         factors[count] = std::sqrt((float)(count + 1) / (float)(most + 1));
-    parallel_for_(Range(0, confidence.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const uchar* const ofRow = counts.ptr(y);
-            uchar* const row = confidence.ptr(y);
-            for (int x = 0; x < confidence.cols; ++x)
-                row[x] = (uchar)((float)row[x] * factors[ofRow[x]] + 0.5f);
-        }
+    parallelFor(confidence.rows, [&](int y) {
+        const uchar* const ofRow = counts.ptr(y);
+        uchar* const row = confidence.ptr(y);
+        for (int x = 0; x < confidence.cols; ++x)
+            row[x] = (uchar)((float)row[x] * factors[ofRow[x]] + 0.5f);
     });
 }
 

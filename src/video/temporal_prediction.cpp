@@ -187,20 +187,17 @@ void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
     static_assert(cell == 2, "Pixels are half cells.");
     const int endX = cell * before.cols, lastX = endX - cell, lastY = cell * before.rows - cell;
     warped.create(before.size(), CV_8U);
-    parallel_for_(Range(0, before.rows), [&](const Range& range) {
-        for (int y = range.start; y < range.end; ++y)
-        {
-            uchar* const row = warped.ptr(y);
-            warp.forEachRun(cell * y, [&](int x, const Point& from, int count) {
-                const int fromY = std::min(from.y, lastY);
-                const uchar *above = before.ptr(fromY / cell), *below = before.ptr((fromY + 1) / cell);
-                for (int k = x % cell; k < count && x + k < endX; k += cell)
-                {
-                    const int fromX = std::min(from.x + k, lastX), left = fromX / cell, right = (fromX + 1) / cell;
-                    row[(x + k) / cell] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) >> 2);
-                }
-            });
-        }
+    parallelFor(before.rows, [&](int y) {
+        uchar* const row = warped.ptr(y);
+        warp.forEachRun(cell * y, [&](int x, const Point& from, int count) {
+            const int fromY = std::min(from.y, lastY);
+            const uchar *above = before.ptr(fromY / cell), *below = before.ptr((fromY + 1) / cell);
+            for (int k = x % cell; k < count && x + k < endX; k += cell)
+            {
+                const int fromX = std::min(from.x + k, lastX), left = fromX / cell, right = (fromX + 1) / cell;
+                row[(x + k) / cell] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) >> 2);
+            }
+        });
     });
 }
 

@@ -48,17 +48,14 @@ void predictDisparities(const FrameMemory& last, const FramePrediction& predicti
                         Mat& predicted)
 {
     predicted.create(size, CV_32F);
-    parallel_for_(Range(0, size.height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
+    parallelFor(size.height, [&](int y) {
+        const int centreY = std::min(y * side + side / 2, last.disparity.rows - 1);
+        float* const row = predicted.ptr<float>(y);
+        for (int x = 0; x < size.width; ++x)
         {
-            const int centreY = std::min(y * side + side / 2, last.disparity.rows - 1);
-            float* const row = predicted.ptr<float>(y);
-            for (int x = 0; x < size.width; ++x)
-            {
-                float disparity;
-                const int centreX = std::min(x * side + side / 2, last.disparity.cols - 1);
-                row[x] = predict(last, prediction, centreX, centreY, disparity) ? disparity / side : -1;
-            }
+            float disparity;
+            const int centreX = std::min(x * side + side / 2, last.disparity.cols - 1);
+            row[x] = predict(last, prediction, centreX, centreY, disparity) ? disparity / side : -1;
         }
     });
 }
@@ -66,20 +63,17 @@ void predictDisparities(const FrameMemory& last, const FramePrediction& predicti
 bool refusesLastFrame(const CostVolume& volume, Mat& predicted)
 {
     std::vector<int> known(volume.size.height), refused(volume.size.height);
-    parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
+    parallelFor(volume.size.height, [&](int y) {
+        float* const row = predicted.ptr<float>(y);
+        for (int x = 0; x < volume.size.width; ++x)
         {
-            float* const row = predicted.ptr<float>(y);
-            for (int x = 0; x < volume.size.width; ++x)
-            {
-                if (row[x] < 0)
-                    continue;
-                ++known[y];
-                if (!CostPreference::isContradicted(y * volume.size.width + x, row[x], volume))
-                    continue;
-                ++refused[y];
-                row[x] = -1;
-            }
+            if (row[x] < 0)
+                continue;
+            ++known[y];
+            if (!CostPreference::isContradicted(y * volume.size.width + x, row[x], volume))
+                continue;
+            ++refused[y];
+            row[x] = -1;
         }
     });
     const int64 all = std::accumulate(known.begin(), known.end(), (int64)0);
@@ -89,33 +83,26 @@ bool refusesLastFrame(const CostVolume& volume, Mat& predicted)
 void preferPredicted(const Mat& predicted, CostVolume& volume)
 {
     const CostPreference preference(CostVolume::scale * maxPenalty);
-    parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const float* const row = predicted.ptr<float>(y);
-            for (int x = 0; x < volume.size.width; ++x)
-                if (row[x] >= 0)
-                    preference.apply(y * volume.size.width + x, row[x], volume);
-        }
+    parallelFor(volume.size.height, [&](int y) {
+        const float* const row = predicted.ptr<float>(y);
+        for (int x = 0; x < volume.size.width; ++x)
+            if (row[x] >= 0)
+                preference.apply(y * volume.size.width + x, row[x], volume);
     });
 }
 
 void predictWinners(const Mat& predicted, const CostVolume& volume, Mat& winners)
 {
     winners.create(volume.size, CV_16U);
-    parallel_for_(Range(0, volume.size.height), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
+    parallelFor(volume.size.height, [&](int y) {
+        const float* const known = predicted.ptr<float>(y);
+        ushort* const row = winners.ptr<ushort>(y);
+        for (int x = 0; x < volume.size.width; ++x)
         {
-            const float* const known = predicted.ptr<float>(y);
-            ushort* const row = winners.ptr<ushort>(y);
-            for (int x = 0; x < volume.size.width; ++x)
-            {
-                const CostVolume::Candidates own = volume.of(y * volume.size.width + x);
-                const uchar *const costs = &volume.costs[own.start()], *const end = costs + own.interval.size();
-                const int lowest = known[x] < 0 ? own.interval.first + (int)(std::min_element(costs, end) - costs) : 0;
-                row[x] =
-                    (ushort)(known[x] < 0 ? subpixelScale * lowest / volume.steps : cvRound(subpixelScale * known[x]));
-            }
+            const CostVolume::Candidates own = volume.of(y * volume.size.width + x);
+            const uchar *const costs = &volume.costs[own.start()], *const end = costs + own.interval.size();
+            const int lowest = known[x] < 0 ? own.interval.first + (int)(std::min_element(costs, end) - costs) : 0;
+            row[x] = (ushort)(known[x] < 0 ? subpixelScale * lowest / volume.steps : cvRound(subpixelScale * known[x]));
         }
     });
 }
