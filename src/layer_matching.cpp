@@ -5,7 +5,6 @@
 #include "layer_matching.hpp"
 
 #include "base/grey_levels.hpp"
-#include "base/tunable.hpp"
 #include "forest/disparity_prediction.hpp"
 #include "forest/repeated_surfaces.hpp"
 #include "forest/tree_planes.hpp"

@@ -8,6 +8,9 @@
 #include "opencv2/core/utils/trace.hpp"
 #include "opencv2/imgproc.hpp"
 
+#include "base/dispatch.hpp"
+#include "base/tunable.hpp"
+
 namespace cv { namespace stereo { namespace hdp {
 
 //! f(i) for each i of 0 .. count - 1, by all threads

@@ -4,7 +4,6 @@
 #include "precomp.hpp"
 #include "range_search.hpp"
 
-#include "base/tunable.hpp"
 #include "pair/image_levels.hpp"
 #include "pair/image_pyramid.hpp"
 

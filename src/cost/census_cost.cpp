@@ -5,7 +5,6 @@
 #include "census_cost.hpp"
 #include "census_cost.simd.hpp"
 #include "cost/census_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

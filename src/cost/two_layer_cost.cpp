@@ -5,7 +5,6 @@
 #include "two_layer_cost.hpp"
 #include "two_layer_cost.simd.hpp"
 #include "cost/two_layer_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

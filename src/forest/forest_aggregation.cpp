@@ -6,7 +6,6 @@
 #include "forest_aggregation.simd.hpp"
 #include "forest/forest_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
-#include "../base/dispatch.hpp"
 #include "../base/parabola.hpp"
 
 #include <cmath>

@@ -6,7 +6,6 @@
 
 #include "forest_edges.simd.hpp"
 #include "forest/forest_edges.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -4,7 +4,6 @@
 #include "../precomp.hpp"
 #include "repeated_surfaces.hpp"
 
-#include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
 #include <numeric>
 

@@ -5,7 +5,6 @@
 #include "disparity_confidence.hpp"
 
 #include "../base/disparity_units.hpp"
-#include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
 #include "left_right_check.hpp"
 

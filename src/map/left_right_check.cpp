@@ -6,7 +6,6 @@
 
 #include "left_right_check.simd.hpp"
 #include "map/left_right_check.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

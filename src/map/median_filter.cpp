@@ -6,7 +6,6 @@
 
 #include "median_filter.simd.hpp"
 #include "map/median_filter.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -6,10 +6,8 @@
 
 #include "occlusion_filling.simd.hpp"
 #include "map/occlusion_filling.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 #include "../base/grey_levels.hpp"
 #include "../base/mask.hpp"
-#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

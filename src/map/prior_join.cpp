@@ -5,7 +5,6 @@
 #include "prior_join.hpp"
 
 #include "../base/disparity_units.hpp"
-#include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
 
 #include <cmath>

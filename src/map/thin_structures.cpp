@@ -5,7 +5,6 @@
 #include "thin_structures.hpp"
 
 #include "../base/disparity_units.hpp"
-#include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

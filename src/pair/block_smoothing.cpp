@@ -5,7 +5,6 @@
 #include "block_smoothing.hpp"
 
 #include "image_levels.hpp"
-#include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -5,8 +5,6 @@
 #include "corner_matches.hpp"
 #include "corner_matches.simd.hpp"
 #include "pair/corner_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
-#include "../base/tunable.hpp"
 #include "image_pyramid.hpp"
 #include "point_tracker.hpp"
 

@@ -5,7 +5,6 @@
 #include "disparity_ranges.hpp"
 #include "disparity_ranges.simd.hpp"
 #include "pair/disparity_ranges.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

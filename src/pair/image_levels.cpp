@@ -5,8 +5,6 @@
 #include "image_levels.hpp"
 #include "image_levels.simd.hpp"
 #include "pair/image_levels.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
-#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -5,7 +5,6 @@
 #include "image_pyramid.hpp"
 #include "image_pyramid.simd.hpp"
 #include "pair/image_pyramid.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

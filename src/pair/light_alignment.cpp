@@ -5,11 +5,9 @@
 #include "light_alignment.hpp"
 #include "light_alignment.simd.hpp"
 #include "pair/light_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 #include "image_levels.hpp"
 #include "../base/robust_fit.hpp"
-#include "../base/tunable.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,6 @@
 #include "../precomp.hpp"
 #include "missing_pixels.hpp"
 
-#include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
 
 #include <cmath>

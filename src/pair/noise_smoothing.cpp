@@ -4,7 +4,6 @@
 #include "../precomp.hpp"
 #include "noise_smoothing.hpp"
 
-#include "../base/tunable.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -7,7 +7,6 @@
 #include "image_levels.hpp"
 #include "image_pyramid.hpp"
 #include "noise_smoothing.hpp"
-#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

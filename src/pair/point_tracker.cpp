@@ -5,7 +5,6 @@
 #include "point_tracker.hpp"
 
 #include "../base/parabola.hpp"
-#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

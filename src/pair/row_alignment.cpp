@@ -5,12 +5,10 @@
 #include "row_alignment.hpp"
 #include "row_alignment.simd.hpp"
 #include "pair/row_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 #include "corner_matches.hpp"
 #include "image_levels.hpp"
 #include "../base/robust_fit.hpp"
-#include "../base/tunable.hpp"
 
 #include <cfloat>
 #include <cmath>

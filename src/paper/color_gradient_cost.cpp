@@ -5,7 +5,6 @@
 #include "color_gradient_cost.hpp"
 #include "color_gradient_cost.simd.hpp"
 #include "paper/color_gradient_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

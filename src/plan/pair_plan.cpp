@@ -5,7 +5,6 @@
 #include "pair_plan.hpp"
 
 #include "../base/grey_levels.hpp"
-#include "../base/tunable.hpp"
 #include "../pair/image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -4,8 +4,6 @@
 #include "../precomp.hpp"
 #include "opencv2/hdpstereo/stereo_rig.hpp"
 
-#include "../base/tunable.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -5,7 +5,6 @@
 #include "candidate_windows.hpp"
 #include "candidate_windows.simd.hpp"
 #include "scanlines/candidate_windows.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 #include "other_surfaces.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -5,8 +5,6 @@
 #include "other_surfaces.hpp"
 #include "other_surfaces.simd.hpp"
 #include "scanlines/other_surfaces.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
-#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -5,8 +5,6 @@
 #include "range_scanlines.hpp"
 #include "range_scanlines.simd.hpp"
 #include "scanlines/range_scanlines.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
-#include "../base/tunable.hpp"
 #include "../forest/forest_aggregation.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -5,8 +5,6 @@
 #include "scanline_aggregation.hpp"
 #include "scanline_aggregation.simd.hpp"
 #include "scanlines/scanline_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
-#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

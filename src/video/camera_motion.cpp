@@ -5,7 +5,6 @@
 #include "camera_motion.hpp"
 
 #include "../base/robust_fit.hpp"
-#include "../base/tunable.hpp"
 
 #include <cmath>
 #include <numeric>

@@ -5,8 +5,6 @@
 #include "frame_warp.hpp"
 #include "frame_warp.simd.hpp"
 #include "video/frame_warp.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
-#include "../base/tunable.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -5,8 +5,6 @@
 #include "temporal_join.hpp"
 #include "temporal_join.simd.hpp"
 #include "video/temporal_join.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
-#include "../base/tunable.hpp"
 
 #include <cstring>
 #include <numeric>

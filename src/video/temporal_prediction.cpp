@@ -5,10 +5,8 @@
 #include "temporal_prediction.hpp"
 #include "temporal_prediction.simd.hpp"
 #include "video/temporal_prediction.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/dispatch.hpp"
 
 #include "../base/grey_levels.hpp"
-#include "../base/tunable.hpp"
 #include "../pair/image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

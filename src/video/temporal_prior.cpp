@@ -4,8 +4,6 @@
 #include "../precomp.hpp"
 #include "temporal_prior.hpp"
 
-#include "../base/tunable.hpp"
-
 #include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
