@@ -9,7 +9,6 @@
 #include "../base/parabola.hpp"
 
 #include <cmath>
-#include <mutex>
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -136,9 +135,7 @@ struct Aggregation
 //! A large tree with many candidates: groups of them side by side
 void processLarge(const Aggregation& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
 {
-    std::mutex mutex;
-    ScratchLoan<AggregationScratch> result(buffers.idle, mutex);
-    TreeWalk& walk = (*result).walk;
+    TreeWalk& walk = buffers.ofThread.getRef().walk; // groups use other members of it
     walkTree(aggregation.forest, tree, walk);
     const Range candidates = aggregation.problem.candidates(walk, tree);
     if (candidates.empty())
@@ -152,12 +149,10 @@ void processLarge(const Aggregation& aggregation, const DisparityTree& tree, Agg
     };
     std::vector<std::vector<RunWinner>>& groups = buffers.groups;
     groups.resize(maxGroups);
-    const auto takeGroups = [&](const Range& range) {
-        ScratchLoan<AggregationScratch> scratch(buffers.idle, mutex);
-        for (int g = range.start; g < range.end; ++g)
-            aggregation.takeWinners(walk, tree.size, Range(firstOf(g), firstOf(g + 1)), (*scratch).costs, groups[g]);
-    };
-    parallel_for_(Range(0, count), takeGroups, count);
+    parallelFor(count, [&](int g) {
+        std::vector<float>& costs = buffers.ofThread.getRef().costs;
+        aggregation.takeWinners(walk, tree.size, Range(firstOf(g), firstOf(g + 1)), costs, groups[g]);
+    });
 
     parallel_for_(Range(0, tree.size), [&](const Range& range) {
         for (int i = range.start; i < range.end; ++i)
@@ -196,12 +191,10 @@ void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, con
         work += (int64)tree.size * tree.interval.size();
     }
 
-    std::mutex mutex;
-    parallel_for_(Range(0, (int)tasks.size()), [&](const Range& range) {
-        ScratchLoan<AggregationScratch> scratch(buffers.idle, mutex);
-        for (int i = range.start; i < range.end; ++i)
-            for (int t = tasks[i].start; t < tasks[i].end; ++t)
-                processSmall(forest.trees[t], *scratch);
+    parallelFor((int)tasks.size(), [&](int i) {
+        AggregationScratch& scratch = buffers.ofThread.getRef();
+        for (int t = tasks[i].start; t < tasks[i].end; ++t)
+            processSmall(forest.trees[t], scratch);
     });
 }
 
@@ -270,24 +263,21 @@ struct MeanAggregation
 
     void processLarge(const DisparityTree& tree, AggregationBuffers& buffers) const
     {
-        std::mutex mutex;
-        ScratchLoan<AggregationScratch> whole(buffers.idle, mutex);
-        const TreeWalk& walk = (*whole).walk;
-        walkTree(forest, tree, (*whole).walk);
+        AggregationScratch& whole = buffers.ofThread.getRef(); // groups use other members of it
+        const TreeWalk& walk = whole.walk;
+        walkTree(forest, tree, whole.walk);
         volume.place(forest, numberOf(tree), walk.pixels.data());
-        weighNodes(walk, tree.size, (*whole).means);
+        weighNodes(walk, tree.size, whole.means);
         const int first = tree.interval.first, end = tree.interval.last + 1;
         const int lanes = countLanes(end - first, tree.size);
         const int runs = (end - first + lanes - 1) / lanes, groups = std::min(runs, maxGroups);
-        const auto takeGroups = [&](const Range& range) {
-            ScratchLoan<AggregationScratch> scratch(buffers.idle, mutex);
-            for (int i = runs * range.start / groups; i < runs * range.end / groups; ++i)
+        parallelFor(groups, [&](int group) {
+            for (int i = runs * group / groups; i < runs * (group + 1) / groups; ++i)
             {
                 const Range run(first + i * lanes, std::min(first + (i + 1) * lanes, end));
-                takeMeans(walk, tree.size, (*whole).means.nodes.data(), run, lanes, (*scratch).means);
+                takeMeans(walk, tree.size, whole.means.nodes.data(), run, lanes, buffers.ofThread.getRef().means);
             }
-        };
-        parallel_for_(Range(0, groups), takeGroups, groups);
+        });
     }
 };
 

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
 #define OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
 
-#include "../base/scratch_pool.hpp"
+#include "opencv2/core/utils/tls.hpp"
 #include "cost_volume.hpp"
 #include "tree_walk.hpp"
 
@@ -72,7 +72,7 @@ struct AggregationScratch
 
 struct AggregationBuffers
 {
-    ScratchPool<AggregationScratch> idle;
+    TLSData<AggregationScratch> ofThread;
     std::vector<std::vector<RunWinner>> groups; // of a large tree's candidates
 };
 

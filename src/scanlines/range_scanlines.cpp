@@ -52,12 +52,10 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
     int rows = 0;
     for (const ScanlineStripe& stripe : stripes)
         rows = std::max(rows, stripe.rows.size());
-    std::mutex mutex;
-    parallel_for_(Range(0, (int)stripes.size()), [&](const Range& range) {
-        ScratchLoan<RangeScratch> scratch(buffers.idle, mutex);
-        (*scratch).prepare(problem, rows);
-        for (int i = range.start; i < range.end; ++i)
-            dispatched::aggregateRangeStripe(problem, stripes[i], *scratch, disparity);
+    parallelFor((int)stripes.size(), [&](int i) {
+        RangeScratch& scratch = buffers.getRef();
+        scratch.prepare(problem, rows);
+        dispatched::aggregateRangeStripe(problem, stripes[i], scratch, disparity);
     });
 }
 

@@ -4,8 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_RANGE_SCANLINES_HPP
 #define OPENCV_HDPSTEREO_RANGE_SCANLINES_HPP
 
+#include "opencv2/core/utils/tls.hpp"
 #include "../base/disparity_units.hpp"
-#include "../base/scratch_pool.hpp"
 #include "../cost/census_cost.hpp"
 #include "scanline_stripes.hpp"
 
@@ -49,7 +49,7 @@ struct RangeProblem
     const uchar* outsideFrom(int candidate) const { return outside.data() + 2 * pixelBytes() - candidate; }
 };
 
-//! Memory of a stripe
+//! Memory of a thread for its stripe
 struct RangeScratch
 {
     enum
@@ -86,10 +86,7 @@ private:
     std::vector<uchar> bytes;
 };
 
-struct RangeBuffers
-{
-    ScratchPool<RangeScratch> idle;
-};
+typedef TLSData<RangeScratch> RangeBuffers;
 
 /** Semi-global matching over all candidates of a layer, those of the layer below, twice as large: from the left, from
 the right, from above and from below. Costs are computed where they are needed, so there is no volume of them. With the
