@@ -12,7 +12,11 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-const int window = DisparitySigma::window, unit = subpixelScale;
+// Pixels; side of the square whose levels are compared: a smaller one has noise, a larger one edges, and more than sums
+// of 32 bits hold
+const int window = 9;
+
+const int unit = subpixelScale;
 
 // Errors in pixels by which 50 to 80 % are not larger, of PRESET_FAST on pairs of Middlebury, ETH3D and KITTI, each set
 // as much as the others; made to fall with the confidence and to rise with the mismatch.

@@ -8,15 +8,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The window of disparitySigma() that sums of 32 bits hold
-struct DisparitySigma
-{
-    enum
-    {
-        window = 9 // pixels; side of the square whose levels are compared: a smaller one has noise, a larger one edges
-    };
-};
-
 /** How much matched levels differ, in pixels of a shift that would explain it: D / (G + 1/2). D is the standard
 deviation, over the window, of the differences of the left levels and those of the right image where the disparities
 lead to, interpolated linearly; G the root of the mean square of half the difference between the left levels beside a

@@ -29,15 +29,6 @@ struct ScanlinePenalties
     };
 };
 
-//! A part of the cost that the compiler has to know
-struct ScanlineContrast
-{
-    enum
-    {
-        max = 23 // grey levels, four of which count as a bit: larger differences are other light or another surface
-    };
-};
-
 //! Sums of the directions, as differences from the winner's, that tell how sharp a minimum is, see winnerFraction()
 struct MinimumShape
 {

@@ -32,6 +32,9 @@ namespace {
 
 typedef CandidateWindow Window;
 
+// Grey levels, four of which count as a bit: larger differences are other light or another surface
+const int maxContrast = 23;
+
 /** A sweep over a stripe. With the notation of aggregateScanlines(), and m the minimum of L(q, k) over k, a direction
 carries what a candidate saves against the large penalty, instead of its cost:
 
@@ -225,7 +228,7 @@ private:
         const int at = 4 * column;
         const auto ofPlane = [&](int plane) { return load((ptrdiff_t)(plane * planeStride_) - column); };
         const ByteLanes grey = ByteLanes::repeatByte<at + CensusCost::greyByte>(left), candidates = ofPlane(planes);
-        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(ScanlineContrast::max)).quarter();
+        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(maxContrast)).quarter();
         const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ofPlane(0);
         if (planes == 1)
             return contrast + first.countBits();

@@ -112,7 +112,7 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
     const Size cells = frame.cells();
     const int offset = costOffset * cost.comparisons() / 24;
     const int same = sameDistance * subpixelScale;
-    const int maxDistance = TemporalSources::maxDistance * subpixelScale / frame.prediction.key.scale;
+    const int maxDistance = maxSourceDistance * subpixelScale / frame.prediction.key.scale;
     const ChoiceShares shares = choiceShares(frame);
     scratch.sources.create(cells, CV_8U);
     scratch.shares.create(cells, CV_8UC2);

@@ -42,7 +42,7 @@ are far apart.
 @param moved Those where the motion leads, of each cell, as of changeDisparities().
 @param count Number of cells.
 @param same Distance of disparities that are the same, in units of a map.
-@param maxDistance TemporalSources::maxDistance, in units of a map.
+@param maxDistance maxSourceDistance, in units of a map.
 @param sources What each cell may take.
 @param used Receives those of them that count.
 @param different Receives which of the sources have another disparity than the measured one. */

@@ -9,15 +9,8 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! A constant of all that takes disparities from the last frame
-struct TemporalSources
-{
-    enum
-    {
-        maxDistance = 3 // pixels of the image, from the disparity of one source to that of the other: beyond, one of
-                        // them must be wrong
-    };
-};
+//! Pixels of the image, from the disparity of one source to that of the other: beyond, one of them must be wrong
+const int maxSourceDistance = 3;
 
 //! What a cell may take from the last frame
 enum TemporalSource

@@ -30,8 +30,7 @@ bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, fl
     const DisparityChange& change = p.backward.change();
     const Point from = p.warp(x, y);
     disparity = change.now(last.disparity.ptr<ushort>(from.y)[from.x] * unit, change.ofX * x + change.ofRow(y));
-    const bool isClear =
-        !(sources & SAME_PLACE) || p.key.scale * std::abs(disparity - unmoved) <= TemporalSources::maxDistance;
+    const bool isClear = !(sources & SAME_PLACE) || p.key.scale * std::abs(disparity - unmoved) <= maxSourceDistance;
     return isClear && isConfirmed(last, from.x, from.y);
 }
 
