@@ -8,6 +8,36 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
+//! What is around a row of voteAtEdges()
+struct VoteRows
+{
+    enum
+    {
+        columns = 16, // of the window
+        columnsBefore = 7,
+        rows = 5,
+        rowStep = 3,
+        barWidth = 8, // pixels, up to which a surface is a bar
+        maxChannels = 3
+    };
+    // The window's rows
+    const uchar* colour[maxChannels][rows];
+    const ushort* disparity[rows];
+    int channels;                      // of the colours: 1 or maxChannels
+    const ushort *above, *below;       // disparities of the rows beside the one in the middle
+    const ushort *farAbove, *farBelow; // the same, barWidth rows away
+    int width;
+};
+
+//! How pixels vote
+struct VoteRule
+{
+    ushort likeness;       // the difference of colours from which on votes count nothing
+    ushort minStep, reach; // of disparities: what is a step, and how far beyond its ends the surfaces go
+    ushort rowNearness[VoteRows::rows];
+    const ushort* columnNearness; // by the distance, which may be negative
+};
+
 /** Moves the outlines of surfaces to the edges of the image: where disparities have a step, the pixels around vote for
 one of its two surfaces. A weighted median @cite Ma2013WM of two surfaces is such a vote.
 
