@@ -4,7 +4,7 @@
 #include "precomp.hpp"
 #include "layer_matching.hpp"
 
-#include "base/grey_levels.hpp"
+#include "base/units.hpp"
 #include "forest/disparity_prediction.hpp"
 #include "forest/repeated_surfaces.hpp"
 #include "forest/tree_planes.hpp"

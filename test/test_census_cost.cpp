@@ -5,7 +5,7 @@
 #include "helpers.hpp"
 #include "matching_costs.hpp"
 #include "oracles.hpp"
-#include "../src/base/disparity_units.hpp"
+#include "../src/base/units.hpp"
 
 namespace opencv_test {
 namespace {

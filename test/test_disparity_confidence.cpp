@@ -9,7 +9,7 @@
 #include "../src/cost/census_cost.hpp"
 #include "../src/paper/color_gradient_cost.hpp"
 #include "../src/map/disparity_confidence.hpp"
-#include "../src/base/disparity_units.hpp"
+#include "../src/base/units.hpp"
 #include "../src/pair/image_levels.hpp"
 #include "../src/pair/pair_pyramids.hpp"
 

@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
-#include "../src/base/disparity_units.hpp"
+#include "../src/base/units.hpp"
 #include "../src/cost/census_cost.hpp"
 #include "../src/map/disparity_sigma.hpp"
 #include "../src/pair/image_levels.hpp"

@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "synthetic_pair.hpp"
-#include "../src/base/grey_levels.hpp"
+#include "../src/base/units.hpp"
 #include "../src/pair/pair_alignment.hpp"
 
 namespace opencv_test { namespace {

@@ -5,7 +5,7 @@
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "synthetic_pair.hpp"
-#include "../src/base/disparity_units.hpp"
+#include "../src/base/units.hpp"
 #include "../src/map/prior_join.hpp"
 
 namespace opencv_test { namespace {

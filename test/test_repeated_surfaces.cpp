@@ -5,7 +5,7 @@
 #include "helpers.hpp"
 #include "repetitive_pair.hpp"
 #include "systems.hpp"
-#include "../src/base/grey_levels.hpp"
+#include "../src/base/units.hpp"
 #include "../src/forest/repeated_surfaces.hpp"
 
 namespace opencv_test { namespace {

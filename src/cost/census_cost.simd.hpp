@@ -4,8 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "census_cost.hpp"
-#include "../base/disparity_units.hpp"
-#include "../base/grey_levels.hpp"
+#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 #include <cstring>
 #include <type_traits>

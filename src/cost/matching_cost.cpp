@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "matching_cost.hpp"
 
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_SRC_DISPARITY_PREDICTION_HPP
 #define OPENCV_HDPSTEREO_SRC_DISPARITY_PREDICTION_HPP
 
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "disparity_prediction.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_TREE_JOINER_HPP
 #define OPENCV_HDPSTEREO_TREE_JOINER_HPP
 
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "tree_strategy.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

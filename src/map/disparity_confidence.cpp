@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "disparity_confidence.hpp"
 
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 #include "left_right_check.hpp"
 

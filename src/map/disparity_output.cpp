@@ -6,7 +6,7 @@
 
 #include "left_right_check.hpp"
 #include "upsampling.hpp"
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

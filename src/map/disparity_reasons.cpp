@@ -5,7 +5,7 @@
 #include "disparity_reasons.hpp"
 
 #include "left_right_check.hpp"
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

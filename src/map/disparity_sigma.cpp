@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "disparity_sigma.hpp"
 
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 
 #include <cmath>
 

@@ -6,7 +6,7 @@
 
 #include "edge_vote.simd.hpp"
 #include "map/edge_vote.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "visibility.simd.hpp"
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN

@@ -6,7 +6,7 @@
 
 #include "occlusion_filling.simd.hpp"
 #include "map/occlusion_filling.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/grey_levels.hpp"
+#include "../base/units.hpp"
 #include "../base/mask.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -4,7 +4,7 @@
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "occlusion_filling.hpp"
 #include "visibility.simd.hpp"
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include <cstring>
 
 namespace cv { namespace stereo { namespace hdp {

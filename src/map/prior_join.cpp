@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "prior_join.hpp"
 
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 
 #include <cmath>

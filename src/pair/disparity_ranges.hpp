@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_DISPARITY_RANGES_HPP
 #define OPENCV_HDPSTEREO_DISPARITY_RANGES_HPP
 
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_IMAGE_LEVELS_HPP
 #define OPENCV_HDPSTEREO_IMAGE_LEVELS_HPP
 
-#include "../base/grey_levels.hpp"
+#include "../base/units.hpp"
 #include "opencv2/core.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

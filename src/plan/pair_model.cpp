@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "pair_model.hpp"
 
-#include "../base/grey_levels.hpp"
+#include "../base/units.hpp"
 #include "../pair/image_levels.hpp"
 
 #include <cmath>

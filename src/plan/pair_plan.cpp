@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "pair_plan.hpp"
 
-#include "../base/grey_levels.hpp"
+#include "../base/units.hpp"
 #include "../pair/image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

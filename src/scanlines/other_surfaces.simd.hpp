@@ -4,7 +4,7 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "other_surfaces.hpp"
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

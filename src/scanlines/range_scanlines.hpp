@@ -5,7 +5,7 @@
 #define OPENCV_HDPSTEREO_RANGE_SCANLINES_HPP
 
 #include "opencv2/core/utils/tls.hpp"
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "../cost/census_cost.hpp"
 #include "scanline_stripes.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "candidate_windows.hpp"
 #include "../cost/census_cost.hpp"
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "scanline_stripes.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

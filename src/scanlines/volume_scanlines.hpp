@@ -5,7 +5,7 @@
 #define OPENCV_HDPSTEREO_VOLUME_SCANLINES_HPP
 
 #include "../forest/cost_volume.hpp"
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_WINNER_FRACTION_HPP
 #define OPENCV_HDPSTEREO_WINNER_FRACTION_HPP
 
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 #include <cmath>
 

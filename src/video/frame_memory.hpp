@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_FRAME_MEMORY_HPP
 #define OPENCV_HDPSTEREO_FRAME_MEMORY_HPP
 
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "camera_motion.hpp"
 #include "verdict.hpp"
 

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
-#include "../base/disparity_units.hpp"
+#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 #include "frame_warp.hpp"
 

@@ -6,7 +6,7 @@
 #include "temporal_prediction.simd.hpp"
 #include "video/temporal_prediction.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
-#include "../base/grey_levels.hpp"
+#include "../base/units.hpp"
 #include "../pair/image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -1,8 +1,8 @@
 // This file is part of OpenCV project.
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
-#ifndef OPENCV_HDPSTEREO_DISPARITY_UNITS_HPP
-#define OPENCV_HDPSTEREO_DISPARITY_UNITS_HPP
+#ifndef OPENCV_HDPSTEREO_UNITS_HPP
+#define OPENCV_HDPSTEREO_UNITS_HPP
 
 #include "opencv2/core.hpp"
 
@@ -12,6 +12,9 @@ namespace cv { namespace stereo { namespace hdp {
 // of their layer. Both count from minDisparity.
 
 const int subpixelScale = 16;
+
+//! The unit of grey levels in CV_16UC1 images is 1 / greyScale of a level of 8 bits, and whiteLevel is the highest one.
+const int greyScale = 4, whiteLevel = 256 * greyScale - 1;
 
 //! The candidate next to a disparity of a map, the larger one of two
 inline int wholeDisparity(int disparity) { return (int)((unsigned)(disparity + subpixelScale / 2) / subpixelScale); }
