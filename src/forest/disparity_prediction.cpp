@@ -4,8 +4,6 @@
 #include "../precomp.hpp"
 #include "disparity_prediction.hpp"
 
-#include <cmath>
-
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {

@@ -5,7 +5,6 @@
 #define OPENCV_HDPSTEREO_SRC_DISPARITY_PREDICTION_HPP
 
 #include "../base/units.hpp"
-#include "disparity_prediction.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

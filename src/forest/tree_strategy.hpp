@@ -4,8 +4,6 @@
 #ifndef OPENCV_HDPSTEREO_SRC_TREE_STRATEGY_HPP
 #define OPENCV_HDPSTEREO_SRC_TREE_STRATEGY_HPP
 
-#include "tree_strategy.hpp"
-
 namespace cv { namespace stereo { namespace hdp {
 
 // The strategies of the library

@@ -9,8 +9,6 @@
 #include "image_levels.hpp"
 #include "../base/robust_fit.hpp"
 
-#include <cmath>
-
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {

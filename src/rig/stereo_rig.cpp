@@ -7,7 +7,6 @@
 #include "calibration_check.hpp"
 #include "rectification.hpp"
 
-#include <cmath>
 #include <limits>
 
 namespace cv { namespace stereo {

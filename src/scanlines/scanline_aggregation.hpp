@@ -6,7 +6,6 @@
 
 #include "candidate_windows.hpp"
 #include "../cost/census_cost.hpp"
-#include "../base/units.hpp"
 #include "scanline_stripes.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -15,17 +14,14 @@ namespace cv { namespace stereo { namespace hdp {
 struct ScanlinePenalties
 {
     int small, large; // for a step of one disparity and for a larger one between neighbours of one colour, 0..max
-    int edgeSlope;    // halves of a bit by which large falls per grey level of an edge's weight, 0..maxSlope
+    int edgeSlope;    // halves of a bit by which large falls per grey level of an edge's weight, 0..64
     int borderSlope;  // the same where a window has two runs: surfaces end there
-    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..maxPrior
-    int nearer;       // for candidates of another surface that is nearer, 0..maxNearer
+    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..4: costs have 8 bits
+    int nearer;       // for candidates of another surface that is nearer, 0..4
     int edgeNoise;    // grey levels that an edge's weight may have by noise, 0..255
     enum
     {
-        max = 100,     // bits; costs with it have 8 bits
-        maxSlope = 64, // times the largest weight, it has 16 bits
-        maxPrior = 4,  // costs with it and maxNearer have 8 bits
-        maxNearer = 4
+        max = 100 // bits; costs with it have 8 bits
     };
 };
 

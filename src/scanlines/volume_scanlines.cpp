@@ -7,7 +7,6 @@
 #include "../forest/forest_aggregation.hpp"
 #include "volume_scanlines.simd.hpp"
 #include "scanlines/volume_scanlines.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -5,7 +5,6 @@
 #define OPENCV_HDPSTEREO_VOLUME_SCANLINES_HPP
 
 #include "../forest/cost_volume.hpp"
-#include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -68,18 +68,10 @@ struct WordLanes
         return v_reduce_min(v);
 #endif
     }
-    Vector equals(const WordLanes& b) const
-    {
-#if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9 // as in ByteLanes
-        return v == b.v;
-#else
-        return v_eq(v, b.v);
-#endif
-    }
     //! Those of b where a is greater than limit, and its own elsewhere
     WordLanes replaced(const WordLanes& a, const WordLanes& limit, const WordLanes& b) const
     {
-#if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9
+#if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9 // as in ByteLanes
         return v_select(a.v > limit.v, b.v, v);
 #else
         return v_select(v_gt(a.v, limit.v), b.v, v);

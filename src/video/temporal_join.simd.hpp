@@ -98,9 +98,6 @@ void joinRow(const ushort* measured, const TemporalRow& row, int width, const Jo
 
 namespace {
 
-//! condition ? a : b, condition being 0 or 1, without a branch
-inline int select(int condition, int a, int b) { return b ^ ((a ^ b) & -condition); }
-
 inline int countBits(unsigned bits)
 {
 #ifdef __POPCNT__
@@ -128,11 +125,11 @@ inline int choiceOf(const short* sums, int sources, int isStill, int shareOfUnmo
     const int scaleUnmoved = sums[SCALE_UNMOVED], scaleMoved = sums[SCALE_MOVED];
     const int hasUnmoved = sources & 1, hasMoved = (sources >> 1) & (isStill ^ 1);
     const int best = std::min(moved, 0) & -hasMoved;
-    const int scale = select(isStill, scaleUnmoved, std::max(scaleUnmoved, scaleMoved));
+    const int scale = choose(isStill, scaleUnmoved, std::max(scaleUnmoved, scaleMoved));
     const int takesUnmoved = hasUnmoved & (100 * (unmoved - best) <= unmovedShare * scale);
     const int takesMoved = hasMoved & (100 * moved <= movedShare * scaleMoved);
     static_assert(ChoiceShares::KEEPS == KEPT << 5, "One bit becomes the other.");
-    return select(takesUnmoved, UNMOVED | unmovedKept >> 5, takesMoved * (MOVED | movedKept >> 5));
+    return choose(takesUnmoved, UNMOVED | unmovedKept >> 5, takesMoved * (MOVED | movedKept >> 5));
 }
 
 template <int planes>
@@ -230,9 +227,9 @@ void shareCells(const ushort* measured, const ushort* unmoved, const uchar* unmo
         const int unmovedCount = std::min(unmovedDetail[j * FrameMemory::cell] & FrameMemory::countMask, maxCount);
         const int movedCount = std::min(movedDetail[j] & FrameMemory::countMask, maxCount);
         const int unmovedAgreed = std::max(unmovedCount - 1, 0), movedAgreed = std::max(movedCount - 1, 0);
-        shares[2 * j] = (uchar)select(std::abs(there - here) <= maxDistance, select(unmovedAgreed > 0, near, first),
+        shares[2 * j] = (uchar)choose(std::abs(there - here) <= maxDistance, choose(unmovedAgreed > 0, near, first),
                                       apart * unmovedAgreed | keeps);
-        shares[2 * j + 1] = (uchar)select(std::abs(where - here) <= maxDistance, select(movedAgreed > 0, near, first),
+        shares[2 * j + 1] = (uchar)choose(std::abs(where - here) <= maxDistance, choose(movedAgreed > 0, near, first),
                                           apart * movedAgreed | keeps);
     }
 }
@@ -272,19 +269,19 @@ void joinRow(const ushort* measured, const TemporalRow& row, int width, const Jo
     {
         const int isBeside = agreesMoved[x - 2] | agreesMoved[x - 1] | agreesMoved[x + 1] | agreesMoved[x + 2];
         const int place = choices[x] & PLACES, isFringe = (place == MOVED) & isBeside & (agreesMoved[x] ^ 1);
-        const int here = measured[x] << FrameMemory::detailBits, choice = select(isFringe, MEASURED, place),
+        const int here = measured[x] << FrameMemory::detailBits, choice = choose(isFringe, MEASURED, place),
                   isMoved = choice == MOVED;
-        const int there = select(isMoved, moved[x], unmoved[x]), difference = here - there;
-        const int count = select(isMoved, movedCounts[x], unmovedCounts[x]) & -(choice != MEASURED);
+        const int there = choose(isMoved, moved[x], unmoved[x]), difference = here - there;
+        const int count = choose(isMoved, movedCounts[x], unmovedCounts[x]) & -(choice != MEASURED);
         const int limited = std::max(std::min(difference, maxStep), -maxStep);
         const int weight = std::min(count, maxWeight);
         // 2^16 / (weight + 1)
-        const int share = select(weight > 2, select(weight > 3, 13107, 16384), select(weight > 1, 21845, 32768));
+        const int share = choose(weight > 2, choose(weight > 3, 13107, 16384), choose(weight > 1, 21845, 32768));
         const int approached = there + ((limited * share + 32768) >> 16);
         const int agrees = std::abs(difference) <= tolerance;
         const int isNew = (count == 0) | ((agrees ^ 1) & ((choices[x] & KEPT) == 0));
-        const int joined = select(isNew, here, select(agrees, approached, there));
-        const int joinedCount = select(isNew, 1, select(agrees, std::min(count + 1, maxCount), count - 1));
+        const int joined = choose(isNew, here, choose(agrees, approached, there));
+        const int joinedCount = choose(isNew, 1, choose(agrees, std::min(count + 1, maxCount), count - 1));
         const int rounded = joined + half;
         disparity[x] = (ushort)(rounded >> FrameMemory::detailBits);
         detail[x] = (uchar)((rounded & FrameMemory::countMask) << FrameMemory::detailBits | joinedCount);
