@@ -61,28 +61,24 @@ std::string inUpperCase(std::string text)
 
 } // namespace
 
-class IniReader
+void CalibrationText::readIni(std::istream& lines)
 {
-public:
-    static void read(std::istream& lines, CalibrationText& text)
+    std::string line, section;
+    for (int number = 1; std::getline(lines, line); ++number)
     {
-        std::string line, section;
-        for (int number = 1; std::getline(lines, line); ++number)
-        {
-            line = trimmed(withoutComment(line, "#;"));
-            const size_t equals = line.find('=');
-            if (line.empty())
-                continue;
-            if (line[0] == '[' && line.back() == ']')
-                section = inUpperCase(trimmed(line.substr(1, line.size() - 2)));
-            else if (equals == std::string::npos || equals == 0)
-                failAt(text.file_, number, "is neither [SECTION] nor KEY=VALUE");
-            else
-                text.addField(section + "/" + inUpperCase(trimmed(line.substr(0, equals))),
-                              { withoutQuotes(trimmed(line.substr(equals + 1))) }, number);
-        }
+        line = trimmed(withoutComment(line, "#;"));
+        const size_t equals = line.find('=');
+        if (line.empty())
+            continue;
+        if (line[0] == '[' && line.back() == ']')
+            section = inUpperCase(trimmed(line.substr(1, line.size() - 2)));
+        else if (equals == std::string::npos || equals == 0)
+            failAt(file_, number, "is neither [SECTION] nor KEY=VALUE");
+        else
+            addField(section + "/" + inUpperCase(trimmed(line.substr(0, equals))),
+                     { withoutQuotes(trimmed(line.substr(equals + 1))) }, number);
     }
-};
+}
 
 //! Line by line; a list in brackets may go over some of them.
 class YamlReader
@@ -199,18 +195,17 @@ private:
     std::vector<Parent> parents_;
 };
 
-CalibrationText::CalibrationText(const std::string& file, const std::string& text) : file_(file), isIni_(false)
+CalibrationText::CalibrationText(const std::string& file, const std::string& text) : file_(file)
 {
     const bool hasMark = text.compare(0, 3, "\xEF\xBB\xBF") == 0; // of UTF-8
     std::istringstream lines(hasMark ? text.substr(3) : text);
     std::string line;
     while (line.empty() && std::getline(lines, line))
         line = trimmed(withoutComment(line, "#;"));
-    isIni_ = line.compare(0, 1, "[") == 0;
     lines.clear();
     lines.seekg(0);
-    if (isIni_)
-        IniReader::read(lines, *this);
+    if (line.compare(0, 1, "[") == 0)
+        readIni(lines);
     else
         YamlReader::read(lines, *this);
 }

@@ -17,15 +17,12 @@ in a list in one row. It is what calibrations are made of, and what is common to
 class CV_EXPORTS CalibrationText
 {
 public:
-    CalibrationText() : isIni_(false) {}
-
     /** Of text: YAML, or INI if it begins with a section. Of YAML, it reads maps in blocks, lists in blocks and in
     brackets, and words with and without quotes; tags are left out. cv::FileStorage reads none without its own header.
     @throws cv::Exception with the file and the line. */
     CalibrationText(const std::string& file, const std::string& text);
 
     const std::string& file() const { return file_; }
-    bool isIni() const { return isIni_; }
 
     bool has(const std::string& path) const { return fields_.count(path) != 0; }
     //! Whether a path begins so
@@ -45,13 +42,12 @@ public:
 
 private:
     friend class YamlReader;
-    friend class IniReader;
 
+    void readIni(std::istream& lines);
     //! Throws if it is there already.
     void addField(const std::string& path, const std::vector<std::string>& words, int line);
 
     std::string file_;
-    bool isIni_;
     std::map<std::string, std::vector<std::string>> fields_;
 };
 
