@@ -369,9 +369,7 @@ void prepareCost(const LayerPlan& plan, const LayerImages& images, LayerScratch&
     if (cost.isCensus)
         return own.census.prepare(images.left, images.right, plan.numDisparities, cost.windowSide, cost.tolerance,
                                   images.masks);
-    const ColorGradientParams params = { cost.colorTruncation, cost.gradientTruncation, cost.colorWeight,
-                                         cost.windowSide };
-    own.colorGradient.prepare(images.left, images.right, plan.numDisparities, params, images.masks);
+    own.colorGradient.prepare(images.left, images.right, plan.numDisparities, cost.colorGradient, images.masks);
 }
 
 Verdict matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,

@@ -17,15 +17,15 @@ inline std::string textOf(const hdp::LayerPlan& p)
     text << "layer " << p.layer << " top " << p.isTop << " finest " << p.isFinest << " disparities " << p.numDisparities
          << " max " << p.maxDisparity << " fractions " << p.hasFractions << " method " << (int)p.method << "\n  cost "
          << p.cost.isCensus << " " << p.cost.windowSide << " tolerance " << p.cost.tolerance << " truncation "
-         << p.cost.colorTruncation << " " << p.cost.gradientTruncation << " weight " << p.cost.colorWeight
-         << " sees below " << p.seesBelow << " smooths guide " << p.smoothsGuide << "\n  trees: prior "
-         << (int)p.trees.prior << " upper " << p.trees.upperDisparities << " delta " << p.trees.delta << " margin "
-         << p.trees.margin << " beta " << p.trees.beta << " links " << p.trees.linksTrees << " gamma " << p.trees.gamma
-         << " planes " << p.trees.prefersPlanes << " refinement " << p.trees.refinementGamma << "\n  volume "
-         << p.volumePenalties.small << " " << p.volumePenalties.large << " " << p.volumePenalties.gamma << " range "
-         << p.rangePenalties.small << " " << p.rangePenalties.large << " " << p.rangePenalties.leastLarge << " "
-         << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " " << p.rangePenalties.maxPrior
-         << "\n  passes";
+         << p.cost.colorGradient.colorTruncation << " " << p.cost.colorGradient.gradientTruncation << " weight "
+         << p.cost.colorGradient.colorWeight << " sees below " << p.seesBelow << " smooths guide " << p.smoothsGuide
+         << "\n  trees: prior " << (int)p.trees.prior << " upper " << p.trees.upperDisparities << " delta "
+         << p.trees.delta << " margin " << p.trees.margin << " beta " << p.trees.beta << " links " << p.trees.linksTrees
+         << " gamma " << p.trees.gamma << " planes " << p.trees.prefersPlanes << " refinement "
+         << p.trees.refinementGamma << "\n  volume " << p.volumePenalties.small << " " << p.volumePenalties.large << " "
+         << p.volumePenalties.gamma << " range " << p.rangePenalties.small << " " << p.rangePenalties.large << " "
+         << p.rangePenalties.leastLarge << " " << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " "
+         << p.rangePenalties.maxPrior << "\n  passes";
     for (const hdp::ScanlinePenalties& pass : p.passes)
         text << " [" << pass.small << " " << pass.large << " slopes " << pass.edgeSlope << " " << pass.borderSlope
              << " prior " << pass.prior << " nearer " << pass.nearer << " noise " << pass.edgeNoise << "]";

@@ -160,11 +160,9 @@ CostPlan planCost(const MatcherParameters& p)
     CostPlan cost;
     cost.isCensus = p.matchingCost == M::COST_CENSUS;
     cost.windowSide = windowSide(p);
-    if (cost.isCensus)
-        return cost;
-    cost.colorTruncation = (float)p.colorTruncation;
-    cost.gradientTruncation = (float)p.gradientTruncation;
-    cost.colorWeight = (float)p.colorWeight;
+    if (!cost.isCensus)
+        cost.colorGradient = { (float)p.colorTruncation, (float)p.gradientTruncation, (float)p.colorWeight,
+                               cost.windowSide };
     return cost;
 }
 

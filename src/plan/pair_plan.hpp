@@ -43,11 +43,9 @@ enum PriorSource
 struct CostPlan
 {
     bool isCensus = false;
-    int windowSide = 0;        // pixels
-    int tolerance = 0;         // of the census, in grey levels of the images, see CensusCost::prepare()
-    float colorTruncation = 0; // this and the next two: see ColorGradientParams
-    float gradientTruncation = 0;
-    float colorWeight = 0;
+    int windowSide = 0; // pixels
+    int tolerance = 0;  // of the census, in grey levels of the images, see CensusCost::prepare()
+    ColorGradientParams colorGradient = ColorGradientParams();
 };
 
 //! The forest of a layer, and what its trees' costs are used for
