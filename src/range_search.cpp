@@ -44,15 +44,6 @@ Range limited(double first, double last, int width)
     return Range(start, std::max(std::min(cvCeil(last), limit), start) + 1);
 }
 
-Mat ofLayer(const Mat& mask, int layer)
-{
-    if (mask.empty())
-        return Mat();
-    std::vector<Mat> pyramid;
-    buildPyramid({ mask }, layer + 1, pyramid);
-    return pixelsWithData(pyramid.back());
-}
-
 } // namespace
 
 Range supportedDisparities(const std::vector<CornerMatch>& matches, int& support)
@@ -113,7 +104,7 @@ bool RangeSearch::matchPixels(const PairMasks& masks, const Range& corners, Rang
     }
     matcher_->setMinDisparity(searched.start);
     matcher_->setNumDisparities(searched.size());
-    matcher_->setMasks(ofLayer(masks.left, layer), ofLayer(masks.right, layer));
+    matcher_->setMasks(dataOfLayer(masks.left, layer), dataOfLayer(masks.right, layer));
     coarse_.left[layer].convertTo(left_, CV_16U, 64); // of 10 bits
     coarse_.right[layer].convertTo(right_, CV_16U, 64);
     matcher_->compute(left_, right_, disparity_);

@@ -282,17 +282,12 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
     const Mat &coarseLeft = coarse.left[coarse.layer], &coarseRight = coarse.right[coarse.layer];
     if (std::min(coarseLeft.rows, coarseLeft.cols) < 2 * (CornerMatching::searchSide + CornerMatching::searchRadius))
         return;
-    std::vector<Mat> leftMasks(1), rightMasks(1);
-    if (!masks.isEmpty())
-    {
-        buildPyramid({ masks.left }, coarse.layer + 1, leftMasks);
-        buildPyramid({ masks.right }, coarse.layer + 1, rightMasks);
-    }
     const CornerSearch search = { Range(disparities.start >> coarse.layer,
                                         layerDisparities(disparities.end, coarse.layer, true)),
                                   maxCorners, std::max(minSpacing >> coarse.layer, 1) };
-    findCornerMatches(coarseLeft, coarseRight, { leftMasks.back(), rightMasks.back() }, search, coarse.windows,
-                      coarse.matches);
+    findCornerMatches(coarseLeft, coarseRight,
+                      { dataOfLayer(masks.left, coarse.layer), dataOfLayer(masks.right, coarse.layer) }, search,
+                      coarse.windows, coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
 }
 

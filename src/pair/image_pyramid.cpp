@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "image_pyramid.hpp"
+#include "../base/mask.hpp"
 #include "image_pyramid.simd.hpp"
 #include "pair/image_pyramid.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
@@ -54,6 +55,15 @@ void buildPyramid(const std::vector<Mat>& given, size_t layers, std::vector<Mat>
     std::copy_n(given.begin(), std::min(given.size(), layers), pyramid.begin());
     for (size_t layer = given.size(); layer < layers; ++layer)
         halveImage(pyramid[layer - 1], pyramid[layer]);
+}
+
+Mat dataOfLayer(const Mat& mask, int layer)
+{
+    if (mask.empty())
+        return Mat();
+    std::vector<Mat> pyramid;
+    buildPyramid({ mask }, layer + 1, pyramid);
+    return pixelsWithData(pyramid.back());
 }
 
 }}} // namespace cv::stereo::hdp

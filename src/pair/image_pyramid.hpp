@@ -34,6 +34,9 @@ CV_EXPORTS void halveImage(const Mat& image, Mat& half);
 @param pyramid Receives them: the given ones as they are, the others in memory that is used again. */
 CV_EXPORTS void buildPyramid(const std::vector<Mat>& given, size_t layers, std::vector<Mat>& pyramid);
 
+//! pixelsWithData() of a layer of a mask; none for an empty one
+Mat dataOfLayer(const Mat& mask, int layer);
+
 }}} // namespace cv::stereo::hdp
 
 #endif
