@@ -6,7 +6,6 @@
 
 #include "../base/vectorized.hpp"
 
-#include <cmath>
 #include <cstring>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -25,13 +24,7 @@ Mat maskOf(const Mat& image, const Mat& given)
     else
         compare(given, Scalar(0), mask, CMP_NE);
     if (image.depth() == CV_32F)
-        for (int y = 0; y < image.rows; ++y)
-        {
-            const float* const row = image.ptr<float>(y);
-            uchar* const has = mask.ptr(y);
-            for (int x = 0; x < image.cols; ++x)
-                has[x] = (uchar)(std::isfinite(row[x]) ? has[x] : 0);
-        }
+        mask &= (image - image) == 0; // neither infinite nor NaN
     return mask;
 }
 

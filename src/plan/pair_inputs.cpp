@@ -5,7 +5,6 @@
 #include "pair_inputs.hpp"
 
 #include <cfloat>
-#include <cmath>
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -66,13 +65,8 @@ void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inpu
         sigma = Mat(disparity.size(), CV_32F, Scalar(sigma.at<double>(0)));
     if (!disparity.empty() && (sigma.type() != CV_32FC1 || sigma.size() != disparity.size()))
         CV_Error(Error::StsUnmatchedSizes, "sigma must be a number, or CV_32FC1 of the size of disparity");
-    for (int y = 0; y < disparity.rows; ++y)
-        for (int x = 0; x < disparity.cols; ++x)
-        {
-            const float own = sigma.ptr<float>(y)[x];
-            if (!std::isnan(disparity.ptr<float>(y)[x]) && !(own >= 0 && own <= FLT_MAX))
-                CV_Error(Error::StsOutOfRange, "sigma must be finite and >= 0 where there is a disparity");
-        }
+    if (!disparity.empty() && countNonZero((disparity == disparity) & ~((sigma >= 0) & (sigma <= FLT_MAX))) > 0)
+        CV_Error(Error::StsOutOfRange, "sigma must be finite and >= 0 where there is a disparity");
     inputs.prior = disparity;
     inputs.sigma = sigma;
 }
