@@ -109,8 +109,6 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
     levels = given ? *given : LevelFindings();
     if (!given)
         levels.bits = countBits(blackened(left, masks.left), blackened(right, masks.right), share);
-    if (!plan.isCensus)
-        levels.brightness = 1;
     if (plan.isCensus)
     {
         const PairMasks moved = masks.isEmpty() ? masks : PairMasks({ pyramids.leftMask[0], pyramids.rightMask[0] });
