@@ -5,7 +5,6 @@
 #include "cost_limits.hpp"
 
 #include "../base/units.hpp"
-#include "../base/vectorized.hpp"
 #include "matching_cost.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -20,15 +19,8 @@ void CostLimits::prepare(const PairMasks& masks, int numDisparities)
     width_ = left.cols;
     left_.create(left.rows, margin + width_ + margin, CV_8U);
     right_.create(left.rows, margin + width_ + numDisparities + costPadding + margin, CV_8U);
-    copyBordered(left, 0, 0, margin, margin, false, left_);
-    copyBordered(right, 0, 0, margin, right_.cols - margin - width_, true, right_);
-    parallelFor(left.rows, [&](int y) {
-        uchar *const l = left_.ptr(y), *const r = right_.ptr(y);
-        for (int x = 0; x < left_.cols; ++x)
-            l[x] = (uchar)(hasData(l[x]) ? +none : 0);
-        for (int x = 0; x < right_.cols; ++x)
-            r[x] = (uchar)(hasData(r[x]) ? +none : +ordinary);
-    });
+    copyBordered(pixelsWithData(left), 0, 0, margin, margin, false, left_);
+    copyBordered(max(pixelsWithData(right), +ordinary), 0, 0, margin, right_.cols - margin - width_, true, right_);
 }
 
 void CostLimits::apply(const int* pixels, int count, int first, int lanes, float unit, float* cost) const
