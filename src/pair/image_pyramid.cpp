@@ -12,22 +12,12 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_DISPATCH(halveRow)
-HDP_DISPATCH(halveGreyRow)
-
-void halveRows(const uchar* upper, const uchar* lower, const Mat& half, uchar* means)
-{
-    dispatched::halveRow(upper, lower, half.cols, half.channels(), means);
-}
-
-void halveRows(const ushort* upper, const ushort* lower, const Mat& half, ushort* means)
-{
-    dispatched::halveGreyRow(upper, lower, half.cols, means);
-}
 
 template <typename T> void halve(const Mat& image, Mat& half)
 {
-    parallelFor(half.rows,
-                [&](int y) { halveRows(image.ptr<T>(2 * y), image.ptr<T>(2 * y + 1), half, half.ptr<T>(y)); });
+    parallelFor(half.rows, [&](int y) {
+        dispatched::halveRow(image.ptr<T>(2 * y), image.ptr<T>(2 * y + 1), half.cols, half.channels(), half.ptr<T>(y));
+    });
 }
 
 } // namespace

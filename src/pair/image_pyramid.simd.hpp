@@ -14,8 +14,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 //! Means of 2 x 2 pixels of one or three channels, truncated. width: of the means, in pixels.
 void halveRow(const uchar* upper, const uchar* lower, int width, int channels, uchar* means);
 
-//! Means of 2 x 2 grey levels, rounded.
-void halveGreyRow(const ushort* upper, const ushort* lower, int width, ushort* means);
+//! The same of grey levels, rounded. channels: 1
+void halveRow(const ushort* upper, const ushort* lower, int width, int channels, ushort* means);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -41,7 +41,7 @@ void halveRow(const uchar* upper, const uchar* lower, int width, int channels, u
     }
 }
 
-void halveGreyRow(const ushort* upper, const ushort* lower, int width, ushort* means)
+void halveRow(const ushort* upper, const ushort* lower, int width, int, ushort* means)
 {
     HDP_VECTORIZED for (int x = 0; x < width; ++x) means[x] =
         (ushort)((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) / 4);
