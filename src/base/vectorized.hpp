@@ -37,9 +37,22 @@ template <typename T> CV_ALWAYS_INLINE T difference(T a, T b) { return (T)(std::
 CV_ALWAYS_INLINE int choose(int condition, int a, int b) { return b ^ ((a ^ b) & -condition); }
 
 //! The value, or the limit that it is beyond
-template <typename T> CV_ALWAYS_INLINE T clamped(T value, T min, T max)
+template <typename T> CV_ALWAYS_INLINE T clamped(T value, T min, T max) { return std::min(std::max(value, min), max); }
+
+//! Task<lanes>::run(args...) for 4, 8, 16 or 32 lanes, then known to the compiler
+template <template <int> class Task, typename... Args> CV_ALWAYS_INLINE void runTask(int lanes, Args&&... args)
 {
-    return std::min(std::max(value, min), max);
+    switch (lanes)
+    {
+    case 4:
+        return Task<4>::run(args...);
+    case 8:
+        return Task<8>::run(args...);
+    case 16:
+        return Task<16>::run(args...);
+    default:
+        return Task<32>::run(args...);
+    }
 }
 
 }}} // namespace cv::stereo::hdp

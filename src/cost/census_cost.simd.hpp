@@ -158,44 +158,30 @@ void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int 
     }
 }
 
-template <int lanes, typename T>
-void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, T* cost)
+template <int lanes> struct EvaluateTask
 {
-    typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
-    if (planes.count == 3)
-        evaluateCosts<lanes, 3, Word>(planes, pixels, size, first, cost);
-    else if (planes.count == 2)
-        evaluateCosts<lanes, 2, Word>(planes, pixels, size, first, cost);
-    else
-        evaluateCosts<lanes, 1, Word>(planes, pixels, size, first, cost);
-}
-
-template <typename T>
-void evaluateCosts(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, T* cost)
-{
-    switch (lanes)
+    template <typename T> static void run(const CensusPlanes& planes, const int* pixels, int size, int first, T* cost)
     {
-    case 4:
-        return evaluateCosts<4>(planes, pixels, count, first, cost);
-    case 8:
-        return evaluateCosts<8>(planes, pixels, count, first, cost);
-    case 16:
-        return evaluateCosts<16>(planes, pixels, count, first, cost);
-    default:
-        return evaluateCosts<32>(planes, pixels, count, first, cost);
+        typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
+        if (planes.count == 3)
+            evaluateCosts<lanes, 3, Word>(planes, pixels, size, first, cost);
+        else if (planes.count == 2)
+            evaluateCosts<lanes, 2, Word>(planes, pixels, size, first, cost);
+        else
+            evaluateCosts<lanes, 1, Word>(planes, pixels, size, first, cost);
     }
-}
+};
 
 } // namespace
 
 void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost)
 {
-    evaluateCosts(planes, pixels, count, first, lanes, cost);
+    runTask<EvaluateTask>(lanes, planes, pixels, count, first, cost);
 }
 
 void countCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, uchar* cost)
 {
-    evaluateCosts(planes, pixels, count, first, lanes, cost);
+    runTask<EvaluateTask>(lanes, planes, pixels, count, first, cost);
 }
 
 namespace {

@@ -114,21 +114,11 @@ template <int lanes> void takeWinners(const float* costs, int size, const Range&
         const int k = findLowest<lanes>(costs, excluded), disparity = run.start + k;
         const float lowest = costs[k], first = costs[0], last = costs[count - 1];
         const float before = k > 0 ? costs[k - 1] : noCost, after = k + 1 < count ? costs[k + 1] : noCost;
-        RunWinner& winner = winners[i];
+        const RunWinner here = { lowest, before, after, first, last, disparity };
         if (joins)
-        {
-            const RunWinner here = { lowest, before, after, first, last, disparity };
-            joinWinner(winner, here, run.start);
-        }
+            joinWinner(winners[i], here, run.start);
         else
-        {
-            winner.lowest = lowest;
-            winner.before = before;
-            winner.after = after;
-            winner.first = first;
-            winner.last = last;
-            winner.disparity = disparity;
-        }
+            winners[i] = here;
     }
 }
 
@@ -221,21 +211,6 @@ template <int lanes> struct AggregateTask
         }
     }
 };
-
-template <template <int> class Task, typename... Args> void runTask(int lanes, Args&&... args)
-{
-    switch (lanes)
-    {
-    case 4:
-        return Task<4>::run(args...);
-    case 8:
-        return Task<8>::run(args...);
-    case 16:
-        return Task<16>::run(args...);
-    default:
-        return Task<32>::run(args...);
-    }
-}
 
 } // namespace
 

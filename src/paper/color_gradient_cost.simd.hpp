@@ -59,31 +59,23 @@ void evaluateCosts(const ColorGradientPlanes& planes, const int* pixels, int siz
     }
 }
 
-template <int lanes>
-void evaluateCosts(const ColorGradientPlanes& planes, const int* pixels, int size, int first, float* cost)
+template <int lanes> struct EvaluateTask
 {
-    if (planes.count == 3)
-        evaluateCosts<lanes, 3>(planes, pixels, size, first, cost);
-    else
-        evaluateCosts<lanes, 1>(planes, pixels, size, first, cost);
-}
+    static void run(const ColorGradientPlanes& planes, const int* pixels, int size, int first, float* cost)
+    {
+        if (planes.count == 3)
+            evaluateCosts<lanes, 3>(planes, pixels, size, first, cost);
+        else
+            evaluateCosts<lanes, 1>(planes, pixels, size, first, cost);
+    }
+};
 
 } // namespace
 
 void evaluateColorGradientCost(const ColorGradientPlanes& planes, const int* pixels, int count, int first, int lanes,
                                float* cost)
 {
-    switch (lanes)
-    {
-    case 4:
-        return evaluateCosts<4>(planes, pixels, count, first, cost);
-    case 8:
-        return evaluateCosts<8>(planes, pixels, count, first, cost);
-    case 16:
-        return evaluateCosts<16>(planes, pixels, count, first, cost);
-    default:
-        return evaluateCosts<32>(planes, pixels, count, first, cost);
-    }
+    runTask<EvaluateTask>(lanes, planes, pixels, count, first, cost);
 }
 
 #endif
