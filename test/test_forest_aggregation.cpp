@@ -49,29 +49,76 @@ Mat stripedIntervals(Size size)
     return pixelIntv;
 }
 
+//! Some successive candidates of each tree, and their sums as far as winners have them
+class RecordedSums : public hdp::AggregationProblem
+{
+public:
+    RecordedSums(const Layer& layer, int count)
+        : winners(layer.left.total()), firsts(layer.left.total()), cost_(layer.cost), count_(count)
+    {
+    }
+
+    Range candidates(const hdp::TreeWalk& walk, const hdp::DisparityTree& tree) const CV_OVERRIDE
+    {
+        const int first = (count_ * 5 + tree.root) % (numDisparities - count_ + 1);
+        for (int i = 0; i < tree.size; ++i)
+            firsts[walk.pixels[i]] = first;
+        return Range(first, first + count_);
+    }
+
+    void evaluate(const int* pixels, int count, int first, int lanes, float* costs) const CV_OVERRIDE
+    {
+        EXPECT_EQ(count_ <= 4 ? 4 : count_ <= 8 ? 8 : count_ <= 16 ? 16 : 32, lanes);
+        cost_.evaluate(pixels, count, first, lanes, costs);
+    }
+
+    void setDisparities(const int* pixels, const hdp::RunWinner* ofPixels, int count, ushort*) const CV_OVERRIDE
+    {
+        for (int i = 0; i < count; ++i)
+            winners[pixels[i]] = ofPixels[i];
+    }
+
+    mutable std::vector<hdp::RunWinner> winners; // by pixel
+    mutable std::vector<int> firsts;             // candidates, the same
+
+private:
+    const hdp::ColorGradientCost& cost_;
+    const int count_;
+};
+
 void expectExplicitSums(const Layer& layer, double gamma)
 {
     SCOPED_TRACE(testing::Message() << layer.left.size() << ", trees " << layer.forest.trees.size() << ", gamma "
                                     << gamma);
-    const hdp::EdgeSimilarity similarity(gamma);
-    hdp::TreeWalk walk;
-    std::vector<float> sums;
-    for (const hdp::DisparityTree& tree : layer.forest.trees)
+    hdp::AggregationBuffers buffers;
+    Mat disparity(layer.left.size(), CV_16U);
+    const int pixels = (int)disparity.total();
+    for (int count : { 1, 2, 3, 4, 5, 7, 8, 9, 16, 17, 24 })
     {
-        hdp::walkTree(layer.forest, tree, walk);
-        for (int count : { 1, 2, 3, 4, 5, 7, 8, 9, 16, 17, 24 })
+        const RecordedSums recorded(layer, count);
+        hdp::takeWinners(layer.forest, recorded, gamma, buffers, disparity);
+        for (int p = 0; p < pixels; p += 1 + pixels / 200)
         {
-            const int first = (count * 5 + tree.root) % (numDisparities - count + 1);
-            const int lanes = hdp::aggregateTree(walk, tree.size, layer.cost, similarity, first, count, sums);
-            ASSERT_EQ(count <= 4 ? 4 : count <= 8 ? 8 : count <= 16 ? 16 : 32, lanes);
-            for (int i = 0; i < tree.size; i += 1 + tree.size / 50)
-            {
-                const std::vector<double> expected = oracle::aggregated(
-                    layer.expectedForest.neighbours, walk.pixels[i], gamma, layer.costTable, first, first + count - 1);
-                for (int k = 0; k < count; ++k)
-                    ASSERT_NEAR(expected[k], sums[i * lanes + k], 1e-5 + 2e-5 * expected[k])
-                        << "pixel " << walk.pixels[i] << ", candidate " << first + k;
-            }
+            const int first = recorded.firsts[p];
+            const hdp::RunWinner& winner = recorded.winners[p];
+            const std::vector<double> expected = oracle::aggregated(layer.expectedForest.neighbours, p, gamma,
+                                                                    layer.costTable, first, first + count - 1);
+            const auto expectSum = [&](int k, float sum) {
+                if (k < 0 || k >= count)
+                    EXPECT_LT(sum, 0) << "pixel " << p << ", beside " << count << " candidates";
+                else
+                    EXPECT_NEAR(expected[k], sum, 1e-5 + 2e-5 * expected[k])
+                        << "pixel " << p << ", candidate " << first + k << " of " << count;
+            };
+            const int best = winner.disparity - first;
+            ASSERT_TRUE(best >= 0 && best < count) << "pixel " << p;
+            const double lowest = *std::min_element(expected.begin(), expected.end());
+            EXPECT_NEAR(lowest, winner.lowest, 1e-5 + 2e-5 * lowest);
+            expectSum(best, winner.lowest);
+            expectSum(best - 1, winner.before);
+            expectSum(best + 1, winner.after);
+            expectSum(0, winner.first);
+            expectSum(count - 1, winner.last);
         }
     }
 }

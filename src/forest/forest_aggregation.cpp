@@ -51,23 +51,6 @@ template <typename Take> void forEachRun(const Range& candidates, int treeSize, 
 HDP_DISPATCH(aggregateRun)
 HDP_DISPATCH(averageRun)
 
-//! Memory for the costs of a run
-float* provideCosts(int size, int lanes, std::vector<float>& costs)
-{
-    if (costs.size() < (size_t)size * lanes)
-        costs.resize((size_t)size * lanes);
-    return costs.data();
-}
-
-//! Evaluates and aggregates the costs of a run of candidates; see aggregateRun().
-void takeRun(const TreeWalk& walk, int size, const AggregationProblem& problem, const EdgeSimilarity& similarity,
-             const Range& run, int lanes, bool joins, std::vector<float>& memory, RunWinner* winners)
-{
-    float* const costs = provideCosts(size, lanes, memory);
-    problem.evaluate(walk.pixels.data(), size, run.start, lanes, costs);
-    dispatched::aggregateRun(walk, size, similarity.table, run, lanes, joins, costs, winners);
-}
-
 //! Winner-takes-all over the matching cost
 class Matching CV_FINAL : public AggregationProblem
 {
@@ -117,7 +100,11 @@ struct Aggregation
         if (winners.size() < (size_t)size)
             winners.resize(size);
         forEachRun(candidates, size, [&](const Range& run, int lanes) {
-            takeRun(walk, size, problem, similarity, run, lanes, run.start > candidates.start, costs, winners.data());
+            if (costs.size() < (size_t)size * lanes)
+                costs.resize((size_t)size * lanes);
+            problem.evaluate(walk.pixels.data(), size, run.start, lanes, costs.data());
+            const bool joins = run.start > candidates.start;
+            dispatched::aggregateRun(walk, size, similarity.table, run, lanes, joins, costs.data(), winners.data());
         });
     }
 
@@ -287,15 +274,6 @@ EdgeSimilarity::EdgeSimilarity(double gamma)
 {
     for (int w = 0; w < 256; ++w)
         table[w] = w > 0 ? (float)std::exp(-w / gamma) : 1.f; // 0 / gamma is none if it is too small for a number
-}
-
-int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity, int first,
-                  int count, std::vector<float>& aggregated)
-{
-    const int lanes = countLanes(count, 1);
-    takeRun(walk, size, Matching(cost, false), similarity, Range(first, first + count), lanes, false, aggregated,
-            nullptr);
-    return lanes;
 }
 
 void takeWinners(const DisparityForest& forest, const AggregationProblem& problem, double gamma,

@@ -17,18 +17,6 @@ struct CV_EXPORTS EdgeSimilarity
     float table[256];
 };
 
-/** The aggregated cost C(p, x) = sum over q in the tree of S(p, q) M(q, x) (section 3.3), in two passes.
-@param walk The tree's walk.
-@param size Number of pixels of the tree.
-@param cost The layer's matching cost.
-@param similarity S of neighbours.
-@param first The first of up to 32 candidates x.
-@param count Their number.
-@param aggregated Receives C(walk.pixels[i], first + k) at [i * lanes + k], k < count.
-@return lanes: the first of 4, 8, 16 and 32 that is not less than count. */
-CV_EXPORTS int aggregateTree(const TreeWalk& walk, int size, const MatchingCost& cost, const EdgeSimilarity& similarity,
-                             int first, int count, std::vector<float>& aggregated);
-
 //! The winner of some successive candidates, and the costs that its fraction needs, or may need when it is compared
 //! with that of the candidates after
 struct RunWinner
@@ -91,14 +79,15 @@ public:
     virtual void setDisparities(const int* pixels, const RunWinner* winners, int count, ushort* disparity) const = 0;
 };
 
-/** Winner-takes-all over an aggregated cost; the lowest candidate wins a tie.
+/** Winner-takes-all over an aggregated cost, C(p, x) = sum over q in the tree of S(p, q) M(q, x) (section 3.3), in two
+passes; the lowest candidate wins a tie.
 @param forest The forest.
 @param problem Candidates, cost and disparities.
 @param gamma Of the similarity.
 @param buffers Memory to work in.
 @param disparity CV_16UC1 of the layer's size; pixels of trees without candidates keep what they have. */
-void takeWinners(const DisparityForest& forest, const AggregationProblem& problem, double gamma,
-                 AggregationBuffers& buffers, Mat& disparity);
+CV_EXPORTS void takeWinners(const DisparityForest& forest, const AggregationProblem& problem, double gamma,
+                            AggregationBuffers& buffers, Mat& disparity);
 
 /** Winner-takes-all over C(p, x), x in TreeIntv of the pixel's tree; the lowest disparity wins a tie.
 @param forest The forest.

@@ -18,7 +18,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param lanes 4, 8, 16 or 32, and not less than there are candidates.
 @param joins Whether winners holds those of the candidates before the run; it receives those of all then.
 @param costs M of pixel i and the k-th candidate at [i * lanes + k]; receives C. Others mean nothing.
-@param winners Receives each pixel's winner; may be null. */
+@param winners Receives each pixel's winner. */
 void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes, bool joins,
                   float* costs, RunWinner* winners);
 
@@ -206,8 +206,7 @@ template <int lanes> struct AggregateTask
         {
             const int end = std::min(begin + block, size);
             passDown<lanes>(walk, begin, end, similarity, costs);
-            if (winners)
-                takeWinners<lanes>(costs + (size_t)begin * lanes, end - begin, run, joins, winners + begin);
+            takeWinners<lanes>(costs + (size_t)begin * lanes, end - begin, run, joins, winners + begin);
         }
     }
 };
