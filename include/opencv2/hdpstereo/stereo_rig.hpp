@@ -53,8 +53,7 @@ struct CV_EXPORTS_W_SIMPLE StereoCalibration
 @param first File of the left camera, or the only one.
 @param second File of the right camera, or with R and T.
 @param imageSize Size of the raw images. If it has the same aspect as the size of the calibration, that is scaled. The
-size of the calibration by default; but the first two kinds of OpenCV's and the ZED's files do not have it, and it must
-be given.
+size of the calibration by default; but OpenCV's and the ZED's files do not have it, and it must be given.
 @param unit Metres in a unit of T, in OpenCV's files: it is that of the chessboard's squares. Others are in known units.
 @throws cv::Exception with the file and the field in one sentence if something is missing, not finite or impossible; if
 the second camera is not to the right of the first; if the images have another aspect.
