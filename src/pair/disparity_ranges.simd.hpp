@@ -12,8 +12,9 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 // Rows of so many pixels. Of intervals each pixel has two numbers, the first and the last one.
 
-//! Limits in 1 / subpixelScale pixel, in a range; its start or its end, if isLargest, where there is no number. isWhole:
-//! whole pixels alone
+/** Limits in 1 / subpixelScale pixel, in a range.
+@param isWhole Whether limits are whole pixels.
+@param isLargest Whether a limit that is no number is the end of the range, not its start. */
 void toUnits(const float* limits, int width, bool isWhole, bool isLargest, const Range& range, short* units);
 
 //! Limits in whole pixels

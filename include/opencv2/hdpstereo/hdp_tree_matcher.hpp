@@ -4,7 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_HDP_TREE_MATCHER_HPP
 #define OPENCV_HDPSTEREO_HDP_TREE_MATCHER_HPP
 
-// What opencv_calib3d and opencv_imgproc of 4.x have for stereo matching is in opencv_stereo and opencv_geometry since 5.0.
+// What opencv_calib3d and opencv_imgproc of 4.x have for stereo matching is in opencv_stereo and opencv_geometry since
+// 5.0.
 #include "opencv2/core/version.hpp"
 #if CV_VERSION_MAJOR >= 5
 #include "opencv2/geometry/2d.hpp"
@@ -597,7 +598,8 @@ public:
 
     What the model says is done, whatever Params::maxRowOffset and Params::useLightAlignment are; Params::noiseThreshold
     is compared with its noise. HDPTreeMatcher::Findings are then those of the model, which are about its whole images.
-    The disparity range is taken from it if numDisparities is 0. save() does not store it, and clear() does not forget it.
+    The disparity range is taken from it if numDisparities is 0. save() does not store it, and clear() does not forget
+    it.
     @param model That of an earlier pair, or of a tile of it. An empty one: pairs are estimated again.
     @throws cv::Exception if a value is not valid; the matcher is unchanged.
      */
