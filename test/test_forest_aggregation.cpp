@@ -49,12 +49,13 @@ Mat stripedIntervals(Size size)
     return pixelIntv;
 }
 
-//! Some successive candidates of each tree, and their sums as far as winners have them
+//! Some successive candidates of each tree, and their sums as far as winners have them; one candidate wins if it is
+//! chosen, by a cost that all others have beside their own.
 class RecordedSums : public hdp::AggregationProblem
 {
 public:
-    RecordedSums(const Layer& layer, int count)
-        : winners(layer.left.total()), firsts(layer.left.total()), cost_(layer.cost), count_(count)
+    RecordedSums(const Layer& layer, int count, int chosen)
+        : winners(layer.left.total()), firsts(layer.left.total()), cost_(layer.cost), count_(count), chosen_(chosen)
     {
     }
 
@@ -70,6 +71,9 @@ public:
     {
         EXPECT_EQ(count_ <= 4 ? 4 : count_ <= 8 ? 8 : count_ <= 16 ? 16 : 32, lanes);
         cost_.evaluate(pixels, count, first, lanes, costs);
+        const int own = firsts[pixels[0]] + chosen_ - first;
+        for (int i = 0; i < count * lanes && chosen_ >= 0; ++i)
+            costs[i] += i % lanes == own ? 0.f : 1000.f;
     }
 
     void setDisparities(const int* pixels, const hdp::RunWinner* ofPixels, int count, ushort*) const CV_OVERRIDE
@@ -83,7 +87,7 @@ public:
 
 private:
     const hdp::ColorGradientCost& cost_;
-    const int count_;
+    const int count_, chosen_;
 };
 
 void expectExplicitSums(const Layer& layer, double gamma)
@@ -95,7 +99,7 @@ void expectExplicitSums(const Layer& layer, double gamma)
     const int pixels = (int)disparity.total();
     for (int count : { 1, 2, 3, 4, 5, 7, 8, 9, 16, 17, 24 })
     {
-        const RecordedSums recorded(layer, count);
+        const RecordedSums recorded(layer, count, -1);
         hdp::takeWinners(layer.forest, recorded, gamma, buffers, disparity);
         for (int p = 0; p < pixels; p += 1 + pixels / 200)
         {
@@ -119,6 +123,20 @@ void expectExplicitSums(const Layer& layer, double gamma)
             expectSum(best + 1, winner.after);
             expectSum(0, winner.first);
             expectSum(count - 1, winner.last);
+        }
+        for (int chosen = 0; chosen < count; ++chosen)
+        {
+            const RecordedSums one(layer, count, chosen);
+            hdp::takeWinners(layer.forest, one, gamma, buffers, disparity);
+            for (int p = 0; p < pixels; p += 1 + pixels / 200)
+            {
+                const int candidate = one.firsts[p] + chosen;
+                const std::vector<double> expected = oracle::aggregated(layer.expectedForest.neighbours, p, gamma,
+                                                                        layer.costTable, candidate, candidate);
+                ASSERT_EQ(candidate, one.winners[p].disparity) << "pixel " << p;
+                ASSERT_NEAR(expected[0], one.winners[p].lowest, 1e-5 + 2e-5 * expected[0])
+                    << "pixel " << p << ", candidate " << candidate << " of " << count;
+            }
         }
     }
 }
