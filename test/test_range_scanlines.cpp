@@ -168,18 +168,14 @@ TEST_P(HDPStereo_RangeScanlines, lanes_without_vectors)
             layer.mask(rng);
         const hdp::CensusCost cost = layer.cost();
         hdp::RangeProblem problem = {
-            cost, layer.weights.size(), candidates, layer.upper, layer.weights, layer.intervals, 18, {}, {}, {}
+            cost, layer.weights.size(), candidates, layer.upper, layer.weights, layer.intervals, 0, {}, {}, {}
         };
-        std::fill_n(problem.large, 256, 100);
-        for (int distance = -candidates; distance < candidates + 32; ++distance)
-            problem.priors.push_back((uchar)std::min(std::abs(distance) / 3, 2));
-        problem.outside.assign(3 * problem.pixelBytes(), 255);
-        std::fill_n(problem.outside.begin() + problem.pixelBytes(), problem.pixelBytes(), (uchar)0);
+        const hdp::RangePenalties penalties = { 18, 100, 100, 1e9, 3, 2 };
+        problem.prepare(penalties);
         hdp::RangeScratch scratch;
         scratch.prepare(problem, layer.weights.rows);
         Mat disparity(layer.weights.size(), CV_16UC1);
         hdp::opt_emulated::aggregateRangeStripe(problem, layer.wholeStripe()[0], scratch, disparity);
-        const hdp::RangePenalties penalties = { 18, 100, 100, 1e9, 3, 2 };
         expectIdentical(layer.disparity(penalties, layer.wholeStripe()), disparity);
     }
 }

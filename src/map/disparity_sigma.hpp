@@ -9,7 +9,7 @@
 namespace cv { namespace stereo { namespace hdp {
 
 /** How much matched levels differ, in pixels of a shift that would explain it: D / (G + 1/2). D is the standard
-deviation, over the window, of the differences of the left levels and those of the right image where the disparities
+deviation, over 9 x 9 pixels, of the differences of the left levels and those of the right image where the disparities
 lead to, interpolated linearly; G the root of the mean square of half the difference between the left levels beside a
 pixel. Levels are whole ones, borders are replicated.
 @param disparity A disparity map of the layer, CV_16UC1.

@@ -103,15 +103,12 @@ void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, M
 {
     const double scale = floats.white > floats.black ? USHRT_MAX / (floats.white - floats.black) : 0;
     levels.create(image.size(), CV_16U);
-    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const float* const row = image.ptr<float>(y);
-            const uchar* const has = mask.ptr(y);
-            ushort* const level = levels.ptr<ushort>(y);
-            for (int x = 0; x < image.cols; ++x)
-                level[x] = (ushort)(has[x] ? clamped((row[x] - floats.black) * scale, 0., 65535.) + 0.5 : 0);
-        }
+    parallelFor(image.rows, [&](int y) {
+        const float* const row = image.ptr<float>(y);
+        const uchar* const has = mask.ptr(y);
+        ushort* const level = levels.ptr<ushort>(y);
+        for (int x = 0; x < image.cols; ++x)
+            level[x] = (ushort)(has[x] ? clamped((row[x] - floats.black) * scale, 0., 65535.) + 0.5 : 0);
     });
 }
 

@@ -19,6 +19,18 @@ HDP_DISPATCH(aggregateRangeStripe)
 
 } // namespace
 
+void RangeProblem::prepare(const RangePenalties& penalties)
+{
+    small = (uchar)penalties.small;
+    const EdgeSimilarity similarity(penalties.gamma);
+    for (int w = 0; w < 256; ++w)
+        large[w] = (uchar)std::max(penalties.leastLarge, cvRound(penalties.large * similarity.table[w]));
+    for (int distance = -candidates; distance < candidates + longestVector; ++distance)
+        priors.push_back((uchar)std::min(std::abs(distance) / penalties.priorDistance, penalties.maxPrior));
+    outside.resize(3 * pixelBytes(), UCHAR_MAX);
+    std::fill_n(outside.begin() + pixelBytes(), pixelBytes(), (uchar)0);
+}
+
 void RangeScratch::prepare(const RangeProblem& problem, int rows)
 {
     width = problem.size.width;
@@ -38,14 +50,8 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
                      RangePenalties::largest &&
                  penalties.maxPrior <= RangePenalties::maxMaxPrior && candidates <= RangeProblem::mostCandidates);
     const Size size = weights.size();
-    RangeProblem problem = { below, size, candidates, upper, weights, intervals, (uchar)penalties.small, {}, {}, {} };
-    const EdgeSimilarity similarity(penalties.gamma);
-    for (int w = 0; w < 256; ++w)
-        problem.large[w] = (uchar)std::max(penalties.leastLarge, cvRound(penalties.large * similarity.table[w]));
-    for (int distance = -candidates; distance < candidates + RangeProblem::longestVector; ++distance)
-        problem.priors.push_back((uchar)std::min(std::abs(distance) / penalties.priorDistance, penalties.maxPrior));
-    problem.outside.resize(3 * problem.pixelBytes(), UCHAR_MAX);
-    std::fill_n(problem.outside.begin() + problem.pixelBytes(), problem.pixelBytes(), (uchar)0);
+    RangeProblem problem = { below, size, candidates, upper, weights, intervals, 0, {}, {}, {} };
+    problem.prepare(penalties);
 
     disparity.create(size, CV_16U);
     const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, rangeStripeHeight, rangeWarmUpRows);

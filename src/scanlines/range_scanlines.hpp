@@ -42,6 +42,8 @@ struct RangeProblem
         longestVector = 32, // bytes
         mostCandidates = 1024
     };
+    //! Fills penalties, priors and outside.
+    CV_EXPORTS void prepare(const RangePenalties& penalties);
     int pixelBytes() const { return (int)alignSize(candidates, longestVector); } // of the candidates, at most
 
     // Of each candidate, 255 if it is before this one, or if it is not

@@ -18,8 +18,7 @@ struct TemporalJoin
                     // one has two surfaces
         fringe = 2, // pixels beside one that agrees: what disagrees there, where the motion leads, is measured;
                     // fewer leave a rim of the last frame, more drop what is right
-        maxWeight =
-            4 // frames that a disparity may count for where the camera stands still: joinRow() divides by one more
+        maxWeight = 4 // frames that a disparity counts for, at most: joinRow() divides by one more
     };
 };
 

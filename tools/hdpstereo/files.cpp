@@ -85,15 +85,8 @@ Mat readDisparity(const String& path)
 
 Mat readPicture(const String& path)
 {
-    Mat image;
-    try
-    {
-        image = imread(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
-    }
-    catch (const cv::Exception&) // of some formats, grey floats cannot be read so
-    {
-    }
-    if (image.empty())
+    Mat image = imread(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
+    if (image.empty()) // TIFF of grey floats is no colour image
         image = readImage(path, IMREAD_UNCHANGED);
     if (image.depth() != CV_8U && image.channels() > 1)
         cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);
