@@ -10,6 +10,7 @@
 #include "forest/tree_planes.hpp"
 #include "pair/disparity_ranges.hpp"
 #include "map/edge_vote.hpp"
+#include "map/surface_smoothing.hpp"
 #include "map/left_right_check.hpp"
 #include "map/median_filter.hpp"
 #include "map/occlusion_filling.hpp"
@@ -330,16 +331,36 @@ private:
     void voteAtEdges()
     {
         swap(result_.disparity, own_.filtered);
-        const PairMasks& masks = in_.images.masks;
-        if (masks.isEmpty())
-            return hdp::voteAtEdges(in_.images.guide, own_.filtered, result_.disparity);
-        const Mat hasData = pixelsWithData(masks.left);
-        own_.filtered.copyTo(own_.voting);
-        own_.voting.setTo(Scalar(USHRT_MAX), hasData == 0);
-        hdp::voteAtEdges(in_.images.guide, own_.voting, result_.disparity);
-        Mat inside;
-        erode(hasData, inside, Mat());
-        own_.filtered.copyTo(result_.disparity, inside == 0);
+        hdp::voteAtEdges(in_.images.guide, withoutMissing(own_.filtered), result_.disparity);
+        keepMissing(1);
+    }
+
+    //! Pixels without data stay as they are, and change none beside them.
+    void smooth()
+    {
+        swap(result_.disparity, own_.filtered);
+        smoothSurfaces(withoutMissing(own_.filtered), plan_.layer, result_.disparity);
+        keepMissing(0);
+    }
+
+    //! USHRT_MAX where there is no data
+    const Mat& withoutMissing(const Mat& disparity)
+    {
+        if (in_.images.masks.isEmpty())
+            return disparity;
+        disparity.copyTo(own_.masked);
+        own_.masked.setTo(Scalar(USHRT_MAX), pixelsWithData(in_.images.masks.left) == 0);
+        return own_.masked;
+    }
+
+    //! Gives pixels without data, and those up to so many pixels beside them, the disparities of before the filter.
+    void keepMissing(int reach)
+    {
+        if (in_.images.masks.isEmpty())
+            return;
+        Mat filtered;
+        erode(pixelsWithData(in_.images.masks.left), filtered, Mat(), Point(-1, -1), reach);
+        own_.filtered.copyTo(result_.disparity, filtered == 0);
     }
 
     void filterMap()
@@ -351,6 +372,8 @@ private:
             restoreThinStructures(result_.winners, result_.disparity);
         if (plan_.votesAtEdges)
             voteAtEdges();
+        if (plan_.smoothsSurfaces)
+            smooth();
     }
 
     const LayerInput& in_;

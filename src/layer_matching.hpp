@@ -47,7 +47,7 @@ struct LayerScratch
     SurfaceBuffers surfaceBuffers;       // memory of findOtherSurfaces()
     Mat others, windows;                 // what the windows of scanlines are predicted from; the windows
     Mat filtered, halved, halvedWinners; // what a pass of scanlines leaves to the next one
-    Mat voting;                          // disparities that vote at edges, of a pair with masks
+    Mat masked;                          // disparities without those of pixels without data, of a pair with masks
     Mat residual;                        // costs of the winners
     Mat stable, refined;                 // pixels that pass the left-right check, and their refined disparities
 

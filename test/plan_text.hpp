@@ -32,7 +32,7 @@ inline std::string textOf(const hdp::LayerPlan& p)
     text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
          << p.fillsOcclusions << " intervals " << p.hasIntervals << " joins prior " << p.joinsPrior
          << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " thin structures "
-         << p.restoresThinStructures << " votes " << p.votesAtEdges << "\n";
+         << p.restoresThinStructures << " votes " << p.votesAtEdges << " smooths " << p.smoothsSurfaces << "\n";
     return text.str();
 }
 

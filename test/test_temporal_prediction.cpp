@@ -204,7 +204,7 @@ TEST(HDPStereo_SlowTemporalPrediction, moving_camera)
                 ofTemporal += limitedError(b, frame);
             }
         }
-        EXPECT_LE(ofTemporal, 0.98 * ofSingle);
+        EXPECT_LE(ofTemporal, 0.99 * ofSingle);
     }
 }
 

@@ -88,6 +88,7 @@ struct LayerPlan
     int medianSize = 0; // of the median over the winners; 0: none
     bool restoresThinStructures = false;
     bool votesAtEdges = false;
+    bool smoothsSurfaces = false;
 
     //! Candidates per pixel of disparity
     int steps() const { return seesBelow ? 2 : 1; }

@@ -391,7 +391,8 @@ public:
         /** @brief Side of the median filter over each layer's disparities, in pixels of the layer.
 
         0 (none), 3, 5, 7, or HDPTreeMatcher::AUTO: 7 with prediction and 5 without, as in the authors' program; the
-        paper has no such filter. PAPER: AUTO, QUALITY: 7, others: 5. */
+        paper has no such filter. 0 leaves out the other filters of the finest layer, too. PAPER: AUTO, QUALITY: 7,
+        others: 5. */
         CV_PROP_RW int disparityMedianSize;
 
         /** @brief Whether occluded pixels are filled, in each layer.

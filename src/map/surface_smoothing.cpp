@@ -1,0 +1,46 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "surface_smoothing.hpp"
+
+#include "surface_smoothing.simd.hpp"
+#include "map/surface_smoothing.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/units.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+HDP_TUNABLE(double, mostDifference, 1, "pixels of the image",
+            "on a surface: less leaves its noise, more rounds small steps");
+
+HDP_DISPATCH(smoothRow)
+
+} // namespace
+
+void smoothSurfaces(const Mat& disparity, int layer, Mat& smoothed)
+{
+    const ushort likeness = (ushort)(mostDifference * subpixelScale / (1 << layer));
+    const int radius = SmoothedRow::radius, width = disparity.cols, lastRow = disparity.rows - 1;
+    smoothed.create(disparity.size(), CV_16U);
+    parallel_for_(Range(0, disparity.rows), [&](const Range& range) {
+        std::vector<ushort> padded(width + 2 * radius);
+        for (int y = range.start; y < range.end; ++y)
+        {
+            const ushort* const own = disparity.ptr<ushort>(y);
+            std::fill_n(padded.begin(), radius, own[0]);
+            std::copy(own, own + width, padded.begin() + radius);
+            std::fill_n(padded.end() - radius, radius, own[width - 1]);
+            SmoothedRow row = { width, padded.data() + radius, {}, {} };
+            for (int k = 0; k < radius; ++k)
+            {
+                row.above[k] = disparity.ptr<ushort>(std::max(y - k - 1, 0));
+                row.below[k] = disparity.ptr<ushort>(std::min(y + k + 1, lastRow));
+            }
+            dispatched::smoothRow(row, likeness, smoothed.ptr<ushort>(y));
+        }
+    });
+}
+
+}}} // namespace cv::stereo::hdp
