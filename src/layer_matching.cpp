@@ -339,7 +339,7 @@ private:
     void smooth()
     {
         swap(result_.disparity, own_.filtered);
-        smoothSurfaces(withoutMissing(own_.filtered), plan_.layer, result_.disparity);
+        smoothSurfaces(withoutMissing(own_.filtered), result_.disparity);
         keepMissing(0);
     }
 

@@ -8,13 +8,13 @@
 
 namespace opencv_test { namespace {
 
-//! hdp::smoothSurfaces() for a pixel; likeness: the most that disparities of a surface differ
-ushort smoothedDisparity(const Mat& disparity, int x, int y, int likeness)
+//! hdp::smoothSurfaces() for a pixel
+ushort smoothedDisparity(const Mat& disparity, int x, int y)
 {
     const auto at = [&](int u, int v) {
         return (int)disparity.at<ushort>(oracle::clamped(v, disparity.rows), oracle::clamped(u, disparity.cols));
     };
-    const int own = at(x, y);
+    const int own = at(x, y), likeness = 16; // a pixel
     int sum = 0;
     for (int k = 1; k <= 4; ++k)
         for (const Point& step : { Point(k, 0), Point(0, k) })
@@ -31,19 +31,18 @@ TEST(HDPStereo_SurfaceSmoothing, oracle)
     RNG rng(97);
     for (const Size& size : { Size(1, 1), Size(1, 9), Size(9, 1), Size(7, 3), Size(61, 40), Size(20, 150) })
         for (int levels : { 5, 30, 65536 })
-            for (int layer : { 0, 1 })
-            {
-                SCOPED_TRACE(testing::Message() << size << ", levels " << levels << ", layer " << layer);
-                Mat disparity = randomImage(rng, size, CV_16UC1, levels);
-                if (levels == 30)
-                    disparity += 65536 - levels; // up to the largest one
-                Mat expected(size, CV_16U), smoothed;
-                for (int y = 0; y < size.height; ++y)
-                    for (int x = 0; x < size.width; ++x)
-                        expected.at<ushort>(y, x) = smoothedDisparity(disparity, x, y, 16 >> layer);
-                hdp::smoothSurfaces(disparity, layer, smoothed);
-                expectIdentical(expected, smoothed);
-            }
+        {
+            SCOPED_TRACE(testing::Message() << size << ", levels " << levels);
+            Mat disparity = randomImage(rng, size, CV_16UC1, levels);
+            if (levels == 30)
+                disparity += 65536 - levels; // up to the largest one
+            Mat expected(size, CV_16U), smoothed;
+            for (int y = 0; y < size.height; ++y)
+                for (int x = 0; x < size.width; ++x)
+                    expected.at<ushort>(y, x) = smoothedDisparity(disparity, x, y);
+            hdp::smoothSurfaces(disparity, smoothed);
+            expectIdentical(expected, smoothed);
+        }
 }
 
 TEST(HDPStereo_SurfaceSmoothing, noise_of_slopes_but_not_steps)
@@ -55,7 +54,7 @@ TEST(HDPStereo_SurfaceSmoothing, noise_of_slopes_but_not_steps)
             truth.at<ushort>(y, x) = (ushort)(x < 40 ? 400 + x + 2 * y : 900 - 2 * x);
     rng.fill(noise, RNG::NORMAL, 0, 2.5);
     cv::add(truth, noise, noisy, noArray(), CV_16U);
-    hdp::smoothSurfaces(noisy, 0, smoothed);
+    hdp::smoothSurfaces(noisy, smoothed);
     const Rect inside(5, 5, 70, 50); // slopes are not those of what is beyond the image
     EXPECT_LT(cv::norm(smoothed(inside), truth(inside), NORM_L2),
               0.4 * cv::norm(noisy(inside), truth(inside), NORM_L2));

@@ -5,6 +5,7 @@
 #include "disparity_confidence.hpp"
 
 #include "../base/units.hpp"
+#include "../base/window_sums.hpp"
 #include "../base/vectorized.hpp"
 #include "left_right_check.hpp"
 
@@ -36,7 +37,6 @@ HDP_TUNABLE(int, maxMedian, 4, "pixels", "the same of differences from the map b
 HDP_TUNABLE(float, halvingDifference, 0.25f, "pixels", "a mean difference by which the confidence is halved");
 
 // Pixels
-const int stripeRows = 128;   // for a thread: fewer compute the rows between stripes more often
 const int stripeColumns = 64; // the same of distances in columns: fewer share cache lines
 const int distanceBlock = 32; // of a row, whose distances are found together
 
@@ -102,18 +102,6 @@ void squareDistances(const uchar* inColumns, int width, short* padded, short* sq
     }
 }
 
-//! Sums over windows of side x side whole numbers, CV_32SC1, borders replicated
-Mat sumOverWindows(const Mat& values, int side)
-{
-    Mat sums(values.size(), CV_32S);
-    parallel_for_(Range(0, (values.rows + stripeRows - 1) / stripeRows), [&](const Range& stripes) {
-        const Range rows(stripes.start * stripeRows, std::min(stripes.end * stripeRows, values.rows));
-        Mat part = sums.rowRange(rows); // the filter finds the rows beside those of the values
-        boxFilter(values.rowRange(rows), part, CV_32S, Size(side, side), Point(-1, -1), false, BORDER_REPLICATE);
-    });
-    return sums;
-}
-
 /** Sums of the differences between two maps over windows of cells of 2 x 2 pixels, CV_32SC1, one per cell.
 @param map A disparity map.
 @param other Another one of its size, or that of the layer above.
@@ -146,7 +134,9 @@ Mat sumDifferences(const Mat& map, const Mat& other, bool isUpper, int max, int 
                 cells.ptr<ushort>(y)[x] = (ushort)(sums[2 * x] + sums[2 * x + 1]);
         }
     });
-    return sumOverWindows(cells, side);
+    Mat sums;
+    sumOverWindows(cells, side, CV_32S, sums);
+    return sums;
 }
 
 /** Sums over windows, CV_32SC1: of the costs of the disparities, and of those of their alternatives, both of them or
@@ -167,11 +157,11 @@ void compareAlternatives(const Mat& disparity, int numDisparities, const Matchin
             high[x] = (ushort)(above > winner ? above : below);
         }
     });
-    cost.ofDisparities(disparity, own);
+    cost.ofDisparities(disparity, costs[0]);
+    sumOverWindows(costs[0], costWindow, CV_32S, own);
     cost.ofDisparities(before, costs[0]);
     cost.ofDisparities(after, costs[1]);
-    own = sumOverWindows(own, costWindow);
-    others = sumOverWindows(costs[0] + costs[1], costWindow);
+    sumOverWindows(costs[0] + costs[1], costWindow, CV_32S, others);
 }
 
 //! What the left-right check does not hide, and matches what has data: not 0

@@ -5,6 +5,7 @@
 #include "disparity_sigma.hpp"
 
 #include "../base/units.hpp"
+#include "../base/window_sums.hpp"
 
 #include <cmath>
 
@@ -70,11 +71,6 @@ void compareRow(const CensusCost& cost, const ushort* disparity, int y, int widt
     }
 }
 
-void sumOverWindows(Mat& values)
-{
-    boxFilter(values.clone(), values, CV_32S, Size(window, window), Point(-1, -1), false, BORDER_REPLICATE);
-}
-
 } // namespace
 
 void levelMismatch(const Mat& disparity, const CensusCost& cost, Mat& mismatch)
@@ -86,7 +82,7 @@ void levelMismatch(const Mat& disparity, const CensusCost& cost, Mat& mismatch)
                    gradients.ptr<int>(y));
     });
     for (Mat* values : { &differences, &squares, &gradients })
-        sumOverWindows(*values);
+        sumOverWindows(values->clone(), window, CV_32S, *values);
     mismatch.create(size, CV_32F);
     parallelFor(size.height, [&](int y) {
         const int count = window * window;

@@ -12,16 +12,15 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(double, mostDifference, 1, "pixels of the image",
-            "on a surface: less leaves its noise, more rounds small steps");
+HDP_TUNABLE(double, mostDifference, 1, "pixels", "on a surface: less leaves its noise, more rounds small steps");
 
 HDP_DISPATCH(smoothRow)
 
 } // namespace
 
-void smoothSurfaces(const Mat& disparity, int layer, Mat& smoothed)
+void smoothSurfaces(const Mat& disparity, Mat& smoothed)
 {
-    const ushort likeness = (ushort)(mostDifference * subpixelScale / (1 << layer));
+    const ushort likeness = (ushort)(mostDifference * subpixelScale);
     const int radius = SmoothedRow::radius, width = disparity.cols, lastRow = disparity.rows - 1;
     smoothed.create(disparity.size(), CV_16U);
     parallel_for_(Range(0, disparity.rows), [&](const Range& range) {

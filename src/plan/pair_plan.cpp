@@ -255,7 +255,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
     plan.restoresThinStructures = plan.isFinest && !hasTreeSums(p) && plan.medianSize > 0;
     plan.votesAtEdges = layer == 0 && plan.cost.isCensus && plan.medianSize > 0;
-    plan.smoothsSurfaces = plan.restoresThinStructures && plan.hasFractions;
+    plan.smoothsSurfaces = layer == 0 && plan.restoresThinStructures && plan.hasFractions;
     return plan;
 }
 

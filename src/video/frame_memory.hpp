@@ -56,7 +56,7 @@ struct VideoScratch
     std::vector<TrackedPoint> points;
     Mat halved;                             // of predictFrame(): the left image
     std::vector<Mat> exposed;               // the same: its pyramid, by the last frame's exposure
-    Mat warped, change, contrast;           // of findSources(), per cell
+    Mat warped, change, contrast, sums[4];  // of findSources(), per cell
     Mat sources, shares, evidence, choices; // of joinLastFrame(), per cell
 };
 

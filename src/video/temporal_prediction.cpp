@@ -3,10 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "temporal_prediction.hpp"
-#include "temporal_prediction.simd.hpp"
-#include "video/temporal_prediction.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "../base/units.hpp"
+#include "../base/window_sums.hpp"
 #include "../pair/image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -36,12 +35,11 @@ HDP_TUNABLE(int, noiseFactor, 4, "medians of all changes", "beside that: outlier
 HDP_TUNABLE(int, contrastShare, 70, "percent of the contrast around",
             "if it is more: edges change by fractions of a pixel, what differs by more is something else");
 
-// Cells. Squares around a cell that changes and levels, and contrasts are averaged over: sumSquares() has 1 and 2.
-const int changeRadius = 1, changeCells = 9, contrastRadius = 2, contrastCells = 25;
+// Cells; side of the windows that changes and levels, and contrasts are averaged over
+const int changeSide = 3, changeCells = changeSide * changeSide, contrastSide = 5,
+          contrastCells = contrastSide * contrastSide;
 
 const int cell = FrameMemory::cell;
-
-HDP_DISPATCH(sumSquares)
 
 void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
 {
@@ -133,49 +131,17 @@ int medianLevel(const Mat& image)
     return level;
 }
 
-//! Rows of an image around one, the nearest ones where there are none
-void rowsAround(const Mat& image, int y, int radius, const uchar** rows)
-{
-    for (int dy = -radius; dy <= radius; ++dy)
-        *rows++ = image.ptr(std::min(std::max(y + dy, 0), image.rows - 1));
-}
-
-//! Sums over the squares around the pixels of a row
-class SquareSums
-{
-public:
-    explicit SquareSums(int width) : columns_(width + 2 * maxRadius), sums_(width) {}
-
-    const ushort* operator()(const Mat& image, int y, int radius)
-    {
-        const uchar* rows[2 * maxRadius + 1];
-        rowsAround(image, y, radius, rows);
-        dispatched::sumSquares(rows, radius, image.cols, columns_.data() + maxRadius, sums_.data());
-        return sums_.data();
-    }
-
-private:
-    enum
-    {
-        maxRadius = 2
-    };
-    std::vector<ushort> columns_, sums_;
-};
-
 //! How far each cell is from the mean around it
-void findContrast(const Mat& image, Mat& contrast)
+void findContrast(const Mat& image, Mat& sums, Mat& contrast)
 {
+    sumOverWindows(image, contrastSide, CV_16U, sums);
     contrast.create(image.size(), CV_8U);
-    parallel_for_(Range(0, image.rows), [&](const Range& range) {
-        SquareSums sumsOf(image.cols);
-        for (int y = range.start; y < range.end; ++y)
-        {
-            const uchar* levels = image.ptr(y);
-            const ushort* sums = sumsOf(image, y, contrastRadius);
-            uchar* contrasts = contrast.ptr(y);
-            for (int x = 0; x < image.cols; ++x)
-                contrasts[x] = (uchar)(std::abs(contrastCells * levels[x] - sums[x]) / contrastCells);
-        }
+    parallelFor(image.rows, [&](int y) {
+        const uchar* levels = image.ptr(y);
+        const ushort* ofWindow = sums.ptr<ushort>(y);
+        uchar* contrasts = contrast.ptr(y);
+        for (int x = 0; x < image.cols; ++x)
+            contrasts[x] = (uchar)(std::abs(contrastCells * levels[x] - ofWindow[x]) / contrastCells);
     });
 }
 
@@ -239,28 +205,30 @@ void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, Video
     if (warp)
         warpGrey(before, *warp, scratch.warped);
     absdiff(now, warp ? scratch.warped : before, scratch.change);
-    findContrast(now, scratch.contrast);
+    findContrast(now, scratch.sums[0], scratch.contrast);
+    sumOverWindows(scratch.change, changeSide, CV_16U, scratch.sums[0]);
+    sumOverWindows(scratch.contrast, contrastSide, CV_16U, scratch.sums[1]);
+    if (warp)
+    {
+        sumOverWindows(before, changeSide, CV_16U, scratch.sums[2]);
+        sumOverWindows(now, changeSide, CV_16U, scratch.sums[3]);
+    }
     const int noise = changeCells * (minNoise + noiseFactor * medianLevel(scratch.change));
     const int maxChange = (int)(changeCells * stillness), share = contrastShare * changeCells;
     sources.create(now.size(), CV_8U);
-    parallel_for_(Range(0, now.rows), [&](const Range& range) {
-        SquareSums changesOf(now.cols), contrastsOf(now.cols), sumsBefore(now.cols), sumsNow(now.cols);
-        for (int y = range.start; y < range.end; ++y)
+    parallelFor(now.rows, [&](int y) {
+        const ushort *changes = scratch.sums[0].ptr<ushort>(y), *contrasts = scratch.sums[1].ptr<ushort>(y);
+        uchar* ofRow = sources.ptr(y);
+        for (int x = 0; x < now.cols; ++x)
+            ofRow[x] = changes[x] <= noise || 100 * contrastCells * changes[x] <= share * contrasts[x];
+        if (!warp)
+            return; // 1 is SAME_PLACE
+        const ushort *there = scratch.sums[2].ptr<ushort>(y), *here = scratch.sums[3].ptr<ushort>(y);
+        for (int x = 0; x < now.cols; ++x)
         {
-            const ushort *changes = changesOf(scratch.change, y, changeRadius),
-                         *contrasts = contrastsOf(scratch.contrast, y, contrastRadius);
-            uchar* ofRow = sources.ptr(y);
-            for (int x = 0; x < now.cols; ++x)
-                ofRow[x] = changes[x] <= noise || 100 * contrastCells * changes[x] <= share * contrasts[x];
-            if (!warp)
-                continue; // 1 is SAME_PLACE
-            const ushort *there = sumsBefore(before, y, changeRadius), *here = sumsNow(now, y, changeRadius);
-            for (int x = 0; x < now.cols; ++x)
-            {
-                const bool isSame = std::abs(here[x] - there[x]) <= maxChange;
-                const bool isMoved = ofRow[x] && warp->isKnown(cell * x, cell * y);
-                ofRow[x] = (uchar)((isSame ? SAME_PLACE : 0) | (isMoved ? MOVED_PLACE : 0));
-            }
+            const bool isSame = std::abs(here[x] - there[x]) <= maxChange;
+            const bool isMoved = ofRow[x] && warp->isKnown(cell * x, cell * y);
+            ofRow[x] = (uchar)((isSame ? SAME_PLACE : 0) | (isMoved ? MOVED_PLACE : 0));
         }
     });
 }

@@ -1,0 +1,29 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_HDPSTEREO_WINDOW_SUMS_HPP
+#define OPENCV_HDPSTEREO_WINDOW_SUMS_HPP
+
+#include "opencv2/imgproc.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+/** Sums over the windows around all pixels, borders replicated, by several threads.
+@param values Whole numbers of one channel.
+@param side Of the windows, in pixels; odd.
+@param depth CV_16U or CV_32S.
+@param sums Receives the sums; another Mat. */
+inline void sumOverWindows(const Mat& values, int side, int depth, Mat& sums)
+{
+    const int stripe = 128; // rows of a thread: fewer compute the rows between stripes more often
+    sums.create(values.size(), depth);
+    parallel_for_(Range(0, (values.rows + stripe - 1) / stripe), [&](const Range& stripes) {
+        const Range rows(stripes.start * stripe, std::min(stripes.end * stripe, values.rows));
+        Mat part = sums.rowRange(rows); // the filter finds the rows beside those of the values
+        boxFilter(values.rowRange(rows), part, depth, Size(side, side), Point(-1, -1), false, BORDER_REPLICATE);
+    });
+}
+
+}}} // namespace cv::stereo::hdp
+
+#endif
