@@ -6,6 +6,8 @@
 #include "temporal_join.simd.hpp"
 #include "video/temporal_join.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
+#include "../base/vectorized.hpp"
+
 #include <cstring>
 #include <numeric>
 
@@ -224,8 +226,8 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
 {
     const int width = measured.cols, cells = frame.cells().width;
     static_assert(cell == 2, "There are as many pixels.");
-    for (int j = 0; j < cells; ++j)
-        scratch.choices[2 * j] = scratch.choices[2 * j + 1] = choices[j];
+    uchar* const ofPixels = scratch.choices.data();
+    HDP_VECTORIZED for (int j = 0; j < cells; ++j) ofPixels[2 * j] = ofPixels[2 * j + 1] = choices[j];
     std::fill(scratch.choices.begin() + cells * cell, scratch.choices.end(), choices[cells - 1]);
     dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width,
                           scratch.unmoved.data(), scratch.unmovedCounts.data());

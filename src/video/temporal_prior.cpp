@@ -4,6 +4,8 @@
 #include "../precomp.hpp"
 #include "temporal_prior.hpp"
 
+#include "../base/vectorized.hpp"
+
 #include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -32,6 +34,17 @@ bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, fl
     disparity = change.now(last.disparity.ptr<ushort>(from.y)[from.x] * unit, change.ofX * x + change.ofRow(y));
     const bool isClear = !(sources & SAME_PLACE) || p.key.scale * std::abs(disparity - unmoved) <= maxSourceDistance;
     return isClear && isConfirmed(last, from.x, from.y);
+}
+
+//! The first candidate of those of the lowest cost
+int lowestCandidate(const CostVolume& volume, int pixel)
+{
+    const CostVolume::Candidates own = volume.of(pixel);
+    const uchar* const costs = &volume.costs[own.start()];
+    const int count = own.interval.size();
+    uchar lowest = UCHAR_MAX;
+    HDP_VECTORIZED for (int k = 0; k < count; ++k) lowest = std::min(lowest, costs[k]);
+    return own.interval.first + (int)(std::find(costs, costs + count, lowest) - costs);
 }
 
 } // namespace
@@ -95,12 +108,9 @@ void predictWinners(const Mat& predicted, const CostVolume& volume, Mat& winners
         const float* const known = predicted.ptr<float>(y);
         ushort* const row = winners.ptr<ushort>(y);
         for (int x = 0; x < volume.size.width; ++x)
-        {
-            const CostVolume::Candidates own = volume.of(y * volume.size.width + x);
-            const uchar *const costs = &volume.costs[own.start()], *const end = costs + own.interval.size();
-            const int lowest = known[x] < 0 ? own.interval.first + (int)(std::min_element(costs, end) - costs) : 0;
-            row[x] = (ushort)(known[x] < 0 ? subpixelScale * lowest / volume.steps : cvRound(subpixelScale * known[x]));
-        }
+            row[x] = (ushort)(known[x] < 0
+                                  ? subpixelScale * lowestCandidate(volume, y * volume.size.width + x) / volume.steps
+                                  : cvRound(subpixelScale * known[x]));
     });
 }
 
