@@ -62,20 +62,6 @@ TEST(HDPStereo_OcclusionFilling, a_match_by_chance_in_an_occlusion_is_not_visibl
     // Columns 5 to 7 lie behind disparity 4. Column 6 matches one that column 4 has.
     expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 12 }, { 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 4 })),
                     filled({ 1, 1, 1, 1, 1, 1, 3, 1, 4, 4, 4, 4 }, { 1, 1, 1, 1, 1, 9, 0, 9, 1, 1, 1, 1 }));
-    // Disparity 5 hides what is on its left. Two pixels match there by chance; three are a surface.
-    std::vector<int> disparities(12, 1), residuals(12, 1);
-    for (int disparity : { 4, 4, 1, 5, 5, 5, 5 })
-    {
-        disparities.push_back(disparity);
-        residuals.push_back(disparity == 1 ? 9 : 0);
-    }
-    expectIdentical(Mat_<ushort>(Mat_<ushort>({ 1, 19 }, { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 5, 5, 5, 5 })),
-                    filled(disparities, residuals));
-    disparities.insert(disparities.begin() + 12, 4);
-    residuals.insert(residuals.begin() + 12, 0);
-    expectIdentical(
-        Mat_<ushort>(Mat_<ushort>({ 1, 20 }, { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 4, 4, 4, 5, 5, 5, 5 })),
-        filled(disparities, residuals));
 }
 
 //! A block of the smallest disparities beside a surface that maps to the same columns, whatever matches better

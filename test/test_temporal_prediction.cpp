@@ -123,7 +123,7 @@ TEST(HDPStereo_SlowTemporalPrediction, moving_square)
             {
                 SCOPED_TRACE(cv::format("preset %d, noise %.0f, %d pixels per frame", preset, noise, speed));
                 SquareErrors errors;
-                const int few = 40; // of about 10000 pixels
+                const int few = 30; // of about 10000 pixels
                 errors.add(video, preset, 1.05, few);
                 EXPECT_LE(errors.temporal, 1.05 * errors.single + few);
             }

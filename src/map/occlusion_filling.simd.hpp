@@ -165,24 +165,12 @@ inline void continueSurface(ushort* disparity, const uchar* isShown, int begin, 
     }
 }
 
-//! The end of a gap that begins at this pixel. Few pixels that are shown between two gaps are by chance.
-inline int findGapEnd(const uchar* isShown, int begin, int width)
-{
-    int end = begin, next = begin;
-    do
-    {
-        end = findByte(isShown, next, width, 1);
-        next = findByte(isShown, end, std::min(end + O::minShown, width), 0);
-    } while (next < std::min(end + O::minShown, width));
-    return end;
-}
-
 //! Gives the pixels that are not shown the farther one of the disparities on both sides.
 inline void fillGaps(ushort* disparity, const uchar* isShown, int width, int maxDisparity)
 {
     for (int begin = findByte(isShown, 0, width, 0); begin < width;)
     {
-        const int end = findGapEnd(isShown, begin, width);
+        const int end = findByte(isShown, begin, width, 1);
         if (begin == 0 && end < width)
             continueSurface(disparity, isShown, end, width, maxDisparity);
         else if (begin > 0)
@@ -199,9 +187,13 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int bl
     const RowLimits limits = mapToRight(disparity, residual, width, blank, scratch);
     markBestMatches(disparity, width, scratch);
     const int border = findBorder(disparity, scratch, width, limits.border);
-    uchar* const isBest = scratch.isBest.data();
+    uchar *isBest = scratch.isBest.data(), *isShown = scratch.isShown.data();
     std::fill(isBest, isBest + findHidingSurface(disparity, scratch, width, blank, border, limits.hiding), (uchar)0);
-    fillGaps(disparity, isBest, width, limits.maxDisparity);
+    isShown[0] = isBest[0];
+    isShown[width - 1] = isBest[width - 1];
+    // Single best matches between others are by chance.
+    HDP_VECTORIZED for (int x = 1; x < width - 1; ++x) isShown[x] = isBest[x] & (isBest[x - 1] | isBest[x + 1]);
+    fillGaps(disparity, isShown, width, limits.maxDisparity);
 }
 
 #endif
