@@ -9,6 +9,15 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
+uchar CostVolume::lowestOf(const Candidates& own) const
+{
+    const uchar* const first = costs.data() + own.start();
+    const int count = own.interval.size();
+    uchar lowest = UCHAR_MAX;
+    HDP_VECTORIZED for (int k = 0; k < count; ++k) lowest = std::min(lowest, first[k]);
+    return lowest;
+}
+
 void CostVolume::create(const DisparityForest& forest)
 {
     size = forest.links.size();
@@ -154,9 +163,7 @@ bool CostPreference::isContradicted(int pixel, float disparity, const CostVolume
     const uchar cost = costs[std::min(std::max(nearest, 0), count - 1)];
     if (cost <= contradiction) // as are most
         return false;
-    uchar lowest = cost;
-    HDP_VECTORIZED for (int k = 0; k < count; ++k) lowest = std::min(lowest, costs[k]);
-    return cost - lowest > contradiction;
+    return cost - volume.lowestOf(own) > contradiction;
 }
 
 }}} // namespace cv::stereo::hdp

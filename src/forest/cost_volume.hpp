@@ -47,6 +47,9 @@ struct CV_EXPORTS CostVolume
         return own;
     }
 
+    //! The lowest cost of these; UCHAR_MAX if there are none
+    uchar lowestOf(const Candidates& own) const;
+
     //! Provides the memory for the trees of a forest.
     void create(const DisparityForest& forest);
     //! Takes the costs as they are, of the same candidates for all pixels.

@@ -5,8 +5,8 @@
 #include "disparity_confidence.hpp"
 
 #include "../base/units.hpp"
-#include "../base/window_sums.hpp"
 #include "../base/vectorized.hpp"
+#include "../base/window_sums.hpp"
 #include "left_right_check.hpp"
 
 #include "opencv2/core/hal/intrin.hpp"

@@ -22,8 +22,8 @@ struct SmoothedRow
 
 /** Smooths each surface by itself: the noise of a disparity's fraction is that of a single pixel. It is a sigma filter
 @cite Lee1983Sigma over pairs of pixels: each pixel becomes the mean of the 16 that are up to 4 pixels away in its row
-and its column. Two that are opposite to one another count if both differ from it by one pixel at most, so
-that slopes and outlines stay as they are; otherwise it counts itself in their place. Borders are replicated.
+and its column. Two that are opposite to one another count if both differ from it by one pixel at most, so that slopes
+and outlines stay as they are; otherwise it counts itself in their place. Borders are replicated.
 @param disparity CV_16UC1. USHRT_MAX changes no pixel beside it.
 @param smoothed Receives the map; another one. */
 CV_EXPORTS void smoothSurfaces(const Mat& disparity, Mat& smoothed);

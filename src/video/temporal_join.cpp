@@ -6,8 +6,6 @@
 #include "temporal_join.simd.hpp"
 #include "video/temporal_join.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
-#include "../base/vectorized.hpp"
-
 #include <cstring>
 #include <numeric>
 

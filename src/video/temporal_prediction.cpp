@@ -5,7 +5,6 @@
 #include "temporal_prediction.hpp"
 
 #include "../base/units.hpp"
-#include "../base/vectorized.hpp"
 #include "../base/window_sums.hpp"
 #include "../pair/image_pyramid.hpp"
 
@@ -155,15 +154,13 @@ void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
     parallelFor(before.rows, [&](int y) {
         uchar* const row = warped.ptr(y);
         warp.forEachRun(cell * y, [&](int x, const Point& from, int count) {
-            const int fromY = std::min(from.y, lastY), skipped = x % cell, fromX = from.x + skipped;
-            const int first = (x + skipped) / cell, cells = (std::min(count, endX - x) - skipped + 1) / cell;
-            const int inside = std::min(cells, (lastX - fromX + cell) / cell); // the last one stands for those beyond
+            const int fromY = std::min(from.y, lastY);
             const uchar *above = before.ptr(fromY / cell), *below = before.ptr((fromY + 1) / cell);
-            const int left = fromX / cell, right = (fromX + 1) / cell;
-            HDP_VECTORIZED for (int k = 0; k < inside; ++k) row[first + k] =
-                (uchar)((above[left + k] + above[right + k] + below[left + k] + below[right + k] + 2) >> 2);
-            for (int k = std::max(inside, 0); k < cells; ++k)
-                row[first + k] = (uchar)((above[lastX / cell] + below[lastX / cell] + 1) >> 1);
+            for (int k = x % cell; k < count && x + k < endX; k += cell)
+            {
+                const int fromX = std::min(from.x + k, lastX), left = fromX / cell, right = (fromX + 1) / cell;
+                row[(x + k) / cell] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) >> 2);
+            }
         });
     });
 }

@@ -4,8 +4,6 @@
 #include "../precomp.hpp"
 #include "temporal_prior.hpp"
 
-#include "../base/vectorized.hpp"
-
 #include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -40,11 +38,8 @@ bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, fl
 int lowestCandidate(const CostVolume& volume, int pixel)
 {
     const CostVolume::Candidates own = volume.of(pixel);
-    const uchar* const costs = &volume.costs[own.start()];
-    const int count = own.interval.size();
-    uchar lowest = UCHAR_MAX;
-    HDP_VECTORIZED for (int k = 0; k < count; ++k) lowest = std::min(lowest, costs[k]);
-    return own.interval.first + (int)(std::find(costs, costs + count, lowest) - costs);
+    const uchar *const costs = volume.costs.data() + own.start(), *const end = costs + own.interval.size();
+    return own.interval.first + (int)(std::find(costs, end, volume.lowestOf(own)) - costs);
 }
 
 } // namespace
