@@ -64,6 +64,26 @@ TEST(HDPStereo_OcclusionFilling, a_match_by_chance_in_an_occlusion_is_not_visibl
                     filled({ 1, 1, 1, 1, 1, 1, 3, 1, 4, 4, 4, 4 }, { 1, 1, 1, 1, 1, 9, 0, 9, 1, 1, 1, 1 }));
 }
 
+TEST(HDPStereo_OcclusionFilling, up_to_three_pixels_between_gaps_that_are_no_shorter_are_not_visible)
+{
+    const int width = 40, begin = 20, nowhere = width; // a disparity beside the right image
+    for (int gap : { 1, 2, 3, 4 })
+        for (int count : { 1, 2, 3, 4 })
+        {
+            SCOPED_TRACE(cv::format("%d pixels, gaps of %d", count, gap));
+            std::vector<int> disparities(width, 5);
+            const auto at = disparities.begin() + begin;
+            std::fill(at - gap, at + count + gap, nowhere);
+            std::fill(at, at + count, 6);
+            Mat expected(1, width, CV_16UC1, Scalar(5));
+            if (count > std::min(gap, 3))
+                expected.colRange(begin, begin + count).setTo(Scalar(6));
+            expectIdentical(expected, filled(disparities, std::vector<int>(width, 0)));
+            disparities[begin - gap - 1] = nowhere; // the gap before it is longer, that behind it counts
+            expectIdentical(expected, filled(disparities, std::vector<int>(width, 0)));
+        }
+}
+
 //! A block of the smallest disparities beside a surface that maps to the same columns, whatever matches better
 TEST(HDPStereo_OcclusionFilling, what_a_nearer_surface_hides_is_not_visible)
 {

@@ -20,8 +20,9 @@ struct OcclusionFilling
         pixelsPerVisible = 8, // left of a surface that hides them, of which one may be visible: some match by chance
         pixelsPerShown = 4,   // the same, of which one may not be behind nearer ones: a smaller number takes things
                               // farther inside for the border
-        minSlopeColumns = 8,  // of the surface at the border, to tell its slope: fewer tell noise
-        maxSlopeColumns = 32  // of it, to be as many as are filled: more are bent
+        mostByChance = 3,    // columns between two gaps that are no shorter, and match by chance: more lose thin things
+        minSlopeColumns = 8, // of the surface at the border, to tell its slope: fewer tell noise
+        maxSlopeColumns = 32 // of it, to be as many as are filled: more are bent
     };
     static_assert(pixelsPerVisible % pixelsPerShown == 0, "mapToRight() divides them");
 };
@@ -31,7 +32,7 @@ struct OcclusionScratch
 {
     explicit OcclusionScratch(int width)
         : columns(width), nearest((size_t)width + 1), keys(width), bestKeys((size_t)width + 1), isBest(width),
-          isShown(width), visibility(width)
+          visibility(width)
     {
     }
 
@@ -40,17 +41,16 @@ struct OcclusionScratch
     std::vector<unsigned> keys;     // by which the minimum wins a column: residual, then disparity
     std::vector<unsigned> bestKeys; // by column: the key that won it
     std::vector<uchar> isBest;      // whether the pixel has the disparity that won its column
-    std::vector<uchar> isShown;     // whether the pixel keeps its disparity
     std::vector<uchar> visibility;  // whether nearer pixels hide it, whatever the residuals are
 };
 
 /** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the
 pixels that map to one column of the right image the one with the lowest residual is there; those whose disparity is
-another one, and those that map to no column, are not. Nor are single pixels between two that are not, nor what is left
-of a surface that begins at the border of the right image: the last run of four pixels it shows, without steps, of which
-the first one is in column 0, 1 or 2; or one that is nearer than what is before it, if nearer pixels hide three quarters
-of that from the right image, or it maps to no column, and no more than an eighth is visible in columns that are not
-blank.
+another one, and those that map to no column, are not. Nor are up to three pixels between two gaps that are no shorter,
+nor what is left of a surface that begins at the border of the right image: the last run of four pixels it shows, without
+steps, of which the first one is in column 0, 1 or 2; or one that is nearer than what is before it, if nearer pixels hide
+three quarters of that from the right image, or it maps to no column, and no more than an eighth is visible in columns
+that are not blank.
 The surface is continued to the left border, half as steep as its first columns are.
 @param disparity CV_16UC1, a disparity map; changed.
 @param residual Matching costs, CV_8UC1.

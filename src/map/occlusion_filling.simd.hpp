@@ -165,12 +165,29 @@ inline void continueSurface(ushort* disparity, const uchar* isShown, int begin, 
     }
 }
 
+//! The end of a gap that begins at this pixel. Few pixels between two gaps that are no shorter match by chance: they do
+//! not end it.
+inline int findGapEnd(const uchar* isShown, int begin, int width)
+{
+    int end = findByte(isShown, begin, width, 1);
+    for (;;)
+    {
+        const int next = findByte(isShown, end, std::min(end + O::mostByChance + 1, width), 0), pixels = next - end;
+        if (next >= width || pixels > std::min(+O::mostByChance, end - begin))
+            return end;
+        const int nextEnd = findByte(isShown, next, width, 1);
+        if (pixels > nextEnd - next)
+            return end;
+        end = nextEnd;
+    }
+}
+
 //! Gives the pixels that are not shown the farther one of the disparities on both sides.
 inline void fillGaps(ushort* disparity, const uchar* isShown, int width, int maxDisparity)
 {
     for (int begin = findByte(isShown, 0, width, 0); begin < width;)
     {
-        const int end = findByte(isShown, begin, width, 1);
+        const int end = findGapEnd(isShown, begin, width);
         if (begin == 0 && end < width)
             continueSurface(disparity, isShown, end, width, maxDisparity);
         else if (begin > 0)
@@ -187,12 +204,8 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int bl
     const RowLimits limits = mapToRight(disparity, residual, width, blank, scratch);
     markBestMatches(disparity, width, scratch);
     const int border = findBorder(disparity, scratch, width, limits.border);
-    uchar *isBest = scratch.isBest.data(), *isShown = scratch.isShown.data();
-    std::fill(isBest, isBest + findHidingSurface(disparity, scratch, width, blank, border, limits.hiding), (uchar)0);
-    isShown[0] = isBest[0];
-    isShown[width - 1] = isBest[width - 1];
-    // Single best matches between others are by chance.
-    HDP_VECTORIZED for (int x = 1; x < width - 1; ++x) isShown[x] = isBest[x] & (isBest[x - 1] | isBest[x + 1]);
+    uchar* const isShown = scratch.isBest.data();
+    std::fill(isShown, isShown + findHidingSurface(disparity, scratch, width, blank, border, limits.hiding), (uchar)0);
     fillGaps(disparity, isShown, width, limits.maxDisparity);
 }
 
