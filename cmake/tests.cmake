@@ -20,6 +20,7 @@ foreach(kind test perf)
   target_link_libraries(opencv_${kind}_hdpstereo PRIVATE opencv_hdpstereo)
   use_opencv_ts(opencv_${kind}_hdpstereo)
 endforeach()
+target_precompile_headers(opencv_test_hdpstereo PRIVATE test/test_precomp.hpp)
 # Optional: a filter of ximgproc on our disparities. Inside OpenCV's build that test skips itself: there, a module's tests
 # see what the module itself depends on.
 if(TARGET opencv_ximgproc)
@@ -95,6 +96,8 @@ add_suites(opencv_test_hdpstereo unit ${test_sources})
 if(HDPSTEREO_TOOLS)
   file(GLOB tools_test_sources CONFIGURE_DEPENDS tools/test/test_*.cpp)
   add_suites(opencv_test_hdpstereo_tools tools ${tools_test_sources})
+  # The longest one under a sanitizer, and on one core for most of it: it begins first.
+  set_tests_properties(HDPStereo_Programs PROPERTIES COST 1)
 endif()
 if(HDPSTEREO_PRELOAD)
   file(GLOB preload_test_sources CONFIGURE_DEPENDS preload/test/test_*.cpp)
