@@ -25,8 +25,6 @@ namespace {
 HDP_TUNABLE(int, passMedianSize, 5, "pixels",
             "side of the median between passes of the scanlines: larger loses thin structures, smaller keeps outliers");
 HDP_TUNABLE(int, guideMedianSize, 3, "pixels", "side of the guide's median, as in the M+ systems: larger blurs edges");
-HDP_TUNABLE(int, stableMaxDiff, 1, "pixels",
-            "in the left-right check of the non-local refinement: 0 fails by rounding, more passes what is occluded");
 
 //! Carries out the plan of a layer. result.winners are the layer's disparities from the winner-takes-all to the median.
 class LayerMatching

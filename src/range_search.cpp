@@ -12,7 +12,6 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 // Corners
-HDP_TUNABLE(int, maxCorners, 500, "corners", "more cost time, fewer miss what is small");
 HDP_TUNABLE(int, neighbourReach, 24, "pixels of the coarse layer", "in which a corner is to have neighbours");
 HDP_TUNABLE(int, minNeighbours, 3, "corners", "of the same surface: fewer believe a pattern that repeats itself");
 HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the coarse layer",
@@ -20,9 +19,8 @@ HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the coarse layer",
 HDP_TUNABLE(int, minSupport, 10, "corners", "fewer are no evidence of a range");
 
 // All pixels
-HDP_TUNABLE(double, farReach, 1.5, "share of the corners' range",
-            "that is searched before it: more cost time and errors");
-HDP_TUNABLE(double, nearReach, 1.5, "share of the corners' range", "that is searched behind it");
+HDP_TUNABLE(double, reach, 1.5, "share of the corners' range",
+            "that is searched before it and behind it: more costs time and errors");
 HDP_TUNABLE(double, minConfidence, 25, "confidence", "of disparities that count: less believes errors");
 HDP_TUNABLE(double, leftOut, 0.0005, "share of the disparities", "at each end that may be wrong");
 
@@ -79,7 +77,7 @@ int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks
     greyLevels(left, bits, leftLevels_);
     greyLevels(right, bits, rightLevels_);
     const int width = left.cols;
-    matchCoarsely({ leftLevels_ }, { rightLevels_ }, masks, Range(-width, width), maxCorners, coarse_);
+    matchCoarsely({ leftLevels_ }, { rightLevels_ }, masks, Range(-width, width), coarse_);
     if (!coarse_.matches.empty())
         keepMutualMatches(coarse_.left[coarse_.layer], coarse_.right[coarse_.layer], coarse_.windows, coarse_.matches);
     int support;
@@ -91,8 +89,7 @@ int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks
 bool RangeSearch::matchPixels(const PairMasks& masks, const Range& corners, Range& found)
 {
     const int layer = std::max(coarse_.layer - 1, 0), scale = 1 << layer;
-    const double size = corners.size();
-    const double first = corners.start - farReach * size, last = corners.end + nearReach * size;
+    const double beside = reach * corners.size(), first = corners.start - beside, last = corners.end + beside;
     const double unit = 1 << (coarse_.layer - layer);
     const int columns = coarse_.left[layer].cols;
     const Range searched = limited(first * unit, last * unit, columns);

@@ -151,7 +151,7 @@ TEST_P(HDPStereo_RangeScanlines, formula_in_stripes)
     {
         SCOPED_TRACE(testing::Message() << size);
         const Layer layer(rng, size, 24, GetParam());
-        const auto stripes = hdp::stripesOf(hdp::ImageFrame(size), size.height, 96, 16);
+        const auto stripes = hdp::stripesOf(hdp::ImageFrame(size), size.height, 96);
         ASSERT_LE(2u, stripes.size());
         expectIdentical(layer.disparity(usualPenalties, stripes), layer.aggregate(usualPenalties, buffers));
     }

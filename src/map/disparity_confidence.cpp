@@ -24,8 +24,6 @@ HDP_TUNABLE(int, costWindow, 21, "pixels",
 HDP_TUNABLE(int, alternative, 2, "pixels",
             "from the winner to the candidates it is compared with: nearer ones cost the same by slopes, farther ones "
             "may be other matches");
-HDP_TUNABLE(int, visibleMaxDiff, 1, "pixels",
-            "in the left-right check: 0 fails by rounding, more passes what the right image does not show");
 HDP_TUNABLE(float, hiddenShare, 0.5f, "share",
             "of the confidence that a pixel keeps which fails the left-right check: some of them are right");
 HDP_TUNABLE(int, upperWindow, 31, "cells",
@@ -168,7 +166,7 @@ void compareAlternatives(const Mat& disparity, int numDisparities, const Matchin
 Mat visiblePixels(const Mat& disparity, const CostLimits& limits)
 {
     Mat visible;
-    findStable(disparity, visibleMaxDiff, visible);
+    findStable(disparity, stableMaxDiff, visible);
     for (int y = 0; y < visible.rows && !limits.isEmpty(); ++y)
         limits.hideUnmatched(y, disparity.ptr<ushort>(y), visible.ptr(y));
     return visible;

@@ -20,6 +20,8 @@ enum Visibility
 //! to the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
 CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);
 
+const int stableMaxDiff = 1; // pixels: 0 fails by rounding, more passes what is occluded
+
 /** Left-right check of a layer's disparities: which pixels are stable.
 @param disparity CV_16UC1, a disparity map.
 @param maxDiff A pixel is stable if the maximum of the disparities that map to its column of the right image is larger

@@ -16,6 +16,7 @@ namespace {
 
 // Corners
 HDP_TUNABLE(int, minSpacing, 10, "pixels of the image", "side of a cell: windows of nearer corners see the same");
+HDP_TUNABLE(int, maxCorners, 500, "corners", "one per cell of a grid: more cost time, fewer miss what is small");
 HDP_TUNABLE(int, cornerStep, 2, "pixels", "from one that is looked at to the next: neighbours are about as good");
 HDP_TUNABLE(int, maxCoarseArea, 45000, "pixels", "of the coarse layer: more cost time, fewer have too few corners");
 
@@ -273,7 +274,7 @@ void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMat
 }
 
 void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
-                   const Range& disparities, int maxCorners, CoarseMatches& coarse)
+                   const Range& disparities, CoarseMatches& coarse)
 {
     coarse.matches.clear();
     coarse.layer = coarseLayer(left[0].size());

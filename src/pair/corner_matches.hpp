@@ -101,10 +101,9 @@ struct CoarseMatches
 @param right The right one.
 @param masks Of the images.
 @param disparities Of the images, that may be.
-@param maxCorners One per cell of a grid.
 @param coarse Receives the result. */
 CV_EXPORTS void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
-                              const Range& disparities, int maxCorners, CoarseMatches& coarse);
+                              const Range& disparities, CoarseMatches& coarse);
 
 }}} // namespace cv::stereo::hdp
 

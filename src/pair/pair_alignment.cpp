@@ -12,8 +12,6 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(int, maxCorners, 500, "corners", "one per cell of a grid: more cost time, fewer leave gaps in models");
-
 void smooth(LayerImages& images, LayerImages& smoothed)
 {
     smoothNoise(images.left, smoothed.left);
@@ -52,7 +50,7 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
         left.push_back(buffers.leftLevels);
         right.push_back(buffers.rightLevels);
     }
-    matchCoarsely(left, right, images[0].masks, Range(0, plan.numDisparities), maxCorners, buffers.coarse);
+    matchCoarsely(left, right, images[0].masks, Range(0, plan.numDisparities), buffers.coarse);
     findings.hasRows = estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings.rows, findings.noise);
     if (plan.findsLight && isGrey(images))
         findings.hasLight = estimateLight(buffers.coarse, findings.light);

@@ -25,14 +25,15 @@ const int maxWindow = 31;
 HDP_TUNABLE(double, toleratedNoise, 0.45, "standard deviations of the noise",
             "what differs by less is not darker: more loses texture, less takes noise for it");
 
+HDP_TUNABLE(double, rangeP2, 1.3, "P2",
+            "the large penalty of scanlines over all candidates: more drags surfaces across borders, less keeps noise");
+
 // Means over trees
 HDP_TUNABLE(double, meanGamma, 0.2, "gamma of the trees' sums",
             "of means that scanlines get, on the first two layers: these carry costs farther by themselves, "
             "and more blurs borders; less on coarser layers, where each step goes farther");
 HDP_TUNABLE(double, meanP1, 0.5, "P1",
             "means are smoother than costs: more flattens slanted surfaces, less keeps noise");
-HDP_TUNABLE(double, meanP2, 1.3, "P2",
-            "the large penalty: more drags surfaces across borders, less keeps errors of trees");
 HDP_TUNABLE(double, edgeGamma, 0.7, "gamma of the trees' sums",
             "of the large penalty: more drags surfaces across edges, less breaks textured ones");
 HDP_TUNABLE(double, refinementGamma, 0.25, "gamma of the trees' sums",
@@ -46,7 +47,6 @@ HDP_TUNABLE(
 HDP_TUNABLE(int, mostRangeDisparities, 97, "disparities",
             "of layers that are matched over the whole range: more take longer, fewer lose surfaces at their borders");
 HDP_TUNABLE(double, rangeP1, 1.1, "P1", "of costs in half pixels: more flattens slanted surfaces, less keeps noise");
-HDP_TUNABLE(double, rangeP2, 1.3, "P2", "the large penalty: more drags surfaces across borders, less keeps noise");
 HDP_TUNABLE(int, rangePriorDistance, 3, "candidates",
             "from what the layer above has, for each of which a cost rises by half a bit: more keeps its errors, less "
             "loses bare surfaces");
@@ -204,7 +204,7 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
 //! steps: candidates per pixel of disparity
 VolumePenalties planVolume(const MatcherParameters& p, int steps)
 {
-    const int scale = CostVolume::scale, large = cvRound(scale * meanP2 * p.P2);
+    const int scale = CostVolume::scale, large = cvRound(scale * rangeP2 * p.P2);
     return { cvRound(scale * meanP1 * p.P1 / steps), std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
 }
 

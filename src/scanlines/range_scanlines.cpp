@@ -12,8 +12,6 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_TUNABLE(int, rangeStripeHeight, 96, "rows", "about: more do not fit into a cache, fewer are more warm-up");
-HDP_TUNABLE(int, rangeWarmUpRows, 16, "rows",
-            "beside a stripe, which the vertical directions begin with: fewer show its border, more cost time");
 
 HDP_DISPATCH(aggregateRangeStripe)
 
@@ -54,7 +52,7 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
     problem.prepare(penalties);
 
     disparity.create(size, CV_16U);
-    const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, rangeStripeHeight, rangeWarmUpRows);
+    const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, rangeStripeHeight);
     int rows = 0;
     for (const ScanlineStripe& stripe : stripes)
         rows = std::max(rows, stripe.rows.size());

@@ -11,8 +11,6 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_TUNABLE(int, stripeHeight, 128, "rows", "about: fewer rows are more warm-up, more leave threads without work");
-HDP_TUNABLE(int, warmUpRows, 16, "rows",
-            "beside a stripe, which the vertical directions begin with: fewer show its border, more cost time");
 HDP_TUNABLE(double, bluntSlope, 15, "bits per direction",
             "of a minimum's steeper side: up to it the fraction is mostly noise, and the tip of two lines is better");
 HDP_TUNABLE(double, sharpSlope, 25, "bits per direction",
@@ -57,7 +55,7 @@ void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageF
     const Size size = weights.size();
     const MinimumShape shape = { 4 * (float)bluntSlope, 4 * (float)sharpSlope };
     const ScanlineProblem problem = { &cost, &weights, size, numDisparities, maxDisparity, &windows, penalties, shape };
-    const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, stripeHeight, warmUpRows);
+    const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, stripeHeight);
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);
     buffers.stripes.resize(stripes.size());

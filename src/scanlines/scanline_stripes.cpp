@@ -6,7 +6,10 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-std::vector<ScanlineStripe> stripesOf(const ImageFrame& frame, int height, int rows, int warmUpRows)
+HDP_TUNABLE(int, warmUpRows, 16, "rows",
+            "beside a stripe, which the vertical directions begin with: fewer show its border, more cost time");
+
+std::vector<ScanlineStripe> stripesOf(const ImageFrame& frame, int height, int rows)
 {
     const int whole = frame.whole.height, first = frame.origin.y;
     const int count = whole < rows / 2 ? 1 : 2 * std::max(1, cvRound(whole / (2. * rows)));

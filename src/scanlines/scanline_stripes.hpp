@@ -19,9 +19,8 @@ struct ScanlineStripe
 much to do.
 @param frame Of the image.
 @param height Rows of it that are there.
-@param rows About as many in a stripe.
-@param warmUpRows Beside a stripe, in its reach. */
-CV_EXPORTS std::vector<ScanlineStripe> stripesOf(const ImageFrame& frame, int height, int rows, int warmUpRows);
+@param rows About as many in a stripe. */
+CV_EXPORTS std::vector<ScanlineStripe> stripesOf(const ImageFrame& frame, int height, int rows);
 
 }}} // namespace cv::stereo::hdp
 
