@@ -143,7 +143,9 @@ public:
 
     Findings getFindings() const CV_OVERRIDE
     {
-        const Result r = result_.isMatched ? result_ : Result();
+        const Result none = Result();
+        const Result& r = result_.isMatched ? result_ : none;
+        // The model is about the centre of the right image that is matched, which has columns added and is shifted.
         const RowModel rows = r.findings.rows.about(0.5 * r.model.addedColumns + r.model.minDisparity);
         const LightModel light = r.findings.light.scaled(1 / r.brightness);
         Findings findings;

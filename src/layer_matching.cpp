@@ -292,7 +292,7 @@ private:
     //! Over the layer's forest
     void refine()
     {
-        findStable(result_.winners, stableMaxDiff, own_.stable);
+        findStable(result_.winners, own_.stable);
         refineNonLocal(shared_.forest, result_.winners, own_.stable, plan_.trees.refinementGamma, plan_.hasFractions,
                        shared_.aggregation, own_.refined);
         swap(own_.refined, result_.winners);
@@ -306,17 +306,16 @@ private:
         keepIntervals(result_.disparity);
     }
 
-    //! Winners in the intervals of the pixels, joined with what is known beforehand
+    //! Moves the winners into the intervals of their pixels, and joins them with the prior, which may leave them.
     void correctWinners()
     {
         keepIntervals(result_.winners);
-        if (!plan_.joinsPrior)
-            return;
-        clock_.run("prior", [&] {
-            joinPrior(in_.known.points[plan_.layer], in_.images.guide, own_.census, plan_.layer, plan_.maxDisparity,
-                      result_.winners);
-        });
-        keepIntervals(result_.winners);
+        if (plan_.joinsPrior)
+            clock_.run("prior", [&] {
+                joinPrior(in_.known.points[plan_.layer], in_.images.guide, own_.census, plan_.layer, plan_.maxDisparity,
+                          result_.winners);
+                keepIntervals(result_.winners);
+            });
     }
 
     void keepIntervals(Mat& disparity) const

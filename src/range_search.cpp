@@ -32,12 +32,12 @@ HDP_TUNABLE(double, zeroReach, 1, "share of the range",
 HDP_TUNABLE(double, leastMargin, 4, "pixels of the image", "at both ends, at least");
 HDP_TUNABLE(double, keptExcess, 2, "times the range", "that the range of a video may be larger than that of a frame");
 
-const int largestDisparity = SHRT_MAX / StereoMatcher::DISP_SCALE - 2;
+const int mostDisparity = SHRT_MAX / StereoMatcher::DISP_SCALE - 2;
 
 //! Without what no pixel of images of this width can have, or CV_16S
 Range limited(double first, double last, int width)
 {
-    const int limit = std::min(width - 1, largestDisparity);
+    const int limit = std::min(width - 1, mostDisparity);
     const int start = std::min(std::max(cvFloor(first), -limit), limit);
     return Range(start, std::max(std::min(cvCeil(last), limit), start) + 1);
 }

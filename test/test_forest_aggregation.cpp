@@ -114,7 +114,7 @@ void expectExplicitSums(const Layer& layer, double gamma)
                     EXPECT_NEAR(expected[k], sum, 1e-5 + 2e-5 * expected[k])
                         << "pixel " << p << ", candidate " << first + k << " of " << count;
             };
-            const int best = winner.disparity - first;
+            const int best = winner.candidate - first;
             ASSERT_TRUE(best >= 0 && best < count) << "pixel " << p;
             const double lowest = *std::min_element(expected.begin(), expected.end());
             EXPECT_NEAR(lowest, winner.lowest, 1e-5 + 2e-5 * lowest);
@@ -133,7 +133,7 @@ void expectExplicitSums(const Layer& layer, double gamma)
                 const int candidate = one.firsts[p] + chosen;
                 const std::vector<double> expected = oracle::aggregated(layer.expectedForest.neighbours, p, gamma,
                                                                         layer.costTable, candidate, candidate);
-                ASSERT_EQ(candidate, one.winners[p].disparity) << "pixel " << p;
+                ASSERT_EQ(candidate, one.winners[p].candidate) << "pixel " << p;
                 ASSERT_NEAR(expected[0], one.winners[p].lowest, 1e-5 + 2e-5 * expected[0])
                     << "pixel " << p << ", candidate " << candidate << " of " << count;
             }

@@ -12,10 +12,12 @@ namespace cv { namespace stereo { namespace hdp {
 void CostLimits::prepare(const PairMasks& masks, int numDisparities)
 {
     const Mat &left = masks.left, &right = masks.right;
-    left_.release();
-    right_.release();
     if (left.empty())
+    {
+        left_.release();
+        right_.release();
         return;
+    }
     width_ = left.cols;
     left_.create(left.rows, margin + width_ + margin, CV_8U);
     right_.create(left.rows, margin + width_ + numDisparities + costPadding + margin, CV_8U);

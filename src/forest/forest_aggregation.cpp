@@ -70,7 +70,7 @@ public:
     void setDisparities(const int* pixels, const RunWinner* winners, int count, ushort* disparity) const CV_OVERRIDE
     {
         for (int i = 0; i < count; ++i)
-            disparity[pixels[i]] = (ushort)(winners[i].disparity * subpixelScale + offset(winners[i]));
+            disparity[pixels[i]] = (ushort)(winners[i].candidate * subpixelScale + offset(winners[i]));
     }
 
 private:

@@ -24,7 +24,7 @@ struct RunWinner
     float lowest;        // its cost
     float before, after; // costs of the candidates beside it, negative where there are none
     float first, last;   // costs of the first and the last candidate
-    int disparity;
+    int candidate;
 };
 
 //! What the means over a tree need to know of a pixel: shares are in units of 1 / MeanNode::unit.

@@ -71,17 +71,17 @@ template <int lanes> void passDown(const TreeWalk& walk, int begin, int end, con
     }
 }
 
-//! The winner of two runs, that of the second being the one of the candidates from start on.
+//! Joins the winner of a run with that of the next one, whose first candidate is start.
 inline void joinWinner(RunWinner& winner, const RunWinner& next, int start)
 {
-    if (winner.disparity == start - 1)
+    if (winner.candidate == start - 1)
         winner.after = next.first;
-    if (next.lowest < winner.lowest) // a tie is won by the lower disparity
+    if (next.lowest < winner.lowest) // a tie is won by the lower candidate
     {
-        winner.before = next.disparity == start ? winner.last : next.before;
+        winner.before = next.candidate == start ? winner.last : next.before;
         winner.lowest = next.lowest;
         winner.after = next.after;
-        winner.disparity = next.disparity;
+        winner.candidate = next.candidate;
     }
     winner.last = next.last;
 }
@@ -111,10 +111,10 @@ template <int lanes> void takeWinners(const float* costs, int size, const Range&
     HDP_VECTORIZED for (int k = 0; k < lanes; ++k) excluded[k] = k < count ? 0 : INT_MAX;
     for (int i = 0; i < size; ++i, costs += lanes)
     {
-        const int k = findLowest<lanes>(costs, excluded), disparity = run.start + k;
+        const int k = findLowest<lanes>(costs, excluded), candidate = run.start + k;
         const float lowest = costs[k], first = costs[0], last = costs[count - 1];
         const float before = k > 0 ? costs[k - 1] : noCost, after = k + 1 < count ? costs[k + 1] : noCost;
-        const RunWinner here = { lowest, before, after, first, last, disparity };
+        const RunWinner here = { lowest, before, after, first, last, candidate };
         if (joins)
             joinWinner(winners[i], here, run.start);
         else

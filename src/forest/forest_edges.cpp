@@ -60,7 +60,7 @@ void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, st
 void sortByWeight(const Mat& weights, std::vector<int>& edges, std::vector<int>& sorted)
 {
     const uchar* weight = weights.ptr();
-    int places[257] = { 0 }; // the number of edges of each weight before, then the place of the next one
+    int places[257] = { 0 }; // by weight: the number of lighter edges, then where its next edge goes
     for (int edge : edges)
         ++places[weight[edge] + 1];
     for (int w = 0; w < 256; ++w)

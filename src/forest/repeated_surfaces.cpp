@@ -39,6 +39,8 @@ struct Fit
     bool hasBarrier;
 };
 
+//! The candidates up to fitRise above the lowest cost, and whether there is a barrier between them. Indices are short:
+//! vectors hold more of them.
 Fit fitOf(const uchar* costs, int count)
 {
     uchar lowest = UCHAR_MAX, highest = 0;
@@ -52,8 +54,7 @@ Fit fitOf(const uchar* costs, int count)
         last = std::max(last, fits ? k : (short)0);
     }
     HDP_VECTORIZED for (int k = first; k < last; ++k) highest = std::max(highest, costs[k]);
-    const Fit fit = { first, last, lowest, highest >= lowest + barrierRise };
-    return fit;
+    return { first, last, lowest, highest >= lowest + barrierRise };
 }
 
 void addRuns(const uchar* costs, const Fit& fit, std::vector<Run>& runs)

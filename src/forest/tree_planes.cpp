@@ -39,22 +39,22 @@ public:
         const int step = std::max(tree.size / samples, 1), candidates = interval_.size();
         count_ = (tree.size + step - 1) / step;
         costs_.resize(count_ * candidates);
-        for (int group = 0, own = 0; group < groups; ++group)
+        for (int group = 0, sample = 0; group < groups; ++group)
         {
             minRise_[group] = 0;
-            firsts_[group] = own;
-            for (int i = group * step; i < tree.size; i += groups * step, ++own)
+            firsts_[group] = sample;
+            for (int i = group * step; i < tree.size; i += groups * step, ++sample)
             {
                 const int pixel = pixels[i];
                 const Vec3d basis = basisOf(pixel, volume.size.width);
-                const uchar* const costs = &volume.costs[volume.of(pixel).start()];
-                std::copy(costs, costs + candidates, &costs_[own * candidates]);
+                const CostVolume::Candidates own = volume.of(pixel);
+                const uchar* const costs = &volume.costs[own.start()];
+                std::copy(costs, costs + candidates, &costs_[sample * candidates]);
                 x_.push_back((float)basis[1]);
                 y_.push_back((float)basis[2]);
                 disparity_.push_back(winners[pixel] / (float)subpixelScale);
                 cost_.push_back(costs[candidateAt(disparity_.back())]);
-                uchar lowest = 255;
-                HDP_VECTORIZED for (int k = 0; k < candidates; ++k) lowest = std::min(lowest, costs[k]);
+                const uchar lowest = volume.lowestOf(own);
                 minRise_[group] += lowest - cost_.back();
                 haveContrast_ = haveContrast_ || std::count(costs, costs + candidates, lowest) < candidates;
                 for (int term = 1; term < 3; ++term)
@@ -183,16 +183,16 @@ private:
         return squares.solve(sum, DECOMP_CHOLESKY);
     }
 
-    //! The plane through three samples
+    //! The plane through three samples; false if they lie on a line
     bool findThrough(int a, int b, int c, Plane& plane) const
     {
         const Vec3d p = basis(b) - basis(a), q = basis(c) - basis(a);
-        const double area = p[1] * q[2] - q[1] * p[2], rise = disparity_[b] - disparity_[a],
-                     secondRise = disparity_[c] - disparity_[a];
-        if (area == 0)
+        const double determinant = p[1] * q[2] - q[1] * p[2];
+        const double toB = disparity_[b] - disparity_[a], toC = disparity_[c] - disparity_[a];
+        if (determinant == 0)
             return false;
-        plane[1] = (rise * q[2] - secondRise * p[2]) / area;
-        plane[2] = (secondRise * p[1] - rise * q[1]) / area;
+        plane[1] = (toB * q[2] - toC * p[2]) / determinant;
+        plane[2] = (toC * p[1] - toB * q[1]) / determinant;
         plane[0] = disparity_[a] - plane[1] * x_[a] - plane[2] * y_[a];
         return true;
     }

@@ -9,16 +9,10 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-namespace {
-
-const int maxDiff = 1; // pixels of the layer, as in the confidence: 0 fails by rounding
-
-} // namespace
-
 void findReasons(const Mat& disparity, const OutputPlan& plan, int width, Mat& reasons)
 {
     Mat stable;
-    findStable(disparity, maxDiff, stable);
+    findStable(disparity, stable);
     const int scale = 1 << plan.finestLayer, half = subpixelScale / 2;
     reasons.create(disparity.size(), CV_8U);
     parallelFor(reasons.rows, [&](int y) {

@@ -47,7 +47,7 @@ void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
     checkLeftRight<short>(disparity, maxDiff, invalid, reject);
 }
 
-void findStable(const Mat& disparity, int maxDiff, Mat& stable)
+void findStable(const Mat& disparity, Mat& stable)
 {
     stable.create(disparity.size(), CV_8U);
     const auto mark = [&](int y, const uchar* visibility) {
@@ -55,7 +55,7 @@ void findStable(const Mat& disparity, int maxDiff, Mat& stable)
         const int width = stable.cols; // for vectors: bytes that are written could otherwise be those of the number
         HDP_VECTORIZED for (int x = 0; x < width; ++x) row[x] = visibility[x] == VISIBLE ? 255 : 0;
     };
-    const int none = -1; // all are valid
+    const int maxDiff = 1, none = -1; // all are valid
     checkLeftRight<ushort>(disparity, maxDiff, none, mark);
 }
 

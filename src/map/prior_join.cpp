@@ -60,7 +60,7 @@ public:
         }
     }
 
-    //! Whether the prior is of this scene
+    //! Finds the states of the points. Returns whether enough agree for a prior of this scene.
     bool judgePoints()
     {
         size_t agreeing = 0;
@@ -72,12 +72,10 @@ public:
         }
         if (points_.empty() || agreeing < minAgreement * points_.size())
             return false;
-        std::vector<uchar> counts(points_.size());
-        parallelFor((int)points_.size(),
-                    [&](int i) { counts[i] = states_[i] == FAILS && !isContradicted(i) && isSupported(i); });
-        for (size_t i = 0; i < points_.size(); ++i)
-            if (counts[i])
-                states_[i] = COUNTS;
+        parallelFor((int)points_.size(), [&](int i) {
+            if (states_[i] == FAILS && !isContradicted(i) && isSupported(i))
+                states_[i] = COUNTS; // no other point asks for it
+        });
         return true;
     }
 

@@ -24,7 +24,7 @@ inline int layerDisparities(int numDisparities, int layer, bool subpixel)
     return (int)((subpixel ? largest + step - 1 : largest) >> layer) + 1;
 }
 
-//! G_{l+1} of G_l: means of 2 x 2 pixels, truncated to 8 bit (CV_8U) or rounded (CV_16U); an odd last row or column is
+//! G_{l+1} of G_l: means of 2 x 2 pixels, rounded down (CV_8U) or to the nearest (CV_16U); an odd last row or column is
 //! left out. The authors' program truncates and leaves out, too; the paper rounds sizes up.
 CV_EXPORTS void halveImage(const Mat& image, Mat& half);
 

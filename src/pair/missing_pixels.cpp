@@ -132,19 +132,16 @@ void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const 
         wholeLevels(left, masks.left, complete.floats, images[0]);
         wholeLevels(right, masks.right, complete.floats, images[1]);
     }
-    const bool isComplete =
-        countNonZero(masks.left) == (int)left.total() && countNonZero(masks.right) == (int)right.total();
-    if (isComplete)
+    if (countNonZero(masks.left) < (int)left.total() || countNonZero(masks.right) < (int)right.total())
     {
-        complete.left = images[0];
-        complete.right = images[1];
-        return;
+        fillMissing(images[0], masks.left, complete.filled[0]);
+        fillMissing(images[1], masks.right, complete.filled[1]);
+        images[0] = complete.filled[0];
+        images[1] = complete.filled[1];
+        complete.masks = masks;
     }
-    fillMissing(images[0], masks.left, complete.filled[0]);
-    fillMissing(images[1], masks.right, complete.filled[1]);
-    complete.left = complete.filled[0];
-    complete.right = complete.filled[1];
-    complete.masks = masks;
+    complete.left = images[0];
+    complete.right = images[1];
 }
 
 }}} // namespace cv::stereo::hdp

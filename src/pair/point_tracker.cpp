@@ -173,7 +173,7 @@ void trackNearby(const std::vector<Mat>& before, const std::vector<Mat>& now, st
         const Point from = point.before;
         Point match(cvFloor(point.now.x + 0.5), cvFloor(point.now.y + 0.5));
         for (int level : { coarse, 0 })
-            if (match != nowhere && isInside(before[level], onLevel(from, level)))
+            if (match.x >= 0 && isInside(before[level], onLevel(from, level)))
                 match = (1 << level) * search(before, now, level, from, onLevel(match, level), refinementRadius);
         point.now = match.x >= 0 ? refine(before[0], from, now[0], match) : point.before;
     });

@@ -63,12 +63,12 @@ private:
         // left.
         if (winner.before < 0 || winner.after < 0)
             return own;
-        if (stable_[pixel] && wholeDisparity(own) == winner.disparity)
+        if (stable_[pixel] && wholeDisparity(own) == winner.candidate)
             return own;
         const float steeper = std::max(winner.before, winner.after) - winner.lowest; // of the slopes on both sides
         const bool hasTip = subpixel_ && steeper > 0;
         const float difference = winner.before - winner.after;
-        return winner.disparity * subpixelScale + (hasTip ? cvRound(difference / steeper * (subpixelScale / 2)) : 0);
+        return winner.candidate * subpixelScale + (hasTip ? cvRound(difference / steeper * (subpixelScale / 2)) : 0);
     }
 
     const ushort* disparity_;

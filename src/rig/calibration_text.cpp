@@ -116,7 +116,7 @@ private:
         const size_t indentation = line.find_first_not_of(' ');
         if (line[indentation] == '\t')
             failAt(text_.file_, line_, "is indented by a tab: YAML wants blanks");
-        if (content == "-" || content.compare(0, 2, "- ") == 0)
+        if (isItem(content))
             return readItem(indentation, content);
 
         const size_t colon = findColon(content);
@@ -129,6 +129,8 @@ private:
         parents_.push_back({ indentation, path_ });
         readValue(trimmed(content.substr(colon + 1)));
     }
+
+    static bool isItem(const std::string& content) { return content == "-" || content.compare(0, 2, "- ") == 0; }
 
     static size_t findColon(const std::string& content)
     {
@@ -147,11 +149,12 @@ private:
         if (parents_.empty())
             failAt(text_.file_, line_, "is an item of a list without a name");
         path_ = parents_.back().path;
-        while (content == "-" || content.compare(0, 2, "- ") == 0)
+        while (isItem(content))
             content = trimmed(content.substr(1));
         readValue(content);
     }
 
+    //! Adds a value to the field of path_.
     void readValue(std::string value)
     {
         if (value.compare(0, 1, "!") == 0) // a tag, such as OpenCV's !!opencv-matrix

@@ -20,7 +20,14 @@ HDP_TUNABLE(double, certainty, 2, "deviations", "of yaw and focal length, from w
 const int maxContradictions = 5; // in a row
 const int firstFrames = 5;       // are too few to contradict
 
-const int terms = 4; // pitch, yaw, roll in radians, relative growth of the focal length
+enum
+{
+    PITCH, // in radians, as yaw and roll
+    YAW,
+    ROLL,
+    GROWTH, // of the focal length, relative
+    terms
+};
 typedef Vec<double, terms> Terms;
 
 const int samples = 8; // places, along each side of the image
@@ -31,7 +38,7 @@ Matx33d rotationOf(const Terms& turn)
 {
     // Points of the image go the opposite way.
     Matx33d R;
-    Rodrigues(Vec3d(-turn[0], -turn[1], -turn[2]), R);
+    Rodrigues(Vec3d(-turn[PITCH], -turn[YAW], -turn[ROLL]), R);
     return R;
 }
 
@@ -66,16 +73,15 @@ public:
             frames_ = 0;
         }
         contradictions_ = 0;
-        ++frames_;
+        if (++frames_ == 1)
+        {
+            mean_ = found;
+            variance_ = Terms();
+        }
         const double count = std::min(frames_, memory_);
         for (int i = 0; i < terms; ++i)
         {
-            const double difference = frames_ == 1 ? 0 : found[i] - mean_[i];
-            if (frames_ == 1)
-            {
-                mean_[i] = found[i];
-                variance_[i] = 0;
-            }
+            const double difference = found[i] - mean_[i];
             mean_[i] += difference / count;
             variance_[i] += (difference * difference * (count - 1) / count - variance_[i]) / count;
         }
@@ -87,12 +93,12 @@ public:
     void getEstimate(std::vector<double>& values, std::vector<double>& deviations) const CV_OVERRIDE
     {
         const double degrees = 180 / CV_PI, units[] = { degrees, degrees, degrees, 100 };
-        const Terms mean = frames_ ? mean_ : Terms(), deviation = standardDeviations();
+        const Terms deviation = standardDeviations();
         values.resize(terms);
         deviations.resize(terms);
         for (int i = 0; i < terms; ++i)
         {
-            values[i] = mean[i] * units[i];
+            values[i] = mean_[i] * units[i];
             deviations[i] = deviation[i] * units[i];
         }
     }
@@ -113,8 +119,8 @@ public:
         corrected.R = Mat(turned * Matx33d(R), true);
         corrected.T = Mat(turned * Vec3d(T.ptr<double>()), true); // the camera turns where it is
         corrected.cameraMatrix2 = calibration.cameraMatrix2.clone();
-        corrected.cameraMatrix2.at<double>(0, 0) *= 1 + turn[3];
-        corrected.cameraMatrix2.at<double>(1, 1) *= 1 + turn[3];
+        corrected.cameraMatrix2.at<double>(0, 0) *= 1 + turn[GROWTH];
+        corrected.cameraMatrix2.at<double>(1, 1) *= 1 + turn[GROWTH];
         return corrected;
     }
 
@@ -154,7 +160,8 @@ private:
         {
             Terms turn;
             turn[i] = step;
-            slopes[i] = (rowAt(rotationOf(turn).t(), turn[3], place) - rowAt(rotationOf(-turn).t(), -turn[3], place)) /
+            slopes[i] = (rowAt(rotationOf(turn).t(), turn[GROWTH], place) -
+                         rowAt(rotationOf(-turn).t(), -turn[GROWTH], place)) /
                         (2 * step);
         }
         return slopes;
@@ -173,7 +180,7 @@ private:
             {
                 const double u = all[i].x, v = all[i].y;
                 const double row = rows[0] + rows[1] * u + rows[2] * v + rows[3] * u * v + rows[4] * v * v;
-                sum += slopes_[i] * (row - rowAt(backward, turn[3], all[i]));
+                sum += slopes_[i] * (row - rowAt(backward, turn[GROWTH], all[i]));
             }
             turn += inverse_ * sum;
         }
@@ -211,11 +218,9 @@ private:
     //! Pitch and roll are what rows tell; of the others only what is certain.
     Terms certainTerms() const
     {
-        if (frames_ == 0)
-            return Terms();
         Terms turn = mean_;
         const Terms deviation = standardDeviations();
-        for (const int i : { 1, 3 })
+        for (const int i : { YAW, GROWTH })
             if (std::abs(turn[i]) < certainty * deviation[i])
                 turn[i] = 0;
         return turn;

@@ -188,7 +188,7 @@ private:
         {
             const int lane = sums.of[k].firstEqual(least);
             if (lane >= 0)
-                return std::min(k * Lanes::vector + lane, p_.candidates - 1);
+                return k * Lanes::vector + lane; // lanes without a candidate have 255, and come last
         }
         return 0;
     }

@@ -15,7 +15,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param size That of the layer.
 @param isFirst Whether there was no step before.
 @param row The blocks.
-@return Whether all of them have arrived. */
+@return Whether none is moving any more: each has arrived or left the image. */
 bool stepBack(const BackwardMotion& motion, const Size& size, bool isFirst, const BlockRow& row);
 
 /** What the disparities at these places are now.
@@ -33,7 +33,7 @@ bool stepBack(const BackwardMotion& motion, const Size& size, bool isFirst, cons
     const BlockRow r = row; // as stores may alias it
     const float* disparity = r.disparity;
     int *atX = r.atX, *atY = r.atY, *lastStep = r.lastStep, *state = r.state;
-    const int mayArrive = !isFirst;
+    const int mayArrive = !isFirst; // that step took what the last frame has at a block's own place
     int moving = 0;
     HDP_VECTORIZED for (int j = 0; j < r.count; ++j)
     {
@@ -44,11 +44,11 @@ bool stepBack(const BackwardMotion& motion, const Size& size, bool isFirst, cons
         const int isInside = (x >= 0) & (y >= 0) & (x <= endX - 1) & (y <= endY - 1);
         const int nextX = (int)(x + 0.5f), nextY = (int)(y + 0.5f);
         const int step = std::abs(nextX - atX[j]) + std::abs(nextY - atY[j]);
-        const int takes = -(isMoving & isInside);
-        atX[j] ^= (atX[j] ^ nextX) & takes;
-        atY[j] ^= (atY[j] ^ nextY) & takes;
-        lastStep[j] ^= (lastStep[j] ^ step) & takes;
-        const int leaves = isMoving & (isInside ^ 1), arrives = isMoving & isInside & (step == 0) & mayArrive;
+        const int takes = isMoving & isInside;
+        atX[j] = choose(takes, nextX, atX[j]);
+        atY[j] = choose(takes, nextY, atY[j]);
+        lastStep[j] = choose(takes, step, lastStep[j]);
+        const int leaves = isMoving & (isInside ^ 1), arrives = takes & (step == 0) & mayArrive;
         state[j] += leaves * (BlockRow::OUTSIDE - BlockRow::MOVING) + arrives * (BlockRow::ARRIVED - BlockRow::MOVING);
         moving += state[j] == BlockRow::MOVING;
     }

@@ -77,7 +77,7 @@ void takeMovedCells(const LastFrame& frame, int y, std::vector<int>& finer, std:
     dispatched::changeDisparities(frame.change, y, cell, frame.cells().width, finer.data());
 }
 
-//! How the motion changes disparities, as it was measured
+//! How the motion changes disparities, corrected by those of this frame, measured (CV_16UC1)
 DisparityChange measuredChange(const LastFrame& frame, const Mat& measured)
 {
     const float unit = 1.f / subpixelScale;
@@ -158,7 +158,7 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
 
 /** Chooses by the sums over a window around each cell; beside the image there is no evidence.
 @return Whether much of what could be taken from the last frame is not: its pair was a wrong one, or this one is. */
-bool choose(const LastFrame& frame, VideoScratch& scratch)
+bool chooseSources(const LastFrame& frame, VideoScratch& scratch)
 {
     const Size cells = frame.cells();
     const int radius = T::window / 2, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
@@ -256,7 +256,7 @@ bool join(const CensusCost& cost, const FrameMemory& last, const FramePrediction
     if (!frame.isStill())
         frame.change = measuredChange(frame, disparity);
     compareCosts(cost, disparity, frame, scratch);
-    if (choose(frame, scratch))
+    if (chooseSources(frame, scratch))
         return false;
     next.disparity.create(disparity.size(), CV_16U);
     next.detail.create(disparity.size(), CV_8U);
