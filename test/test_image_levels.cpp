@@ -511,14 +511,20 @@ TEST(HDPStereo_ImageTypes, regions_and_kinds_of_arrays)
 {
     const SyntheticPair pair = greyPair(25);
     const Mat left = inWords(pair.left, 11), right = inWords(pair.right, 11);
-    const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, numDisparities);
-    const std::vector<Mat> expected = results(*matcher, left, right);
     Mat larger(left.rows + 4, left.cols + 7, CV_16UC1, Scalar(65535));
     const Mat region = larger(Rect(Point(5, 1), left.size()));
     left.copyTo(region);
-    expectSameResults(*matcher, expected, region, right);
     const Mat_<ushort> typed = left;
-    expectSameResults(*matcher, expected, typed, right.getUMat(ACCESS_READ));
+    for (const System& system : presets)
+        for (int minDisparity : { 0, -9 })
+        {
+            SCOPED_TRACE(cv::format("%s from %d on", system.name, minDisparity));
+            const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
+            matcher->setMinDisparity(minDisparity);
+            const std::vector<Mat> expected = results(*matcher, left, right);
+            expectSameResults(*matcher, expected, region, right);
+            expectSameResults(*matcher, expected, typed, right.getUMat(ACCESS_READ));
+        }
     EXPECT_EQ(65535, larger.at<ushort>(0, 0));
 }
 

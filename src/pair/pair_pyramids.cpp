@@ -4,6 +4,7 @@
 #include "../precomp.hpp"
 #include "pair_pyramids.hpp"
 
+#include "../base/vectorized.hpp"
 #include "image_levels.hpp"
 #include "image_pyramid.hpp"
 
@@ -51,7 +52,7 @@ void buildMasks(const PairMasks& masks, const PyramidPlan& plan, PairPyramids& p
 {
     Mat extended, shifted;
     shiftColumns(masks.right, plan.minDisparity, plan.extension, shifted);
-    copyMakeBorder(masks.left, extended, 0, 0, plan.extension, 0, BORDER_REPLICATE);
+    shiftColumns(masks.left, 0, plan.extension, extended);
     buildPyramid({ extended }, plan.layers, pyramids.leftMask);
     buildPyramid({ shifted }, plan.layers, pyramids.rightMask);
 }
@@ -99,7 +100,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
     }
     if (extension > 0)
     {
-        copyMakeBorder(left, pyramids.extendedLeft, 0, 0, extension, 0, BORDER_REPLICATE);
+        shiftColumns(left, 0, extension, pyramids.extendedLeft);
         extended = pyramids.extendedLeft;
     }
     if (!masks.isEmpty())
@@ -132,20 +133,15 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
     pyramids.right[0].release();
 }
 
-void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted)
+void shiftColumns(const Mat& image, int minDisparity, int extension, Mat& shifted)
 {
-    const int width = right.cols + extension;
+    const int width = image.cols + extension;
     const int64 shift = (int64)minDisparity + extension; // minDisparity is any int
-    // The columns [begin, end) of the result come from inside the image.
-    const int begin = (int)std::min<int64>(std::max<int64>(shift, 0), width);
-    const int end = (int)std::max<int64>(std::min<int64>(right.cols + shift, width), 0);
-    shifted.create(right.rows, width, right.type());
-    if (begin < end)
-        right.colRange((int)(begin - shift), (int)(end - shift)).copyTo(shifted.colRange(begin, end));
-    for (int x = 0; x < begin; ++x)
-        right.col(0).copyTo(shifted.col(x));
-    for (int x = end; x < width; ++x)
-        right.col(right.cols - 1).copyTo(shifted.col(x));
+    const auto columnAt = [&](int x) { return (int)clamped<int64>(x - shift, 0, image.cols - 1); };
+    const Mat inside = image.colRange(columnAt(0), columnAt(width - 1) + 1);
+    const int rest = width - inside.cols, before = (int)clamped<int64>(shift, 0, rest);
+    // Isolated: around a region of a larger image, that is not looked at.
+    copyMakeBorder(inside, shifted, 0, 0, before, rest - before, BORDER_REPLICATE | BORDER_ISOLATED);
 }
 
 }}} // namespace cv::stereo::hdp

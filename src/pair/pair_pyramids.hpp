@@ -66,9 +66,9 @@ CV_EXPORTS void buildPairPyramids(const Mat& left, const Mat& right, const PairM
                                   PairPyramids& pyramids, std::vector<LayerImages>& images,
                                   const LevelFindings* given = nullptr);
 
-//! The right image moved by minDisparity, so that candidates count from 0, with more columns on the left:
-//! shifted(x + extension) = right(x - minDisparity), the nearest column where there is none.
-CV_EXPORTS void shiftColumns(const Mat& right, int minDisparity, int extension, Mat& shifted);
+//! An image with more columns on the left, the right one moved by minDisparity, so that candidates count from 0:
+//! shifted(x + extension) = image(x - minDisparity), the nearest column where there is none.
+CV_EXPORTS void shiftColumns(const Mat& image, int minDisparity, int extension, Mat& shifted);
 
 }}} // namespace cv::stereo::hdp
 
