@@ -14,6 +14,7 @@
 #include "video/temporal_prior.hpp"
 
 #include <limits>
+#include <type_traits>
 
 namespace cv { namespace stereo {
 
@@ -27,14 +28,14 @@ const char* const nameInFiles = "StereoMatcher.HDPTree"; // as OpenCV's StereoMa
 const double sigmaPerLayer = 1.6;
 
 //! The setter and the getter of a parameter
-#define HDP_PARAMETER(type, Name, member)                                                                              \
-    void set##Name(type value) CV_OVERRIDE                                                                             \
+#define HDP_PARAMETER(T, Name, member)                                                                                 \
+    void set##Name(T value) CV_OVERRIDE                                                                                \
     {                                                                                                                  \
         MatcherParameters changed = p_;                                                                                \
         changed.member = value;                                                                                        \
         change(changed);                                                                                               \
     }                                                                                                                  \
-    type get##Name() const CV_OVERRIDE { return p_.member; }
+    std::decay<T>::type get##Name() const CV_OVERRIDE { return p_.member; }
 
 class HDPTreeMatcherImpl CV_FINAL : public HDPTreeMatcher
 {
@@ -116,13 +117,7 @@ public:
     HDP_PARAMETER(int, MaxRowOffset, maxRowOffset)
     HDP_PARAMETER(bool, UseLightAlignment, useLightAlignment)
     HDP_PARAMETER(double, NoiseThreshold, noiseThreshold)
-    Ptr<TreeStrategy> getTreeStrategy() const CV_OVERRIDE { return p_.treeStrategy; }
-    void setTreeStrategy(const Ptr<TreeStrategy>& strategy) CV_OVERRIDE
-    {
-        MatcherParameters changed = p_;
-        changed.treeStrategy = strategy;
-        change(changed);
-    }
+    HDP_PARAMETER(const Ptr<TreeStrategy>&, TreeStrategy, treeStrategy)
 
     void setPairModel(const PairModel& model) CV_OVERRIDE
     {
@@ -193,8 +188,7 @@ public:
     {
         if (!result_.isMatched)
             return confidenceArray.release();
-        const Mat confidence = toImage(confidenceOfLayer(), INTER_LINEAR_EXACT);
-        give(confidence, confidenceArray);
+        give(confidenceOfLayer(), INTER_LINEAR_EXACT, confidenceArray);
         if (output_.hasRejected)
             confidenceArray.setTo(Scalar(0), output_.rejected);
     }
@@ -213,8 +207,7 @@ public:
         double scale = 1;
         for (int layer = 0; layer < plan.layer; ++layer)
             scale *= sigmaPerLayer;
-        const Mat sigma = toImage(ofLayer * scale, INTER_NEAREST); // the same on all machines
-        give(sigma, sigmaArray);
+        give(ofLayer * scale, INTER_NEAREST, sigmaArray); // the same on all machines
         if (output_.hasRejected)
             sigmaArray.setTo(Scalar(std::numeric_limits<float>::infinity()), output_.rejected);
     }
@@ -226,8 +219,7 @@ public:
         const PairPlan& pairPlan = result_.plan;
         Mat ofLayer;
         findReasons(layers_[pairPlan.finest().layer].disparity, pairPlan.output, pairPlan.size.width, ofLayer);
-        const Mat reasons = toImage(ofLayer, INTER_NEAREST);
-        give(reasons, reasonsArray);
+        give(ofLayer, INTER_NEAREST, reasonsArray);
         const OutputPlan& output = pairPlan.output;
         if (output.hasFilters())
             reasonsArray.setTo(Scalar(output.speckleWindowSize > 0 ? REASON_SPECKLE : REASON_UNSTABLE),
@@ -362,21 +354,15 @@ private:
         return confidence;
     }
 
-    //! Throws if the array's type is another one.
-    static void give(const Mat& map, OutputArray array)
-    {
-        array.create(map.size(), map.type());
-        map.copyTo(array);
-    }
-
-    //! From what is known of the finest layer to the image
-    Mat toImage(const Mat& ofLayer, int interpolation) const
+    //! From what is known of the finest layer to the image. Throws if the array's type is another one.
+    void give(const Mat& ofLayer, int interpolation, OutputArray array) const
     {
         const int extension = result_.plan.output.extension;
         Mat extended = ofLayer;
         if (result_.plan.finest().layer > 0)
             resize(ofLayer, extended, result_.plan.size + Size(extension, 0), 0, 0, interpolation);
-        return extended.colRange(extension, extended.cols);
+        array.create(result_.plan.size, ofLayer.type());
+        extended.colRange(extension, extended.cols).copyTo(array);
     }
 
     //! Without the columns that are added to the images

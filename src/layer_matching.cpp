@@ -198,7 +198,8 @@ private:
     //! Scanlines over the costs as they are, and what the last frame predicts
     void matchCosts()
     {
-        shared_.forgetForest();
+        shared_.forest = DisparityForest();
+        shared_.forestLayer = -1;
         result_.searchRatio = 1;
         clock_.run("disparity prediction", [&] {
             const DisparityInterval all = { 0, (ushort)(plan_.numDisparities - 1) };
@@ -324,40 +325,20 @@ private:
             moveIntoIntervals(intervals(), disparity);
     }
 
-    //! Pixels without data have no vote, and none beside them changes.
-    void voteAtEdges()
+    //! Filters the map. Pixels without data are USHRT_MAX then, which changes none beside it. They, and those up to so
+    //! many pixels beside them, stay as they are.
+    template <typename Filter> void filterWhereData(int reach, const Filter& filter)
     {
         swap(result_.disparity, own_.filtered);
-        hdp::voteAtEdges(in_.images.guide, withoutMissing(own_.filtered), result_.disparity);
-        keepMissing(1);
-    }
-
-    //! Pixels without data stay as they are, and change none beside them.
-    void smooth()
-    {
-        swap(result_.disparity, own_.filtered);
-        smoothSurfaces(withoutMissing(own_.filtered), result_.disparity);
-        keepMissing(0);
-    }
-
-    //! USHRT_MAX where there is no data
-    const Mat& withoutMissing(const Mat& disparity)
-    {
         if (in_.images.masks.isEmpty())
-            return disparity;
-        disparity.copyTo(own_.masked);
-        own_.masked.setTo(Scalar(USHRT_MAX), pixelsWithData(in_.images.masks.left) == 0);
-        return own_.masked;
-    }
-
-    //! Gives pixels without data, and those up to so many pixels beside them, the disparities of before the filter.
-    void keepMissing(int reach)
-    {
-        if (in_.images.masks.isEmpty())
-            return;
-        Mat filtered;
-        erode(pixelsWithData(in_.images.masks.left), filtered, Mat(), Point(-1, -1), reach);
-        own_.filtered.copyTo(result_.disparity, filtered == 0);
+            return filter(own_.filtered);
+        const Mat hasData = pixelsWithData(in_.images.masks.left);
+        own_.filtered.copyTo(own_.masked);
+        own_.masked.setTo(Scalar(USHRT_MAX), hasData == 0);
+        filter(own_.masked);
+        Mat isFiltered;
+        erode(hasData, isFiltered, Mat(), Point(-1, -1), reach);
+        own_.filtered.copyTo(result_.disparity, isFiltered == 0);
     }
 
     void filterMap()
@@ -368,9 +349,9 @@ private:
         if (plan_.restoresThinStructures)
             restoreThinStructures(result_.winners, result_.disparity);
         if (plan_.votesAtEdges)
-            voteAtEdges();
+            filterWhereData(1, [&](const Mat& map) { voteAtEdges(in_.images.guide, map, result_.disparity); });
         if (plan_.smoothsSurfaces)
-            smooth();
+            filterWhereData(0, [&](const Mat& map) { smoothSurfaces(map, result_.disparity); });
     }
 
     const LayerInput& in_;

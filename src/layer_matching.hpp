@@ -62,12 +62,6 @@ struct SharedScratch
 {
     DisparityForest forest;
     int forestLayer = -1; // the layer that the forest is of; -1: none was built for this pair
-    void forgetForest()
-    {
-        forest = DisparityForest();
-        forestLayer = -1;
-    }
-
     SupportPointBuffers supportPointBuffers;
     Mat supportPoints;
     std::vector<DisparityInterval> intervals;

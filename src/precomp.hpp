@@ -22,6 +22,16 @@ template <typename F> void parallelFor(int count, const F& f)
     });
 }
 
+//! f(i, scratch) for each i of 0 .. count - 1, by all threads; each has a copy of the scratch.
+template <typename Scratch, typename F> void parallelFor(int count, const Scratch& scratch, const F& f)
+{
+    parallel_for_(Range(0, count), [&](const Range& range) {
+        Scratch own = scratch;
+        for (int i = range.start; i < range.end; ++i)
+            f(i, own);
+    });
+}
+
 }}} // namespace cv::stereo::hdp
 
 #endif

@@ -43,8 +43,7 @@ struct CV_EXPORTS CostVolume
     {
         if (!isUniform)
             return candidates[pixel];
-        const Candidates own = { (unsigned)pixel * usualRows_, uniform_ };
-        return own;
+        return { (unsigned)pixel * usualRows_, uniform_ };
     }
 
     //! The lowest cost of these; UCHAR_MAX if there are none

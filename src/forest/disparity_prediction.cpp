@@ -52,14 +52,10 @@ void predictIntervals(const DisparityPredictionModel& model, int layer, const st
         gmm[k] = model.density(layer, lowestOffset + (int)k);
 
     intervals.resize(upperDisparities);
-    parallel_for_(Range(0, upperDisparities), [&](const Range& range) {
-        std::vector<double> row(disparities);
-        for (int i = range.start; i < range.end; ++i)
-        {
-            for (int j = 0; j < disparities; ++j)
-                row[j] = gmm[i - j / 2 - lowestOffset] * prior[j];
-            intervals[i] = growInterval(row, delta, margin);
-        }
+    parallelFor(upperDisparities, std::vector<double>(disparities), [&](int i, std::vector<double>& row) {
+        for (int j = 0; j < disparities; ++j)
+            row[j] = gmm[i - j / 2 - lowestOffset] * prior[j];
+        intervals[i] = growInterval(row, delta, margin);
     });
 }
 

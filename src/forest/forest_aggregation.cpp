@@ -213,8 +213,7 @@ struct MeanAggregation
         const auto share = [](float part) { return (short)std::min((int)(MeanNode::unit * part), MeanNode::unit - 1); };
         for (int i = size - 1; i > 0; --i)
             nodes[i].toParent = share(similarity.table[walk.weights[i]] * sums[i] / sums[walk.parents[i]]);
-        const MeanNode root = { 0, 0, (short)(sums[0] > 1 ? -1 : 0), 0 };
-        nodes[0] = root;
+        nodes[0] = { 0, 0, (short)(sums[0] > 1 ? -1 : 0), 0 };
         for (int i = 1; i < size; ++i)
         {
             const float s = similarity.table[walk.weights[i]], rest = s * sums[walk.parents[i]];

@@ -140,8 +140,7 @@ private:
 
     static DisparityInterval hull(const DisparityInterval& a, const DisparityInterval& b)
     {
-        const DisparityInterval interval = { std::min(a.first, b.first), std::max(a.last, b.last) };
-        return interval;
+        return { std::min(a.first, b.first), std::max(a.last, b.last) };
     }
 
     //! DT-Rule 2: |intersection| / |union| >= beta. For the union the authors' program takes the hull, so that TreeIntv

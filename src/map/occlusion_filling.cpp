@@ -31,15 +31,11 @@ int countMasked(const uchar* mask, int width) { return (int)(std::find_if(mask, 
 
 void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right, const Mat& rightMask)
 {
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        OcclusionScratch scratch(disparity.cols);
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const int blank = !rightMask.empty() ? countMasked(rightMask.ptr(y), rightMask.cols)
-                              : right.empty()    ? 0
-                                                 : countBlank(right.ptr<ushort>(y), right.cols);
-            dispatched::fillOccludedRow(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, blank, scratch);
-        }
+    parallelFor(disparity.rows, OcclusionScratch(disparity.cols), [&](int y, OcclusionScratch& scratch) {
+        const int blank = !rightMask.empty() ? countMasked(rightMask.ptr(y), rightMask.cols)
+                          : right.empty()    ? 0
+                                             : countBlank(right.ptr<ushort>(y), right.cols);
+        dispatched::fillOccludedRow(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, blank, scratch);
     });
 }
 

@@ -59,8 +59,7 @@ inline RowLimits mapToRight(const ushort* disparity, const uchar* residual, int 
         hiding = std::max(hiding, leavesFew ? x + 1 : 0);
         keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
     }
-    const RowLimits limits = { border, hiding, maxDisparity };
-    return limits;
+    return { border, hiding, maxDisparity };
 }
 
 //! Marks the pixels that have the disparity of the best match of their column, but for a pixel.

@@ -82,11 +82,9 @@ public:
     int join(int maxDisparity)
     {
         Mat hypotheses(winners_.size(), CV_16U), speech(winners_.size(), CV_8U), ofWinners, ofHypotheses;
-        parallel_for_(Range(0, winners_.rows), [&](const Range& rows) {
-            std::vector<Neighbour> found;
-            for (int y = rows.start; y < rows.end; ++y)
-                for (int x = 0; x < width_; ++x)
-                    speech.ptr(y)[x] = (uchar)propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
+        parallelFor(winners_.rows, std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
+            for (int x = 0; x < width_; ++x)
+                speech.ptr(y)[x] = (uchar)propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
         });
         sumCosts(winners_, ofWinners);
         sumCosts(hypotheses, ofHypotheses);

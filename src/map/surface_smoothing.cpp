@@ -23,22 +23,18 @@ void smoothSurfaces(const Mat& disparity, Mat& smoothed)
     const ushort likeness = (ushort)(mostDifference * subpixelScale);
     const int radius = SmoothedRow::radius, width = disparity.cols, lastRow = disparity.rows - 1;
     smoothed.create(disparity.size(), CV_16U);
-    parallel_for_(Range(0, disparity.rows), [&](const Range& range) {
-        std::vector<ushort> padded(width + 2 * radius);
-        for (int y = range.start; y < range.end; ++y)
+    parallelFor(disparity.rows, std::vector<ushort>(width + 2 * radius), [&](int y, std::vector<ushort>& padded) {
+        const ushort* const own = disparity.ptr<ushort>(y);
+        std::fill_n(padded.begin(), radius, own[0]);
+        std::copy(own, own + width, padded.begin() + radius);
+        std::fill_n(padded.end() - radius, radius, own[width - 1]);
+        SmoothedRow row = { width, padded.data() + radius, {}, {} };
+        for (int k = 0; k < radius; ++k)
         {
-            const ushort* const own = disparity.ptr<ushort>(y);
-            std::fill_n(padded.begin(), radius, own[0]);
-            std::copy(own, own + width, padded.begin() + radius);
-            std::fill_n(padded.end() - radius, radius, own[width - 1]);
-            SmoothedRow row = { width, padded.data() + radius, {}, {} };
-            for (int k = 0; k < radius; ++k)
-            {
-                row.above[k] = disparity.ptr<ushort>(std::max(y - k - 1, 0));
-                row.below[k] = disparity.ptr<ushort>(std::min(y + k + 1, lastRow));
-            }
-            dispatched::smoothRow(row, likeness, smoothed.ptr<ushort>(y));
+            row.above[k] = disparity.ptr<ushort>(std::max(y - k - 1, 0));
+            row.below[k] = disparity.ptr<ushort>(std::min(y + k + 1, lastRow));
         }
+        dispatched::smoothRow(row, likeness, smoothed.ptr<ushort>(y));
     });
 }
 

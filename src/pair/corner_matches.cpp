@@ -84,11 +84,9 @@ void measureWindows(const Mat& image, SearchWindows& windows)
     const int reach = CornerMatching::searchSide - 1, width = image.cols - reach, height = image.rows - reach;
     windows.sums.create(height, width, CV_32S);
     windows.scales.create(height, width, CV_32F);
-    parallel_for_(Range(0, height), [&](const Range& rows) {
-        std::vector<int> columns(2 * image.cols);
-        for (int y = rows.start; y < rows.end; ++y)
-            dispatched::windowSums(image.ptr<ushort>(y), image.step1(), width, columns.data(), windows.sums.ptr<int>(y),
-                                   windows.scales.ptr<float>(y));
+    parallelFor(height, std::vector<int>(2 * image.cols), [&](int y, std::vector<int>& columns) {
+        dispatched::windowSums(image.ptr<ushort>(y), image.step1(), width, columns.data(), windows.sums.ptr<int>(y),
+                               windows.scales.ptr<float>(y));
     });
 }
 
@@ -229,15 +227,12 @@ void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks
     const Mat rightHas = windowsWithData(masks.right);
     findCorners(left, windowsWithData(masks.left), search, matches);
     measureWindows(right, windows);
-    parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
-        std::vector<float> correlations; // of a corner, by rows, then by columns
-        for (int i = range.start; i < range.end; ++i)
-        {
-            CornerMatch& match = matches[i];
-            findMatch(left, right, windows, search.disparities, correlations, match);
-            if (match.isValid && !rightHas.empty())
-                match.isValid = rightHas.ptr((int)match.y)[(int)match.x] != 0;
-        }
+    const std::vector<float> none; // correlations of a corner, by rows, then by columns
+    parallelFor((int)matches.size(), none, [&](int i, std::vector<float>& correlations) {
+        CornerMatch& match = matches[i];
+        findMatch(left, right, windows, search.disparities, correlations, match);
+        if (match.isValid && !rightHas.empty())
+            match.isValid = rightHas.ptr((int)match.y)[(int)match.x] != 0;
     });
 }
 

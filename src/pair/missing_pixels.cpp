@@ -115,33 +115,27 @@ void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, M
 void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
                   const FloatLevels* given, CompletePair& complete)
 {
+    complete.left = left;
+    complete.right = right;
     complete.masks = PairMasks();
     complete.floats = FloatLevels();
     const bool isFloat = left.depth() == CV_32F;
     if (!isFloat && leftMask.empty() && rightMask.empty())
-    {
-        complete.left = left;
-        complete.right = right;
         return;
-    }
-    PairMasks masks = { maskOf(left, leftMask), maskOf(right, rightMask) };
-    Mat images[2] = { left, right };
+    const PairMasks masks = { maskOf(left, leftMask), maskOf(right, rightMask) };
     if (isFloat)
     {
         complete.floats = given ? *given : findLevels(left, right, masks);
-        wholeLevels(left, masks.left, complete.floats, images[0]);
-        wholeLevels(right, masks.right, complete.floats, images[1]);
+        wholeLevels(left, masks.left, complete.floats, complete.left);
+        wholeLevels(right, masks.right, complete.floats, complete.right);
     }
-    if (countNonZero(masks.left) < (int)left.total() || countNonZero(masks.right) < (int)right.total())
-    {
-        fillMissing(images[0], masks.left, complete.filled[0]);
-        fillMissing(images[1], masks.right, complete.filled[1]);
-        images[0] = complete.filled[0];
-        images[1] = complete.filled[1];
-        complete.masks = masks;
-    }
-    complete.left = images[0];
-    complete.right = images[1];
+    if (countNonZero(masks.left) == (int)left.total() && countNonZero(masks.right) == (int)right.total())
+        return;
+    fillMissing(complete.left, masks.left, complete.filled[0]);
+    fillMissing(complete.right, masks.right, complete.filled[1]);
+    complete.left = complete.filled[0];
+    complete.right = complete.filled[1];
+    complete.masks = masks;
 }
 
 }}} // namespace cv::stereo::hdp

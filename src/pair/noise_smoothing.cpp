@@ -30,11 +30,9 @@ void smoothNoise(const Mat& image, Mat& smoothed)
 {
     const int width = image.cols, last = image.rows - 1;
     smoothed.create(image.size(), CV_16U);
-    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
-        std::vector<int> columns(width + 2);
-        for (int y = rows.start; y < rows.end; ++y)
-            smoothRow(image.ptr<ushort>(y), image.ptr<ushort>(std::max(y - 1, 0)),
-                      image.ptr<ushort>(std::min(y + 1, last)), width, columns.data(), smoothed.ptr<ushort>(y));
+    parallelFor(image.rows, std::vector<int>(width + 2), [&](int y, std::vector<int>& columns) {
+        smoothRow(image.ptr<ushort>(y), image.ptr<ushort>(std::max(y - 1, 0)), image.ptr<ushort>(std::min(y + 1, last)),
+                  width, columns.data(), smoothed.ptr<ushort>(y));
     });
 }
 

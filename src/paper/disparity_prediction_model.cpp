@@ -32,8 +32,7 @@ GaussianMixture checkedMixture(const std::vector<double>& means, const std::vect
     }
     if (std::abs(sum - 1) > 0.001)
         CV_Error(Error::StsOutOfRange, "the sum of weights must be 1");
-    const GaussianMixture mixture = { means, sigmas, weights };
-    return mixture;
+    return { means, sigmas, weights };
 }
 
 class DisparityPredictionModelImpl CV_FINAL : public DisparityPredictionModel

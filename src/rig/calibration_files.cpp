@@ -47,9 +47,16 @@ Size sizeOf(const CalibrationText& text, double width, double height, const std:
     return Size((int)width, (int)height);
 }
 
-NamedCalibration join(const Camera& left, const Camera& right, const Matx33d& R, const Vec3d& T,
-                      const std::string& rotation, const std::string& translation)
+//! text: that exceptions name
+NamedCalibration join(const CalibrationText& text, const Camera& left, const Camera& right, const Matx33d& R,
+                      const Vec3d& T, const std::string& rotation, const std::string& translation)
 {
+    if (left.size != right.size)
+        CV_Error(Error::StsParseError,
+                 format("'%s': the right camera has images of %d x %d pixels, the left one of %d x %d",
+                        text.file().c_str(), right.size.width, right.size.height, left.size.width, left.size.height));
+    if (left.isFisheye != right.isFisheye)
+        CV_Error(Error::StsParseError, "'" + text.file() + "': one camera is a fisheye, the other one is not");
     NamedCalibration result;
     result.names = { "imageSize", { left.names, right.names }, rotation, translation };
     StereoCalibration& calibration = result.calibration;
@@ -62,16 +69,6 @@ NamedCalibration join(const Camera& left, const Camera& right, const Matx33d& R,
     calibration.T = Mat(T, true);
     calibration.isFisheye = left.isFisheye;
     return result;
-}
-
-void requireAlike(const CalibrationText& text, const Camera& left, const Camera& right)
-{
-    if (left.size != right.size)
-        CV_Error(Error::StsParseError,
-                 format("'%s': the right camera has images of %d x %d pixels, the left one of %d x %d",
-                        text.file().c_str(), right.size.width, right.size.height, left.size.width, left.size.height));
-    if (left.isFisheye != right.isFisheye)
-        CV_Error(Error::StsParseError, "'" + text.file() + "': one camera is a fisheye, the other one is not");
 }
 
 //! A pose as a matrix of 4 x 4
@@ -123,12 +120,11 @@ NamedCalibration readKalibr(const CalibrationText& text)
 {
     const Camera left = readPinhole(text, "cam0/", "distortion_coeffs");
     const Camera right = readPinhole(text, "cam1/", "distortion_coeffs");
-    requireAlike(text, left, right);
     Matx33d R;
     Vec3d T;
     const std::string path = "cam1/T_cn_cnm1";
     readPose(text, path, R, T);
-    return join(left, right, R, T, nameOf(text, path), nameOf(text, path));
+    return join(text, left, right, R, T, nameOf(text, path), nameOf(text, path));
 }
 
 NamedCalibration readEuroc(const Texts& texts)
@@ -143,8 +139,7 @@ NamedCalibration readEuroc(const Texts& texts)
         path = texts[i].has("T_BS/data") || !texts[i].has("T_BS") ? "T_BS/data" : "T_BS";
         readPose(texts[i], path, R[i], T[i]);
     }
-    requireAlike(texts[1], cameras[0], cameras[1]);
-    return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * (T[0] - T[1]), nameOf(texts, path),
+    return join(texts[1], cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * (T[0] - T[1]), nameOf(texts, path),
                 nameOf(texts, path));
 }
 
@@ -174,10 +169,9 @@ NamedCalibration readRos(const Texts& texts)
         const std::string name = nameOf(text, "camera_matrix/data");
         camera.names = { name, name, nameOf(text, "distortion_coefficients/data") };
     }
-    requireAlike(texts[1], cameras[0], cameras[1]);
     if (std::abs(offsets[1] - offsets[0]) < leastBaseline) // of the rig, which has no field of its own
         texts[1].fail("projection_matrix/data", "of a baseline above 0, times -fx as fourth number");
-    return join(cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * Vec3d(offsets[1] - offsets[0], 0, 0),
+    return join(texts[1], cameras[0], cameras[1], R[1].t() * R[0], R[1].t() * Vec3d(offsets[1] - offsets[0], 0, 0),
                 nameOf(texts, "rectification_matrix/data"), nameOf(texts, "projection_matrix/data"));
 }
 
@@ -220,7 +214,7 @@ NamedCalibration readOpenCV(const Texts& texts, Size imageSize, double unit)
                              imageSize.width, imageSize.height));
     }
     const std::vector<double> T = readMatrix(texts, "T", 3);
-    return join(cameras[0], cameras[1], Matx33d(readMatrix(texts, "R", 9).data()), Vec3d(T.data()) * unit,
+    return join(texts[0], cameras[0], cameras[1], Matx33d(readMatrix(texts, "R", 9).data()), Vec3d(T.data()) * unit,
                 nameOf(textWith(texts, "R"), "R/data"), nameOf(textWith(texts, "T"), "T/data"));
 }
 
@@ -291,7 +285,6 @@ NamedCalibration readZed(const CalibrationText& text, Size imageSize)
         CV_Error(Error::StsBadArg, "imageSize must be given: '" + text.file() + "' is for cameras of several sizes");
     const ZedMode& mode = zedModeOf(text, imageSize);
     const Camera left = readZedCamera(text, "LEFT", mode), right = readZedCamera(text, "RIGHT", mode);
-    requireAlike(text, left, right);
     const auto stereo = [&](const std::string& name) {
         const std::string ofMode = "STEREO/" + name + "_" + mode.name;
         return text.number(text.has(ofMode) || !text.has("STEREO/" + name) ? ofMode : "STEREO/" + name);
@@ -300,50 +293,35 @@ NamedCalibration readZed(const CalibrationText& text, Size imageSize)
     const Vec3d position(text.number("STEREO/BASELINE"), stereo("TY"), stereo("TZ"));
     Matx33d R;
     Rodrigues(rotation, R);
-    return join(left, right, R, -1e-3 * position, nameOf(text, "STEREO/RX, CV, RZ"),
+    return join(text, left, right, R, -1e-3 * position, nameOf(text, "STEREO/RX, CV, RZ"),
                 nameOf(text, "STEREO/BASELINE, TY, TZ"));
 }
 
-bool hasAny(const Texts& texts, const std::vector<const char*>& prefixes)
+//! Whether the texts have one of these fields, and so are of a kind. Throws if that has another number of files.
+bool areOf(const char* kind, size_t files, const Texts& texts, const std::vector<const char*>& prefixes)
 {
+    bool hasAny = false;
     for (const CalibrationText& text : texts)
         for (const char* prefix : prefixes)
-            if (text.hasBelow(prefix))
-                return true;
-    return false;
-}
-
-void requireFiles(const Texts& texts, size_t count, const char* kind)
-{
-    if (texts.size() != count)
+            hasAny = hasAny || text.hasBelow(prefix);
+    if (hasAny && texts.size() != files)
         CV_Error(Error::StsBadArg,
                  "'" + texts[0].file() + "' is of " + kind + ", which has " +
-                     (count == 1 ? "one file for both cameras" : "a file for each camera: second must be given"));
+                     (files == 1 ? "one file for both cameras" : "a file for each camera: second must be given"));
+    return hasAny;
 }
 
 NamedCalibration readKind(const Texts& texts, Size imageSize, double unit)
 {
-    if (hasAny(texts, { "LEFT_CAM_", "RIGHT_CAM_", "STEREO/" }))
-    {
-        requireFiles(texts, 1, "the ZED");
+    if (areOf("the ZED", 1, texts, { "LEFT_CAM_", "RIGHT_CAM_", "STEREO/" }))
         return readZed(texts[0], imageSize);
-    }
-    if (hasAny(texts, { "cam0/", "cam1/" }))
-    {
-        requireFiles(texts, 1, "Kalibr");
+    if (areOf("Kalibr", 1, texts, { "cam0/", "cam1/" }))
         return readKalibr(texts[0]);
-    }
-    if (hasAny(texts, { "camera_matrix", "rectification_matrix", "projection_matrix" }))
-    {
-        requireFiles(texts, 2, "ROS");
+    if (areOf("ROS", 2, texts, { "camera_matrix", "rectification_matrix", "projection_matrix" }))
         return readRos(texts);
-    }
-    if (hasAny(texts, { "T_BS", "sensor_type", "intrinsics" }))
-    {
-        requireFiles(texts, 2, "EuRoC");
+    if (areOf("EuRoC", 2, texts, { "T_BS", "sensor_type", "intrinsics" }))
         return readEuroc(texts);
-    }
-    if (hasAny(texts, { "M1/", "D1/", "M2/", "D2/", "R/", "T/" }))
+    if (areOf("OpenCV", texts.size(), texts, { "M1/", "D1/", "M2/", "D2/", "R/", "T/" })) // one or two
         return readOpenCV(texts, imageSize, unit);
     CV_Error(Error::StsParseError,
              "'" + texts[0].file() + "' is no calibration of OpenCV, ROS, Kalibr, EuRoC or the ZED that is known");

@@ -59,14 +59,11 @@ void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageF
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);
     buffers.stripes.resize(stripes.size());
-    parallel_for_(Range(0, (int)stripes.size()), [&](const Range& range) {
-        Mat stored; // as large as a thread needs it, not as the image would
-        for (int i = range.start; i < range.end; ++i)
-        {
-            const int storedRows = (stripes[i].rows.end - stripes[i].reach.start + 1) / 2 * 2;
-            stored.create(storedRows, (int)ScanlineScratch::storedBytes(size.width), CV_8U);
-            dispatched::aggregateStripe(problem, stripes[i], buffers.stripes[i], stored.data, disparity, residual);
-        }
+    // What is stored is as large as a thread needs it, not as the image would.
+    parallelFor((int)stripes.size(), Mat(), [&](int i, Mat& stored) {
+        const int storedRows = (stripes[i].rows.end - stripes[i].reach.start + 1) / 2 * 2;
+        stored.create(storedRows, (int)ScanlineScratch::storedBytes(size.width), CV_8U);
+        dispatched::aggregateStripe(problem, stripes[i], buffers.stripes[i], stored.data, disparity, residual);
     });
 }
 

@@ -21,9 +21,8 @@ std::vector<ScanlineStripe> stripesOf(const ImageFrame& frame, int height, int r
     {
         const Range own(std::max(border(i), 0), std::min(border(i + 1), height));
         const Range reach(std::max(own.start - warmUpRows, 0), std::min(own.end + warmUpRows, height));
-        const ScanlineStripe stripe = { own, reach };
         if (own.start < own.end)
-            stripes.push_back(stripe);
+            stripes.push_back({ own, reach });
     }
     return stripes;
 }

@@ -38,14 +38,12 @@ struct WinnerSlope
 them, or that which leaves the tip at the end. Of less than three candidates there is no fraction. */
 template <typename Sum> CV_ALWAYS_INLINE WinnerSlope slopeOfWinner(const Sum* sums, int k, int last)
 {
-    const WinnerSlope none = { 0, 1 };
     if (last < 2)
-        return none;
+        return { 0, 1 };
     const int sum = sums[k];
     const int before = k > 0 ? sums[k - 1] : sum + std::max(sums[2] - sums[1], sums[1] - sum);
     const int after = k < last ? sums[k + 1] : sum + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - sum);
-    const WinnerSlope of = { before - after, std::max(std::max(before, after) - sum, 1) };
-    return of;
+    return { before - after, std::max(std::max(before, after) - sum, 1) };
 }
 
 //! In units of a disparity map, rounded to the nearest as cvRound() does, but in vectors, too

@@ -200,9 +200,7 @@ DisparityChange correctedChange(const DisparityChange& change, const std::vector
     std::vector<FitSample<2>> samples(predicted.size());
     for (size_t i = 0; i < samples.size(); ++i)
     {
-        const FitSample<2> sample = { Vec2d(1, predicted[i] + change.minDisparity), measured[i] - predicted[i],
-                                      measuredDeviation };
-        samples[i] = sample;
+        samples[i] = { Vec2d(1, predicted[i] + change.minDisparity), measured[i] - predicted[i], measuredDeviation };
     }
     if (samples.empty())
         return change;
@@ -226,11 +224,8 @@ BackwardMotion::BackwardMotion(const CameraMotion& motion, double minDisparity, 
         y_[i] = (float)ofMap(1, i);
         w_[i] = (float)ofMap(3, i);
     }
-    const DisparityChange change = {
-        (float)inverse(3, 0), (float)inverse(3, 1), (float)inverse(3, 2), (float)inverse(3, 3), 0.f,
-        (float)minDisparity,  (float)maxDisparity
-    };
-    change_ = change;
+    change_ = { (float)inverse(3, 0), (float)inverse(3, 1), (float)inverse(3, 2), (float)inverse(3, 3), 0.f,
+                (float)minDisparity,  (float)maxDisparity };
 }
 
 }}} // namespace cv::stereo::hdp

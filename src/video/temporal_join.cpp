@@ -142,14 +142,13 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
             ComparedRow ofCells[cell];
             for (int k = 0; k < cell; ++k)
             {
-                const ComparedRow row = { cost.leftPixels(y + k),
-                                          cost.rightPlane(0, y + k) + measured.cols - 1,
-                                          cost.planeStride(),
-                                          cost.planes(),
-                                          cost.comparisons() / 2,
-                                          measured.ptr<ushort>(y + k),
-                                          frame.memory.disparity.ptr<ushort>(y + k) };
-                ofCells[k] = row;
+                ofCells[k] = { cost.leftPixels(y + k),
+                               cost.rightPlane(0, y + k) + measured.cols - 1,
+                               cost.planeStride(),
+                               cost.planes(),
+                               cost.comparisons() / 2,
+                               measured.ptr<ushort>(y + k),
+                               frame.memory.disparity.ptr<ushort>(y + k) };
             }
             dispatched::compareCells(ofCells, moved.data(), different.data(), compared.data(), count, offset, evidence);
         }
@@ -191,50 +190,31 @@ bool chooseSources(const LastFrame& frame, VideoScratch& scratch)
     return 100 * std::accumulate(contradicted.begin(), contradicted.end(), (int64)0) > contradictedShare * all;
 }
 
-//! Memory for a row
-struct RowScratch
-{
-    explicit RowScratch(int width)
-        : unmoved(width), moved(width), unmovedCounts(width), movedCounts(width), choices(width),
-          agrees(width + 2 * T::fringe), disparity(width), detail(width)
-    {
-    }
-    std::vector<int> unmoved, moved; // disparities of the last frame
-    std::vector<uchar> unmovedCounts, movedCounts, choices, agrees;
-    std::vector<ushort> disparity;
-    std::vector<uchar> detail;
-};
-
 //! The pixels of a row come from where the motion leads.
-void takeMoved(const LastFrame& frame, int y, RowScratch& scratch)
+void takeMoved(const LastFrame& frame, int y, TemporalRow& row)
 {
     const FrameMemory& memory = frame.memory;
     const int width = memory.disparity.cols;
     frame.prediction.warp.forEachRun(y, [&](int x, const Point& from, int count) {
-        std::memcpy(&scratch.disparity[x], memory.disparity.ptr<ushort>(from.y) + from.x, count * sizeof(ushort));
-        std::memcpy(&scratch.detail[x], memory.detail.ptr(from.y) + from.x, count);
+        std::memcpy(&row.disparity[x], memory.disparity.ptr<ushort>(from.y) + from.x, count * sizeof(ushort));
+        std::memcpy(&row.detail[x], memory.detail.ptr(from.y) + from.x, count);
     });
-    dispatched::unpackRow(scratch.disparity.data(), scratch.detail.data(), width, scratch.moved.data(),
-                          scratch.movedCounts.data());
-    dispatched::changeDisparities(frame.change, y, 1, width, scratch.moved.data());
+    dispatched::unpackRow(row.disparity.data(), row.detail.data(), width, row.moved.data(), row.movedCounts.data());
+    dispatched::changeDisparities(frame.change, y, 1, width, row.moved.data());
 }
 
-void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, int y, RowScratch& scratch,
+void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, int y, TemporalRow& row,
              FrameMemory& next)
 {
     const int width = measured.cols, cells = frame.cells().width;
     static_assert(cell == 2, "There are as many pixels.");
-    uchar* const ofPixels = scratch.choices.data();
+    uchar* const ofPixels = row.choices.data();
     HDP_VECTORIZED for (int j = 0; j < cells; ++j) ofPixels[2 * j] = ofPixels[2 * j + 1] = choices[j];
-    std::fill(scratch.choices.begin() + cells * cell, scratch.choices.end(), choices[cells - 1]);
-    dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width,
-                          scratch.unmoved.data(), scratch.unmovedCounts.data());
+    std::fill(row.choices.begin() + cells * cell, row.choices.end(), choices[cells - 1]);
+    dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width, row.unmoved.data(),
+                          row.unmovedCounts.data());
     if (!frame.isStill())
-        takeMoved(frame, y, scratch);
-    const TemporalRow row = {
-        scratch.agrees.data() + T::fringe, scratch.choices.data(),    scratch.unmoved.data(), scratch.moved.data(),
-        scratch.unmovedCounts.data(),      scratch.movedCounts.data()
-    };
+        takeMoved(frame, y, row);
     const int maxDistance = std::max(tolerance / frame.prediction.key.scale, 1) * FrameMemory::scale;
     // The motion is an estimate: what it moves counts for one frame.
     const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale, frame.isStill() ? +T::maxWeight : 1, maxCount };
@@ -260,11 +240,8 @@ bool join(const CensusCost& cost, const FrameMemory& last, const FramePrediction
         return false;
     next.disparity.create(disparity.size(), CV_16U);
     next.detail.create(disparity.size(), CV_8U);
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        RowScratch ofRow(disparity.cols);
-        for (int y = rows.start; y < rows.end; ++y)
-            joinRow(frame, scratch.choices.ptr(std::min(y / cell, scratch.choices.rows - 1)), disparity, y, ofRow,
-                    next);
+    parallelFor(disparity.rows, TemporalRow(disparity.cols), [&](int y, TemporalRow& row) {
+        joinRow(frame, scratch.choices.ptr(std::min(y / cell, scratch.choices.rows - 1)), disparity, y, row, next);
     });
     next.disparity.copyTo(disparity);
     return true;

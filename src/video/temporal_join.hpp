@@ -54,10 +54,16 @@ struct ComparedRow
 //! What each pixel of a row takes, and what the frame before has for it
 struct TemporalRow
 {
-    uchar* agrees; // memory; on both sides of the row are TemporalJoin::fringe elements of 0
-    const uchar* choices;
-    const int *unmoved, *moved; // disparities
-    const uchar *unmovedCounts, *movedCounts;
+    explicit TemporalRow(int width)
+        : unmoved(width), moved(width), unmovedCounts(width), movedCounts(width), choices(width),
+          agrees(width + 2 * TemporalJoin::fringe), disparity(width), detail(width)
+    {
+    }
+    std::vector<int> unmoved, moved; // disparities
+    std::vector<uchar> unmovedCounts, movedCounts, choices;
+    std::vector<uchar> agrees;     // memory; on both sides of the row are TemporalJoin::fringe elements of 0
+    std::vector<ushort> disparity; // of FrameMemory, where the motion comes from
+    std::vector<uchar> detail;
 };
 
 //! Percent of the measured disparity's scale that another one may cost more, see TemporalEvidence

@@ -91,7 +91,7 @@ int chooseCells(const short* sums, const uchar* sources, const uchar* shares, in
 @param rule How to join them.
 @param disparity Receives FrameMemory::disparity.
 @param detail Receives FrameMemory::detail. */
-void joinRow(const ushort* measured, const TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
+void joinRow(const ushort* measured, TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
              uchar* detail);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
@@ -249,15 +249,16 @@ int chooseCells(const short* sums, const uchar* sources, const uchar* shares, in
     return contradicting;
 }
 
-void joinRow(const ushort* measured, const TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
+void joinRow(const ushort* measured, TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
              uchar* detail)
 {
     const int tolerance = rule.tolerance, maxStep = rule.maxStep;
     const int maxWeight = rule.maxWeight, maxCount = rule.maxCount;
     const int half = 1 << (FrameMemory::detailBits - 1);
-    const int *unmoved = row.unmoved, *moved = row.moved;
-    const uchar *unmovedCounts = row.unmovedCounts, *movedCounts = row.movedCounts, *choices = row.choices;
-    uchar* const agreesMoved = row.agrees;
+    const int *unmoved = row.unmoved.data(), *moved = row.moved.data();
+    const uchar *unmovedCounts = row.unmovedCounts.data(), *movedCounts = row.movedCounts.data();
+    const uchar* choices = row.choices.data();
+    uchar* const agreesMoved = row.agrees.data() + TemporalJoin::fringe;
     static_assert(TemporalJoin::fringe == 2, "There are as many terms on each side.");
     static_assert(TemporalJoin::maxWeight == 4, "There are as many shares.");
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
