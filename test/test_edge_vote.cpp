@@ -32,8 +32,7 @@ ushort votedDisparity(const Mat& image, const Mat& disparity, int x, int y)
             int change = 0;
             for (int c = 0; c < image.channels(); ++c)
                 change = std::max(change, std::abs(image.ptr(v, u)[c] - image.ptr(y, x)[c]));
-            const int distance = std::max(std::abs(dy), std::abs(u - x));
-            const int votes = std::max(36 - change, 0) * std::max(9 - distance, 1);
+            const int votes = std::max(36 - change, 0);
             near += d > middle && d <= std::min(nearest + 16, 65535) ? votes : 0;
             far += d <= middle && d >= farthest - 16 ? votes : 0;
         }

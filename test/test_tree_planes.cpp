@@ -153,9 +153,9 @@ TEST(HDPStereo_TreePlanes, no_plane)
     }
     {
         SCOPED_TRACE("a small tree");
-        Layer layer(Mat(Size(21, 19), CV_8U, Scalar(90))); // 399 pixels
-        for (int y = 0; y < 19; ++y)
-            for (int x = 0; x < 21; ++x)
+        Layer layer(Mat(Size(23, 13), CV_8U, Scalar(90))); // 299 pixels
+        for (int y = 0; y < 13; ++y)
+            for (int x = 0; x < 23; ++x)
                 layer.win(x, y, 7);
         expectNoPlane(layer);
     }

@@ -67,10 +67,6 @@ struct SixteenWords
     {
         return of([&](int i) { return v_sub_wrap(v[i], b.v[i]); });
     }
-    SixteenWords times(const SixteenWords& b) const
-    {
-        return of([&](int i) { return v_mul_wrap(v[i], b.v[i]); });
-    }
 
     //! Its own lanes where those of a and b are the same, 0 elsewhere
     SixteenWords whereEqual(const SixteenWords& a, const SixteenWords& b) const

@@ -12,8 +12,9 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(int, minPixels, 400, "pixels", "of a tree that gets a plane: what fewer say is mostly noise");
-HDP_TUNABLE(int, samples, 300, "pixels", "of a tree, about: more cost time and find the same plane");
+HDP_TUNABLE(
+    int, samples, 300, "pixels",
+    "of a tree that gets a plane, about: more cost time and find the same plane, what fewer say is mostly noise");
 HDP_TUNABLE(int, triples, 60, "planes", "that are tried: four of them are right if minShare lies on the right one");
 HDP_TUNABLE(double, tiltCost, 0.2, "cost per disparity",
             "between the ends of the tree: of two planes, the flatter one");
@@ -231,7 +232,7 @@ int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVo
     CV_DbgAssert(volume.isUniform);
     std::vector<size_t> trees;
     for (size_t t = 0; t < forest.trees.size(); ++t)
-        if (forest.trees[t].size >= minPixels)
+        if (forest.trees[t].size >= samples)
             trees.push_back(t);
     std::vector<uchar> hasPlane(trees.size());
     parallelFor((int)trees.size(), [&](int t) {

@@ -16,7 +16,6 @@ HDP_TUNABLE(int, likeness, 36, "grey levels",
             "from which on votes count nothing: less is noise, more is another surface");
 HDP_TUNABLE(int, minStep, 2, "pixels", "of disparities at the border of two surfaces: less is the slope of one");
 HDP_TUNABLE(int, reach, 1, "pixels", "beyond both ends of a step, on the same surfaces: more are third ones");
-HDP_TUNABLE(int, nearest, 9, "votes", "of the nearest pixels, one less per row or column: more blurs corners");
 
 // Rows whose colours are split at once
 const int voteBlock = 64;
@@ -31,17 +30,7 @@ void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted)
     if (width < VoteRows::columns)
         return disparity.copyTo(voted);
     voted.create(disparity.size(), CV_16U);
-    const auto nearness = [](int distance) { return (ushort)std::max(nearest - std::abs(distance), 1); };
-    ushort columnNearness[2 * VoteRows::columns + 1];
-    for (int k = -VoteRows::columns; k <= VoteRows::columns; ++k)
-        columnNearness[k + VoteRows::columns] = nearness(k);
-    VoteRule rule = { (ushort)likeness,
-                      (ushort)(minStep * subpixelScale),
-                      (ushort)(reach * subpixelScale),
-                      {},
-                      columnNearness + VoteRows::columns };
-    for (int r = 0; r < VoteRows::rows; ++r)
-        rule.rowNearness[r] = nearness(VoteRows::rowStep * (r - VoteRows::rows / 2));
+    const VoteRule rule = { (ushort)likeness, (ushort)(minStep * subpixelScale), (ushort)(reach * subpixelScale) };
     const int count = (disparity.rows + voteBlock - 1) / voteBlock, border = VoteRows::rowStep * (VoteRows::rows / 2);
     parallel_for_(Range(0, count), [&](const Range& range) {
         std::vector<ushort> near(width + 2), far(width + 2);

@@ -73,7 +73,6 @@ inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort n
     const int middle = (nearest + farthest) / 2;
     const Surface near(middle + 1, std::min(nearest + rule.reach, (int)USHRT_MAX));
     const Surface far(std::max(farthest - rule.reach, 0), middle);
-    const SixteenWords columnNearness = SixteenWords::load(rule.columnNearness + start - x);
     const SixteenWords likeness = SixteenWords::repeat(rule.likeness);
     SixteenWords colour[channels], majority = SixteenWords::repeat(0);
     for (int c = 0; c < channels; ++c)
@@ -81,8 +80,7 @@ inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort n
     HDP_UNROLLED for (int r = 0; r < VoteRows::rows; ++r)
     {
         const SixteenWords change = differenceOf<channels>(rows, r, start, colour).min(likeness);
-        const SixteenWords votes =
-            likeness.minus(change).times(columnNearness.min(SixteenWords::repeat(rule.rowNearness[r])));
+        const SixteenWords votes = likeness.minus(change);
         const SixteenWords disparity = SixteenWords::load(rows.disparity[r] + start);
         majority = majority.plus(near.votes(votes, disparity)).minus(far.votes(votes, disparity));
     }
