@@ -337,7 +337,7 @@ private:
         const int finest = plan.finest().layer, scale = 1 << finest;
         const FrameKey key = { scale, plan.pyramids.minDisparity / (double)scale,
                                largestDisparity(plan.alignment.numDisparities, finest) };
-        predictFrame(left, key, pyramids_.levels.brightness, lastFrame_, shared_.video, prediction_);
+        predictFrame(left, key, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, hasPrior(lastFrame_, prediction_) };
     }
 

@@ -32,7 +32,6 @@ struct FrameMemory
     Mat disparity;         // CV_16UC1, a disparity map
     Mat detail;            // CV_8UC1: four more bits of each disparity, and the number of frames it stands for
     std::vector<Mat> grey; // CV_8UC1: the pyramid of the left image, from cells on
-    double brightness = 1; // of its levels, see LevelFindings
 
     bool isEmpty() const { return frames == 0; }
     void clear() { frames = 0; } // keeps the memory

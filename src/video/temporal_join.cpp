@@ -262,7 +262,6 @@ Verdict joinLastFrame(const CensusCost& cost, const FrameMemory& last, const Fra
     next.frames = prediction.verdict == FIRST ? 1 : last.frames + 1;
     next.key = prediction.key;
     next.motion = prediction.motion;
-    next.brightness = prediction.brightness;
     next.grey.resize(prediction.grey.size());
     for (size_t level = 0; level < next.grey.size(); ++level)
         prediction.grey[level].copyTo(next.grey[level]);

@@ -20,8 +20,6 @@ HDP_TUNABLE(
 // Exposure, on the coarsest level
 HDP_TUNABLE(double, sameGain, 0.15, "difference from 1", "that frames are compared without: scenes change by as much");
 HDP_TUNABLE(double, sameMean, 10, "grey levels", "the same, of the mean");
-HDP_TUNABLE(double, maxGain, 2, "factor", "between two frames: more makes noise of what has hardly any levels");
-HDP_TUNABLE(int, minDeviation, 12, "grey levels", "before brightening: a darker image has steps for levels");
 
 // What is no cut, on the coarsest level
 HDP_TUNABLE(int, cutShare, 60, "percent of the contrast",
@@ -51,17 +49,13 @@ void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
 
 /** The pyramid of this frame as the exposure of the last one would show it: levels of the same mean and deviation, if
 they are not about the same. They are only compared, so it need not be exact. */
-const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const std::vector<Mat>& now, double brightness,
-                                        std::vector<Mat>& exposed)
+const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const std::vector<Mat>& now, std::vector<Mat>& exposed)
 {
     Scalar meanBefore, deviationBefore, mean, deviation;
     meanStdDev(last.grey.back(), meanBefore, deviationBefore);
     meanStdDev(now.back(), mean, deviation);
     const double gain = deviationBefore[0] / std::max(deviation[0], 1.), offset = meanBefore[0] - gain * mean[0];
-    const bool isSame = std::abs(gain - 1) < sameGain && std::abs(meanBefore[0] - mean[0]) < sameMean;
-    const bool isDark =
-        deviationBefore[0] < (minDeviation * last.brightness) || deviation[0] < (minDeviation * brightness);
-    if (isSame || isDark || gain > maxGain || gain * maxGain < 1)
+    if (std::abs(gain - 1) < sameGain && std::abs(meanBefore[0] - mean[0]) < sameMean)
         return now;
     exposed.resize(now.size());
     for (size_t level = 0; level < now.size(); ++level)
@@ -167,19 +161,18 @@ void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
 
 } // namespace
 
-void predictFrame(const Mat& left, const FrameKey& key, double brightness, const FrameMemory& last,
-                  VideoScratch& scratch, FramePrediction& p)
+void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
+                  FramePrediction& p)
 {
     p.verdict = FIRST;
     p.key = key;
-    p.brightness = brightness;
     p.motion = CameraMotion();
     if (std::min(left.cols, left.rows) < cell)
         return;
     buildGrey(left, scratch.halved, p.grey);
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
-    const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, brightness, scratch.exposed);
+    const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, scratch.exposed);
     p.motion = findMotion(last, exposed, scratch.points);
     const bool isOtherScene = (int)scratch.points.size() < CameraMotion::minPoints;
     const std::vector<Mat>& grey = isOtherScene ? p.grey : exposed;

@@ -26,7 +26,6 @@ struct FramePrediction
     FrameKey key = FrameKey(); // of this frame
     CameraMotion motion;       // from the last frame, in pixels of the layer; none for a first frame
     std::vector<Mat> grey;     // of this frame, see FrameMemory
-    double brightness = 1;     // the same
 
     // Only if the frame continues
     BackwardMotion backward; // the same motion
@@ -42,12 +41,11 @@ frame is the first one if nothing is remembered, at another size, with dispariti
 another scene.
 @param left The left image of the finest layer that is matched, see greyLevels().
 @param key What this layer's disparities will stand for.
-@param brightness Of the left image, see LevelFindings.
 @param last What the last frame left.
 @param scratch Memory to work in.
 @param prediction Receives all that is known. */
-CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, double brightness, const FrameMemory& last,
-                             VideoScratch& scratch, FramePrediction& prediction);
+CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
+                             FramePrediction& prediction);
 
 /** Finds what each cell may take from the last frame: what looks different where the motion leads, by more than noise
 and by about the contrast, is something else. Changes and contrasts are means over the squares around a cell.
