@@ -1011,7 +1011,7 @@ inline Mat upsampled(const Mat& upper, Size size)
 
 //! The mean difference of two maps, in pixels, over the window of 2 x 2 cells around that of a pixel; scale: how many
 //! pixels of the first map are one of the other.
-inline double meanDifference(const Mat& map, const Mat& other, int scale, double largest, int window, int y, int x)
+inline double meanDifference(const Mat& map, const Mat& other, int scale, int window, int y, int x)
 {
     double sum = 0;
     for (int row = y / 2 - window / 2; row <= y / 2 + window / 2; ++row)
@@ -1021,7 +1021,7 @@ inline double meanDifference(const Mat& map, const Mat& other, int scale, double
                 const int v = clamped(2 * clamped(row, (map.rows + 1) / 2) + i / 2, map.rows);
                 const int u = clamped(2 * clamped(column, (map.cols + 1) / 2) + i % 2, map.cols);
                 const int there = other.at<ushort>(clamped(v / scale, other.rows), clamped(u / scale, other.cols));
-                sum += std::min(std::abs(map.at<ushort>(v, u) - scale * there) / 16., largest);
+                sum += std::min(std::abs(map.at<ushort>(v, u) - scale * there) / 16., 8.);
             }
     return sum / (4 * window * window);
 }
@@ -1068,8 +1068,8 @@ double confidence(const hdp::ConfidenceMaps& maps, int numDisparities, const For
     for (int column = 0; column < disparity.cols; ++column)
         if (columnInRight(column) == columnInRight(x) && at(y, column) - at(y, x) > 1)
             isVisible = false;
-    const double p = maps.upper.empty() ? 0 : meanDifference(disparity, maps.upper, 2, 8, 31, y, x),
-                 m = meanDifference(disparity, maps.unfiltered, 1, 4, 7, y, x);
+    const double p = maps.upper.empty() ? 0 : meanDifference(disparity, maps.upper, 2, 21, y, x),
+                 m = meanDifference(disparity, maps.unfiltered, 1, 7, y, x);
     const double agreement = 1 / ((1 + 4 * p) * (1 + 4 * m));
     return 255 * (isVisible ? 1 : 0.5) * std::sqrt(std::sqrt(distance / farFromSteps * unique) * agreement);
 }

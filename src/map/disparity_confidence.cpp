@@ -18,20 +18,18 @@ namespace {
 HDP_TUNABLE(int, maxStep, 24, "1 / subpixelScale pixel",
             "between neighbours of one surface: less takes slopes for steps, more leaves steps out");
 HDP_TUNABLE(int, farFromSteps, 64, "pixels", "from the nearest step: wrong patches are smaller");
-HDP_TUNABLE(int, costWindow, 21, "pixels",
-            "side of the square that costs are averaged over: a smaller one has noise, a larger one sees beyond wrong "
-            "patches");
+HDP_TUNABLE(int, patchWindow, 21, "pixels of costs, cells of P",
+            "side of the squares that they are averaged over: a smaller one has noise or misses the middle of wrong "
+            "patches, a larger one sees beyond them");
 HDP_TUNABLE(int, alternative, 2, "pixels",
             "from the winner to the candidates it is compared with: nearer ones cost the same by slopes, farther ones "
             "may be other matches");
 HDP_TUNABLE(float, hiddenShare, 0.5f, "share",
             "of the confidence that a pixel keeps which fails the left-right check: some of them are right");
-HDP_TUNABLE(int, upperWindow, 31, "cells",
-            "side of the square that P is averaged over: a smaller one misses the middle of wrong patches");
 HDP_TUNABLE(int, medianWindow, 7, "cells", "the same of M; smaller, as the median changes single pixels");
-HDP_TUNABLE(int, maxUpper, 8, "pixels",
-            "that a difference from the layer above counts as: few pixels do not decide for a window");
-HDP_TUNABLE(int, maxMedian, 4, "pixels", "the same of differences from the map before the median");
+HDP_TUNABLE(int, maxDifference, 8, "pixels",
+            "that one from the layer above or the map before the median counts as: few pixels do not decide for a "
+            "window");
 HDP_TUNABLE(float, halvingDifference, 0.25f, "pixels", "a mean difference by which the confidence is halved");
 
 // Pixels
@@ -104,13 +102,12 @@ void squareDistances(const uchar* inColumns, int width, short* padded, short* sq
 @param map A disparity map.
 @param other Another one of its size, or that of the layer above.
 @param isUpper Whether it is that.
-@param max What larger differences count as, in pixels.
 @param side Of the windows, in cells. */
-Mat sumDifferences(const Mat& map, const Mat& other, bool isUpper, int max, int side)
+Mat sumDifferences(const Mat& map, const Mat& other, bool isUpper, int side)
 {
     Mat cells((map.rows + 1) / 2, (map.cols + 1) / 2, CV_16U);
     const int width = map.cols, lastUpper = other.cols - 1;
-    const ushort limit = (ushort)(max * subpixelScale);
+    const ushort limit = (ushort)(maxDifference * subpixelScale);
     parallel_for_(Range(0, cells.rows), [&](const Range& rows) {
         std::vector<ushort> doubled(2 * cells.cols), sums(2 * cells.cols);
         for (int y = rows.start; y < rows.end; ++y)
@@ -156,10 +153,10 @@ void compareAlternatives(const Mat& disparity, int numDisparities, const Matchin
         }
     });
     cost.ofDisparities(disparity, costs[0]);
-    sumOverWindows(costs[0], costWindow, CV_32S, own);
+    sumOverWindows(costs[0], patchWindow, CV_32S, own);
     cost.ofDisparities(before, costs[0]);
     cost.ofDisparities(after, costs[1]);
-    sumOverWindows(costs[0] + costs[1], costWindow, CV_32S, others);
+    sumOverWindows(costs[0] + costs[1], patchWindow, CV_32S, others);
 }
 
 //! What the left-right check does not hide, and matches what has data: not 0
@@ -186,11 +183,11 @@ void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const M
     const Mat inColumns = distancesInColumns(disparity), visible = visiblePixels(disparity, cost.limits());
     Mat own, others;
     compareAlternatives(disparity, numDisparities, cost, own, others);
-    const Mat byMedian = sumDifferences(disparity, maps.unfiltered, false, maxMedian, medianWindow);
+    const Mat byMedian = sumDifferences(disparity, maps.unfiltered, false, medianWindow);
     const Mat fromUpper = maps.upper.empty() ? Mat(Mat::zeros(byMedian.size(), CV_32S))
-                                             : sumDifferences(disparity, maps.upper, true, maxUpper, upperWindow);
+                                             : sumDifferences(disparity, maps.upper, true, patchWindow);
     // Sums of differences by which the confidence is halved
-    const float halving = halvingDifference * 4 * subpixelScale, upper = halving * (float)(upperWindow * upperWindow),
+    const float halving = halvingDifference * 4 * subpixelScale, upper = halving * (float)(patchWindow * patchWindow),
                 median = halving * (float)(medianWindow * medianWindow);
     const int far = farFromSteps, width = disparity.cols;
     const float hidden = hiddenShare;

@@ -28,10 +28,10 @@ pixels before and after it (or of the only one of them that there is): max(0, A 
 means of both over a window of 21 x 21 pixels, borders replicated; 0 without alternatives or if A + C = 0. Costs are
 rounded to 1/512, so that sums are of whole numbers.
 
-P is 1 / (1 + 4 p), where p is the mean difference, in pixels, from twice the disparity that the layer above has there,
-no more than 8 per pixel; M is 1 / (1 + 4 m), where m is the mean change by the median, no more than 4 per pixel. Means
-are those over 31 x 31 and 7 x 7 cells of 2 x 2 pixels, the pixel's own in the middle. Borders are replicated. P is 1
-without a layer above.
+P is 1 / (1 + 4 p), where p is the mean difference, in pixels, from twice the disparity that the layer above has there;
+M is 1 / (1 + 4 m), where m is the mean change by the median; each difference counts as 8 at most. Means are those over
+21 x 21 and 7 x 7 cells of 2 x 2 pixels, the pixel's own in the middle. Borders are replicated. P is 1 without a layer
+above.
 
 v is 1 for a pixel that passes the left-right check, see findStable(), or else 1/2.
 @param maps The maps.
