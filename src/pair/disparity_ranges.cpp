@@ -11,7 +11,6 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_DISPATCH(toUnits)
-HDP_DISPATCH(wholeToUnits)
 HDP_DISPATCH(joinLimits)
 HDP_DISPATCH(halveIntervals)
 HDP_DISPATCH(toCandidates)
@@ -41,10 +40,7 @@ void expandLimits(const Mat& given, int limitOfAll, bool isWhole, bool isLargest
     limits.create(given.size(), CV_16S);
     const Range range(isLargest ? SHRT_MIN : limitOfAll, isLargest ? limitOfAll : SHRT_MAX);
     parallelFor(limits.rows, [&](int y) {
-        if (given.depth() == CV_16S)
-            dispatched::wholeToUnits(given.ptr<short>(y), limits.cols, range, limits.ptr<short>(y));
-        else
-            dispatched::toUnits(given.ptr<float>(y), limits.cols, isWhole, isLargest, range, limits.ptr<short>(y));
+        dispatched::toUnits(given.ptr<float>(y), limits.cols, isWhole, isLargest, range, limits.ptr<short>(y));
     });
     if (!coarse.empty())
         resizeNearest(coarse, size, expanded);

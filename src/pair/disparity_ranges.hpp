@@ -18,7 +18,7 @@ struct PixelRanges
 
 /** Ranges as the caller gives them, for each pixel of the image. Those of a coarser map hold for all pixels that are
 nearest to one of it; what is no number limits nothing.
-@param smallest CV_16SC1 or CV_32FC1, in pixels, of the images' size or coarser.
+@param smallest CV_32FC1, in pixels, of the images' size or coarser.
 @param largest Of the same size and type.
 @param size Of the images.
 @param disparities The first and the last one of the map, in pixels; ranges have no others.

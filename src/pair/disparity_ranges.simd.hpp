@@ -17,9 +17,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param isLargest Whether a limit that is no number is the end of the range, not its start. */
 void toUnits(const float* limits, int width, bool isWhole, bool isLargest, const Range& range, short* units);
 
-//! Limits in whole pixels
-void wholeToUnits(const short* limits, int width, const Range& range, short* units);
-
 //! Limits of the image from this offset on, in 0 .. last
 void joinLimits(const short* smallest, const short* largest, int width, int offset, int last, ushort* units);
 
@@ -57,12 +54,6 @@ void toUnits(const float* limits, int width, bool isWhole, bool isLargest, const
         const int inside = (towardsZero + (isInside ? 0 : outward)) * unit;
         units[x] = (short)(isNumber ? clamped(inside, first, last) : unlimited);
     }
-}
-
-void wholeToUnits(const short* limits, int width, const Range& range, short* units)
-{
-    const int first = range.start, last = range.end;
-    HDP_VECTORIZED for (int x = 0; x < width; ++x) units[x] = (short)clamped(limits[x] * subpixelScale, first, last);
 }
 
 void joinLimits(const short* smallest, const short* largest, int width, int offset, int last, ushort* units)

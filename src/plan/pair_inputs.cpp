@@ -38,8 +38,8 @@ void setMasks(InputArray left, InputArray right, PairInputs& inputs)
 
 void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inputs)
 {
-    const Mat smallest = smallestArray.empty() ? Mat() : smallestArray.getMat().clone(),
-              largest = largestArray.empty() ? Mat() : largestArray.getMat().clone();
+    const Mat smallest = smallestArray.empty() ? Mat() : smallestArray.getMat(),
+              largest = largestArray.empty() ? Mat() : largestArray.getMat();
     if (!smallest.empty() && (smallest.dims != 2 || (smallest.type() != CV_16SC1 && smallest.type() != CV_32FC1)))
         CV_Error(Error::StsUnsupportedFormat, "smallest must be CV_16SC1 or CV_32FC1, disparities in pixels");
     if (largest.dims != smallest.dims || largest.type() != smallest.type() || largest.size() != smallest.size())
@@ -50,8 +50,8 @@ void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inp
     if (!isLess.empty() && countNonZero(isLess) > 0)
         CV_Error(Error::StsOutOfRange,
                  format("largest must not be less than smallest, as it is in %d pixels", countNonZero(isLess)));
-    inputs.smallest = smallest;
-    inputs.largest = largest;
+    smallest.convertTo(inputs.smallest, CV_32F);
+    largest.convertTo(inputs.largest, CV_32F);
 }
 
 void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inputs)

@@ -12,7 +12,7 @@ namespace cv { namespace stereo { namespace hdp {
 struct PairInputs
 {
     Mat leftMask, rightMask; // CV_8UC1, 0 where there is no data; empty: there is everywhere
-    Mat smallest, largest;   // CV_16SC1 or CV_32FC1, disparities of the pixels; empty: there are no ranges
+    Mat smallest, largest;   // CV_32FC1, disparities of the pixels; empty: there are no ranges
     Mat prior, sigma;        // CV_32FC1, disparities that are about known; empty: none are
 
     bool hasMasks() const { return !leftMask.empty() || !rightMask.empty(); }
