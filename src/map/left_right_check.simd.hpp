@@ -16,9 +16,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param columns Memory for a row.
 @param nearest Memory for a row and one element.
 @param visibility Receives a Visibility per pixel. */
-void visibilityRow(const ushort* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
-                   uchar* visibility);
-void visibilityRow(const short* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
+template <typename T>
+void visibilityRow(const T* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
                    uchar* visibility);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
@@ -32,9 +31,11 @@ inline int roundedDisparity(int disparity)
     return (disparity + subpixelScale / 2 - 1 + ((disparity >> 4) & 1)) >> 4;
 }
 
+} // namespace
+
 template <typename T>
-void checkRow(const T* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
-              uchar* visibility)
+void visibilityRow(const T* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
+                   uchar* visibility)
 {
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
@@ -44,19 +45,8 @@ void checkRow(const T* disparity, int width, int invalid, int maxDifference, int
     testVisibility(disparity, columns, width, width, maxDifference, nearest, visibility);
 }
 
-} // namespace
-
-void visibilityRow(const ushort* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
-                   uchar* visibility)
-{
-    checkRow(disparity, width, invalid, maxDifference, columns, nearest, visibility);
-}
-
-void visibilityRow(const short* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
-                   uchar* visibility)
-{
-    checkRow(disparity, width, invalid, maxDifference, columns, nearest, visibility);
-}
+template void visibilityRow(const ushort*, int, int, int, int*, int*, uchar*);
+template void visibilityRow(const short*, int, int, int, int*, int*, uchar*);
 
 #endif
 

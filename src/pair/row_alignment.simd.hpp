@@ -10,14 +10,11 @@ namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 //! The sum of four rows with weights in 1/1024, rounded and kept in the range of the type.
-void mixRows(const uchar* const rows[4], const int weights[4], int begin, int end, uchar* mixed);
-void mixRows(const ushort* const rows[4], const int weights[4], int begin, int end, ushort* mixed);
+template <typename T> void mixRows(const T* const rows[4], const int weights[4], int begin, int end, T* mixed);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-namespace {
-
-template <typename T> inline void mix(const T* const rows[4], const int weights[4], int begin, int end, T* mixed)
+template <typename T> void mixRows(const T* const rows[4], const int weights[4], int begin, int end, T* mixed)
 {
     const T *const a = rows[0], *const b = rows[1], *const c = rows[2], *const d = rows[3];
     const int wa = weights[0], wb = weights[1], wc = weights[2], wd = weights[3];
@@ -29,17 +26,8 @@ template <typename T> inline void mix(const T* const rows[4], const int weights[
     }
 }
 
-} // namespace
-
-void mixRows(const uchar* const rows[4], const int weights[4], int begin, int end, uchar* mixed)
-{
-    mix(rows, weights, begin, end, mixed);
-}
-
-void mixRows(const ushort* const rows[4], const int weights[4], int begin, int end, ushort* mixed)
-{
-    mix(rows, weights, begin, end, mixed);
-}
+template void mixRows(const uchar* const*, const int*, int, int, uchar*);
+template void mixRows(const ushort* const*, const int*, int, int, ushort*);
 
 #endif
 
