@@ -13,7 +13,6 @@ namespace {
 
 HDP_TUNABLE(int, fitRise, 12, "cost", "above the lowest one of the pixel: candidates up to it fit");
 HDP_TUNABLE(int, barrierRise, 24, "cost", "above the lowest one: what is between two runs; less splits what is noisy");
-HDP_TUNABLE(int, widestRun, 6, "candidates", "beyond the first one, of runs that may join: wider ones tell nothing");
 HDP_TUNABLE(int, maxStep, 1, "halves of a candidate", "between runs of a surface: more joins the surface behind");
 HDP_TUNABLE(int, minPiece, 20, "pixels", "of connected runs: smaller ones are noise");
 HDP_TUNABLE(int, maxGap, 16, "pixels", "without runs, that surfaces go on beyond: as the inside of a brick");
@@ -262,10 +261,7 @@ private:
         }
     }
 
-    static bool areNear(const Run& a, const Run& b)
-    {
-        return std::abs(a.centre - b.centre) <= maxStep && std::max(a.last - a.first, b.last - b.first) <= widestRun;
-    }
+    static bool areNear(const Run& a, const Run& b) { return std::abs(a.centre - b.centre) <= maxStep; }
 
     bool isRepeated(int pixel) const { return firsts_[pixel + 1] - firsts_[pixel] > 1; }
 
