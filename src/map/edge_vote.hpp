@@ -42,9 +42,9 @@ one of its two surfaces. A weighted median @cite Ma2013WM of two surfaces is suc
 A step is where disparities of 3 x 3 pixels differ by more than 2 pixels; halfway between the nearest and the farthest
 one is the border of the two surfaces. Each pixel of the window around that is on a surface, or less than a pixel beyond
 its end, votes for it by max(36 - difference, 0), where difference is the largest one of a channel from that of the
-pixel in the middle. The window has 16 columns, of which 7 are on the left of the pixel, all of them inside of the image,
-and every third one of 13 rows, the nearest ones of the image. A pixel whose surface has fewer votes than the other one
-gets the nearest or the farthest disparity of the 3 x 3.
+pixel in the middle. The window has 16 columns, of which 7 are on the left of the pixel, all of them inside of the
+image, and every third one of 13 rows, the nearest ones of the image. A pixel whose surface has fewer votes than the
+other one gets the nearest or the farthest disparity of the 3 x 3.
 
 In bars of up to 8 pixels the nearer surface keeps its pixels: these are fewer than those around, whatever they look
 like.

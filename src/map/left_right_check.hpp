@@ -20,8 +20,9 @@ enum Visibility
 //! to the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
 CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);
 
-/** Left-right check of a layer's disparities. A pixel is stable if the maximum of the disparities that map to its column
-of the right image is larger by a pixel at most: exact equality fails by rounding. One that maps to no column is not.
+/** Left-right check of a layer's disparities. A pixel is stable if the maximum of the disparities that map to its
+column of the right image is larger by a pixel at most: exact equality fails by rounding. One that maps to no column is
+not.
 @param disparity CV_16UC1, a disparity map.
 @param stable Receives CV_8UC1, 255 where stable, else 0. */
 CV_EXPORTS void findStable(const Mat& disparity, Mat& stable);

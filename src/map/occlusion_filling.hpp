@@ -47,10 +47,10 @@ struct OcclusionScratch
 /** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the
 pixels that map to one column of the right image the one with the lowest residual is there; those whose disparity is
 another one, and those that map to no column, are not. Nor are up to three pixels between two gaps that are no shorter,
-nor what is left of a surface that begins at the border of the right image: the last run of four pixels it shows, without
-steps, of which the first one is in column 0, 1 or 2; or one that is nearer than what is before it, if nearer pixels hide
-three quarters of that from the right image, or it maps to no column, and no more than an eighth is visible in columns
-that are not blank.
+nor what is left of a surface that begins at the border of the right image: the last run of four pixels it shows,
+without steps, of which the first one is in column 0, 1 or 2; or one that is nearer than what is before it, if nearer
+pixels hide three quarters of that from the right image, or it maps to no column, and no more than an eighth is visible
+in columns that are not blank.
 The surface is continued to the left border, half as steep as its first columns are.
 @param disparity CV_16UC1, a disparity map; changed.
 @param residual Matching costs, CV_8UC1.
