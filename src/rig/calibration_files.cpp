@@ -198,8 +198,9 @@ NamedCalibration readOpenCV(const Texts& texts, Size imageSize, double unit)
         cameras[i].distortion = readMatrix(texts, D, 0);
         const std::string name = nameOf(textWith(texts, K), K + "/data");
         cameras[i].names = { name, name, nameOf(textWith(texts, D), D + "/data") };
-        const CalibrationText& text = textWith(texts, "fisheye_model");
-        cameras[i].isFisheye = text.has("fisheye_model") && text.number("fisheye_model") != 0;
+        const std::string model = "fisheye_model";
+        const CalibrationText& text = textWith(texts, model);
+        cameras[i].isFisheye = text.has(model) && text.number(model) != 0;
     }
     if (imageSize.empty())
         CV_Error(Error::StsBadArg, "imageSize must be given: '" + texts[0].file() + "' does not have it");
