@@ -325,8 +325,8 @@ private:
             moveIntoIntervals(intervals(), disparity);
     }
 
-    //! Filters the map. Pixels without data are USHRT_MAX then, which changes none beside it. They, and those up to so
-    //! many pixels beside them, stay as they are.
+    //! Filters the map, in which pixels without data are USHRT_MAX then. They, and those beside them whose result that
+    //! may change, up to reach pixels away, stay as they are.
     template <typename Filter> void filterWhereData(int reach, const Filter& filter)
     {
         swap(result_.disparity, own_.filtered);

@@ -603,8 +603,9 @@ TEST(HDPStereo_MatcherContract, negative_disparities_up_to_the_left_border)
                 SCOPED_TRACE(testing::Message() << system.name << " from " << minDisparity);
                 const Ptr<HDPTreeMatcher> matcher = createSystem(system, 32, minDisparity);
                 const Mat wrong = cv::abs(match(*matcher, left, right) + 16 * shift) > 16;
-                // Half of a window at the border sees nothing.
-                EXPECT_LE(cv::countNonZero(wrong.colRange(0, shift)), (int)wrong.rows * shift / 8);
+                // Half of a window at the border sees nothing, and of few columns that is many.
+                const int mostWrong = (int)wrong.rows * shift / (shift < 16 ? 8 : 20);
+                EXPECT_LE(cv::countNonZero(wrong.colRange(0, shift)), mostWrong);
                 Mat confidence, trees, intervals;
                 matcher->getConfidence(confidence);
                 EXPECT_EQ(left.size(), confidence.size());

@@ -38,13 +38,14 @@ struct Fit
     bool hasBarrier;
 };
 
-//! The candidates up to fitRise above the lowest cost, and whether there is a barrier between them. Indices are short:
-//! vectors hold more of them.
-Fit fitOf(const uchar* costs, int count)
+//! The candidates of a pixel up to fitRise above the lowest cost, and whether there is a barrier between them. Indices
+//! are short: vectors hold more of them.
+Fit fitOf(const CostVolume& volume, int pixel)
 {
-    uchar lowest = UCHAR_MAX, highest = 0;
-    HDP_VECTORIZED for (int k = 0; k < count; ++k) lowest = std::min(lowest, costs[k]);
-    const short limit = (short)(lowest + fitRise), end = (short)count;
+    const CostVolume::Candidates own = volume.of(pixel);
+    const uchar *const costs = volume.costs.data() + own.start(), lowest = volume.lowestOf(own);
+    uchar highest = 0;
+    const short limit = (short)(lowest + fitRise), end = (short)own.interval.size();
     short first = end, last = 0;
     HDP_VECTORIZED for (short k = 0; k < end; ++k)
     {
@@ -132,24 +133,22 @@ public:
 private:
     void findFits()
     {
-        const int count = volume_.of(0).interval.size();
         parallel_for_(Range(0, volume_.size.height), [&](const Range& rows) {
             for (int i = rows.start * width_; i < rows.end * width_; ++i)
-                fits_[i] = fitOf(costsOf(i), count);
+                fits_[i] = fitOf(volume_, i);
         });
     }
 
     //! Whether enough of some pixels have several runs, and repeat in the left image: most pairs need no more.
     bool looksRepeated() const
     {
-        const int count = volume_.of(0).interval.size();
         int samples = 0, repeated = 0;
         std::vector<Run> runs;
         for (int y = sampleStep / 2; y < volume_.size.height; y += sampleStep)
             for (int x = sampleStep / 2; x < width_; x += sampleStep, ++samples)
             {
                 const int i = y * width_ + x;
-                const Fit fit = fitOf(costsOf(i), count);
+                const Fit fit = fitOf(volume_, i);
                 if (!fit.hasBarrier)
                     continue;
                 runs.clear();

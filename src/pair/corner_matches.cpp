@@ -242,21 +242,16 @@ void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows
     const int margin = CornerMatching::searchSide / 2, rowMargin = margin + CornerMatching::searchRadius;
     const Rect inside(margin, rowMargin, right.cols - 2 * margin, right.rows - 2 * rowMargin);
     const Range all(-left.cols, left.cols);
-    parallel_for_(Range(0, (int)matches.size()), [&](const Range& range) {
-        std::vector<float> correlations;
-        for (int i = range.start; i < range.end; ++i)
-        {
-            CornerMatch &match = matches[i], back;
-            if (!match.isValid)
-                continue;
-            back.left = Point(cvRound(match.x), cvRound(match.y));
-            match.isValid = inside.contains(back.left);
-            if (!match.isValid)
-                continue;
-            findMatch(right, left, windows, all, correlations, back);
-            match.isValid =
-                back.isValid && std::abs(back.x - match.left.x) <= 1 && std::abs(back.y - match.left.y) <= 1;
-        }
+    parallelFor((int)matches.size(), std::vector<float>(), [&](int i, std::vector<float>& correlations) {
+        CornerMatch &match = matches[i], back;
+        if (!match.isValid)
+            return;
+        back.left = Point(cvRound(match.x), cvRound(match.y));
+        match.isValid = inside.contains(back.left);
+        if (!match.isValid)
+            return;
+        findMatch(right, left, windows, all, correlations, back);
+        match.isValid = back.isValid && std::abs(back.x - match.left.x) <= 1 && std::abs(back.y - match.left.y) <= 1;
     });
 }
 

@@ -42,19 +42,15 @@ void horizontalGradient(const Mat& image, Mat& gradient)
 {
     const int width = image.cols, last = width - 1;
     gradient.create(image.size(), CV_16S);
-    parallel_for_(Range(0, image.rows), [&](const Range& rows) {
-        std::vector<int> grey(width + 1);
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            const int* g = grey.data();
-            short* d = gradient.ptr<short>(y);
-            gradientLevels(image.ptr(y), width, image.channels(), grey.data());
-            for (int x = 1; x < last; ++x)
-                d[x] = (short)((g[x + 1] - g[x - 1] + 2048) >> 12);
-            const int after = std::min(1, last), before = std::max(last - 1, 0); // of an only column: itself
-            d[0] = (short)(((g[after] - g[0]) * borderGain + 1024) >> 11);
-            d[last] = (short)(((g[last] - g[before]) * borderGain + 1024) >> 11);
-        }
+    parallelFor(image.rows, std::vector<int>(width + 1), [&](int y, std::vector<int>& grey) {
+        const int* g = grey.data();
+        short* d = gradient.ptr<short>(y);
+        gradientLevels(image.ptr(y), width, image.channels(), grey.data());
+        for (int x = 1; x < last; ++x)
+            d[x] = (short)((g[x + 1] - g[x - 1] + 2048) >> 12);
+        const int after = std::min(1, last), before = std::max(last - 1, 0); // of an only column: itself
+        d[0] = (short)(((g[after] - g[0]) * borderGain + 1024) >> 11);
+        d[last] = (short)(((g[last] - g[before]) * borderGain + 1024) >> 11);
     });
 }
 
