@@ -50,6 +50,7 @@ function(add_dispatched_stages target)
   file(GENERATE OUTPUT "${dispatch_generated}/cv_cpu_config.h" CONTENT "${cpu_config}")
   foreach(stage IN LISTS dispatched_stages)
     set_property(SOURCE src/${stage}.cpp APPEND PROPERTY COMPILE_DEFINITIONS __OPENCV_BUILD=1)
+    set_property(SOURCE src/${stage}.cpp PROPERTY SKIP_PRECOMPILE_HEADERS ON) # theirs are for other options
     set(declarations "")
     set(all_modes BASELINE)
     foreach(mode IN LISTS dispatched_modes)
@@ -59,7 +60,7 @@ function(add_dispatched_stages target)
       foreach(feature IN LISTS ${mode}_features)
         list(APPEND definitions CV_CPU_COMPILE_${feature}=1)
       endforeach()
-      set_source_files_properties("${source}" PROPERTIES GENERATED TRUE
+      set_source_files_properties("${source}" PROPERTIES GENERATED TRUE SKIP_PRECOMPILE_HEADERS ON
         COMPILE_OPTIONS "${${mode}_flags};${dispatched_options}" COMPILE_DEFINITIONS "${definitions}")
       target_sources(${target} PRIVATE "${source}")
       string(APPEND declarations

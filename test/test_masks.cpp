@@ -94,6 +94,8 @@ TEST(HDPStereo_Masks, levels_without_data_have_no_influence)
         for (int type : types)
             for (int minDisparity : { 0, -13, 5 })
             {
+                if (minDisparity != 0 && type != CV_8UC1)
+                    continue; // the types share what knows of a range
                 SCOPED_TRACE(testing::Message() << preset.name << ", type " << type << ", from " << minDisparity);
                 RNG rng(5);
                 MaskedPair pair(type);

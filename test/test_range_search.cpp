@@ -47,33 +47,35 @@ void expectCovers(const Range& found, int moved)
 
 TEST(HDPStereo_RangeSearch, any_sign_and_type)
 {
-    for (const int moved : { 0, -30, -80, 25 }) // columns of the left image that are cut off, or of the right one
+    const struct
     {
-        const int columns = scene().left.cols - std::abs(moved);
-        const Mat left = scene().left.colRange(std::max(-moved, 0), std::max(-moved, 0) + columns);
-        const Mat right = scene().right.colRange(std::max(moved, 0), std::max(moved, 0) + columns);
-        for (const int type : { CV_8UC3, CV_8UC1, CV_16UC1, CV_32FC1 })
+        int moved, type; // columns of the left image that are cut off, or of the right one
+    } cases[] = { { 0, CV_8UC3 },   { -30, CV_8UC3 }, { -80, CV_8UC3 },  { 25, CV_8UC3 },
+                  { -80, CV_8UC1 }, { 25, CV_16UC1 }, { -30, CV_32FC1 }, { 0, CV_32FC1 } };
+    for (const auto& c : cases)
+    {
+        SCOPED_TRACE(format("moved by %d, type %d", c.moved, c.type));
+        const int columns = scene().left.cols - std::abs(c.moved);
+        const int leftStart = std::max(-c.moved, 0), rightStart = std::max(c.moved, 0);
+        Mat images[] = { scene().left.colRange(leftStart, leftStart + columns).clone(),
+                         scene().right.colRange(rightStart, rightStart + columns).clone() };
+        for (Mat& image : images)
         {
-            SCOPED_TRACE(format("moved by %d, type %d", moved, type));
-            Mat images[] = { left.clone(), right.clone() };
-            for (Mat& image : images)
-            {
-                if (type != CV_8UC3)
-                    cv::cvtColor(image, image, COLOR_BGR2GRAY);
-                if (type == CV_16UC1)
-                    image.convertTo(image, type, 16, 100);
-                if (type == CV_32FC1)
-                    image.convertTo(image, type, 1 / 255.);
-            }
-            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(7, 0);
-            const Mat disparity = match(*matcher, images[0], images[1]);
-            EXPECT_EQ(7, matcher->getMinDisparity()) << "parameters stay";
-            EXPECT_EQ(0, matcher->getNumDisparities());
-            const Range found = foundRange(*matcher);
-            expectCovers(found, moved);
-            const Ptr<HDPTreeMatcher> told = HDPTreeMatcher::create(found.start, found.size());
-            expectIdentical(match(*told, images[0], images[1]), disparity);
+            if (c.type != CV_8UC3)
+                cv::cvtColor(image, image, COLOR_BGR2GRAY);
+            if (c.type == CV_16UC1)
+                image.convertTo(image, c.type, 16, 100);
+            if (c.type == CV_32FC1)
+                image.convertTo(image, c.type, 1 / 255.);
         }
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(7, 0);
+        const Mat disparity = match(*matcher, images[0], images[1]);
+        EXPECT_EQ(7, matcher->getMinDisparity()) << "parameters stay";
+        EXPECT_EQ(0, matcher->getNumDisparities());
+        const Range found = foundRange(*matcher);
+        expectCovers(found, c.moved);
+        const Ptr<HDPTreeMatcher> told = HDPTreeMatcher::create(found.start, found.size());
+        expectIdentical(match(*told, images[0], images[1]), disparity);
     }
 }
 

@@ -389,7 +389,7 @@ Mat greyFloats(const Mat& image)
 }
 
 //! Tiles that know their place have no seams, whatever the file is read by.
-TEST(HDPStereo_Programs, tiles)
+TEST(HDPStereo_Tiles, make_the_map_of_the_whole)
 {
     const DatasetFolder folder;
     const SyntheticPair pair = makeSlantedPlane(Size(1000, 600), 32, 9);
@@ -406,6 +406,8 @@ TEST(HDPStereo_Programs, tiles)
         const Mat expected = cv::imread(whole, IMREAD_UNCHANGED);
         for (const bool isGiven : { false, true }) // what is found in reduced images is a bit different
         {
+            if (!isGiven && isFloat)
+                continue; // two kinds of files are enough for that
             const Execution result = run(folder, "hdpstereo --tiles --memory=96" + images + tiled +
                                                      (isGiven ? " --findings=" + model : String()));
             EXPECT_EQ(0, result.status) << result.errors;
@@ -742,7 +744,7 @@ TEST(HDPStereo_Programs, batch_of_a_list)
     const long few = peakMemory(folder, program + list(3) + folder.path("few"));
     const long many = peakMemory(folder, program + list(60) + folder.path("many"));
     EXPECT_EQ(CV_32FC1, cv::imread(folder.path("many/night/59.pfm"), IMREAD_UNCHANGED).type());
-#ifdef __SANITIZE_ADDRESS__ // it keeps what is freed
+#ifdef HDPSTEREO_SANITIZE_ADDRESS // it keeps what is freed
     const long more = LONG_MAX / 2;
 #else
     const long more = 2000;
