@@ -156,7 +156,7 @@ TEST(HDPStereo_CameraMotion, scaled)
 std::vector<Mat> pyramidOf(const Mat& image)
 {
     std::vector<Mat> pyramid(1, image);
-    while ((int)pyramid.size() < trackingLevels(image.cols))
+    while ((int)pyramid.size() < trackingLevels(image.size()))
     {
         Mat half;
         cv::resize(pyramid.back(), half, Size(pyramid.back().cols / 2, pyramid.back().rows / 2), 0, 0, INTER_AREA);

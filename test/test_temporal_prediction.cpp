@@ -360,6 +360,18 @@ TEST(HDPStereo_TemporalPrediction, needs_the_census)
     EXPECT_NO_THROW(matchFrame(*matcher, frame));
 }
 
+//! Strips that cannot be halved as often as their longer side
+TEST(HDPStereo_TemporalPrediction, strips)
+{
+    for (const Size size : { Size(700, 2), Size(700, 3), Size(2, 700), Size(3, 700) })
+    {
+        SyntheticVideo video(size, 6, 4);
+        const Ptr<HDPTreeMatcher> matcher = createTemporal(HDPTreeMatcher::PRESET_FAST);
+        for (int i = 0; i < 3; ++i)
+            EXPECT_EQ(size, matchFrame(*matcher, video.render(i)).size());
+    }
+}
+
 //! Any preset and any size, down to one pixel; the same for any number of threads
 TEST(HDPStereo_SlowTemporalPrediction, sizes_and_threads)
 {

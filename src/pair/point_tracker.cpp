@@ -124,10 +124,10 @@ void bestOfCells(Size grid, int cell, int step, double minScore, const RowScores
     });
 }
 
-int trackingLevels(int width)
+int trackingLevels(Size size)
 {
     int levels = 1;
-    while (width >> (levels - 1) > maxCoarsestWidth)
+    while (size.width >> (levels - 1) > maxCoarsestWidth && size.height >> levels > 0)
         ++levels;
     return levels;
 }

@@ -33,8 +33,8 @@ typedef std::function<void(int y, const std::vector<int>& columns, double* score
 @param best Receives a pixel of each cell, row by row, or nowhere. */
 void bestOfCells(Size grid, int cell, int step, double minScore, const RowScores& scoreRow, std::vector<Point>& best);
 
-//! Number of levels that trackPoints() needs if the finest one has this width
-CV_EXPORTS int trackingLevels(int width);
+//! Number of levels that trackPoints() needs if the finest one has this size; each has a pixel.
+CV_EXPORTS int trackingLevels(Size size);
 
 /** Chooses points to be tracked: on a grid, where the image has texture in both directions.
 @param before Pyramid of the frame before, CV_8UC1, the finest level first, each of half the size of the one before.

@@ -44,7 +44,7 @@ void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
     halveImage(left, halved);
     grey.resize(std::max<size_t>(grey.size(), 1));
     halved.convertTo(grey[0], CV_8U, 1. / greyScale);
-    buildPyramid({ grey[0] }, trackingLevels(halved.cols), grey);
+    buildPyramid({ grey[0] }, trackingLevels(halved.size()), grey);
 }
 
 /** The pyramid of this frame as the exposure of the last one would show it: levels of the same mean and deviation, if
