@@ -196,13 +196,12 @@ void compareDisparities(const ushort* measured, const ushort* unmoved, const int
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
         const int here = measured[j * FrameMemory::cell], there = unmoved[j * FrameMemory::cell];
-        const int hasMoved = (sources[j] & MOVED_PLACE) != 0, where = moved[j] >> FrameMemory::detailBits;
-        const int distance = std::abs(there - where);
-        const int isOther = (hasMoved ^ 1) | ((distance > same) & (distance <= maxDistance));
-        const int hasUnmoved = ((sources[j] & SAME_PLACE) != 0) & isOther;
-        used[j] = (uchar)(hasUnmoved * SAME_PLACE + hasMoved * MOVED_PLACE);
-        different[j] = (uchar)((hasUnmoved & (std::abs(there - here) > same)) * SAME_PLACE +
-                               (hasMoved & (std::abs(where - here) > same)) * MOVED_PLACE);
+        const int where = moved[j] >> FrameMemory::detailBits, distance = std::abs(there - where);
+        const int hasMoved = sources[j] & MOVED_PLACE, isOther = (distance > same) & (distance <= maxDistance);
+        const int hasUnmoved = sources[j] & choose(hasMoved == 0, SAME_PLACE, isOther);
+        used[j] = (uchar)(hasUnmoved | hasMoved);
+        different[j] =
+            (uchar)((hasUnmoved & -(std::abs(there - here) > same)) | (hasMoved & -(std::abs(where - here) > same)));
     }
 }
 
