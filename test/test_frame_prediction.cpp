@@ -103,7 +103,7 @@ TEST(HDPStereo_FrameWarp, runs)
         for (int y = 0; y < size.height; ++y)
         {
             std::vector<Point> from(size.width, Point(-1, -1));
-            warp.forEachRun(y, [&](int x, const Point& first, int count) {
+            warp.forEachBlock(y, [&](int x, const Point& first, int count) {
                 for (int k = 0; k < count; ++k)
                 {
                     EXPECT_EQ(Point(-1, -1), from[x + k]);

@@ -19,38 +19,34 @@ struct FrameWarp
     Size size;  // of both frames
     Mat shifts; // CV_16SC2, per block: from a pixel to where it was
 
-    bool isKnown(int x, int y) const { return shift(x, y)[0] != unknown; }
+    //! The shifts of the blocks that a row of pixels is in
+    const Vec2s* ofRow(int y) const { return shifts.ptr<Vec2s>(y / block); }
+    bool isKnown(int x, int y) const { return ofRow(y)[x / block][0] != unknown; }
 
     //! Where a pixel was, or the nearest pixel of the image
     Point operator()(int x, int y) const
     {
-        const Vec2s& s = shift(x, y);
+        const Vec2s& s = ofRow(y)[x / block];
         return Point(std::min(std::max(x + s[0], 0), size.width - 1), std::min(std::max(y + s[1], 0), size.height - 1));
     }
 
-    //! Calls take(x, from, count) for all pixels of a row, in runs: count pixels from x on were side by side, the first
-    //! of them at from.
-    template <typename Take> void forEachRun(int y, const Take& take) const
+    //! Calls take(x, from, count) for all pixels of a row: count pixels from x on were side by side, the first of them
+    //! at from. count is a constant: that of a block, or 1 where the block reaches beyond the image.
+    template <typename Take> CV_ALWAYS_INLINE void forEachBlock(int y, const Take& take) const
     {
         const int width = size.width, lastX = width - 1, lastY = size.height - 1;
-        const Vec2s* const row = shifts.ptr<Vec2s>(y / block);
-        for (int x = 0, end; x < width; x = end)
+        const Vec2s* const row = ofRow(y);
+        for (int x = 0; x < width; x += block)
         {
             const Vec2s s = row[x / block];
-            for (end = x + block; end < width && row[end / block] == s;)
-                end += block;
-            end = std::min(end, width);
             const int fromX = x + s[0], fromY = std::min(std::max(y + s[1], 0), lastY);
-            if (fromX >= 0 && end + s[0] <= width)
-                take(x, Point(fromX, fromY), end - x);
+            if (fromX >= 0 && std::max(x, fromX) + block <= width)
+                take(x, Point(fromX, fromY), +block);
             else
-                for (int i = x; i < end; ++i)
+                for (int i = x; i < std::min(x + block, width); ++i)
                     take(i, Point(std::min(std::max(i + s[0], 0), lastX), fromY), 1);
         }
     }
-
-private:
-    const Vec2s& shift(int x, int y) const { return shifts.ptr<Vec2s>(y / block)[x / block]; }
 };
 
 /** Follows blocks back. Where one was depends on its disparity, and that on where it was: from the disparity that the

@@ -61,20 +61,27 @@ struct LastFrame
     Size cells() const { return prediction.sources.size(); }
 };
 
-//! The disparities that the motion takes to the first pixels of a row's cells, and their details
-void takeMovedCells(const LastFrame& frame, int y, std::vector<int>& finer, std::vector<uchar>& detail)
+//! What the motion takes to the pixels of a row, as it is in the last frame
+void takeMoved(const LastFrame& frame, int y, TemporalRow& row)
 {
-    const int endX = frame.cells().width * cell;
-    frame.prediction.warp.forEachRun(y, [&](int x, const Point& from, int count) {
-        const ushort* const disparities = frame.memory.disparity.ptr<ushort>(from.y) + from.x;
-        const uchar* const details = frame.memory.detail.ptr(from.y) + from.x;
-        for (int k = x % cell; k < count && x + k < endX; k += cell)
-        {
-            finer[(x + k) / cell] = disparities[k] << FrameMemory::detailBits;
-            detail[(x + k) / cell] = details[k];
-        }
+    const FrameMemory& memory = frame.memory;
+    ushort* const disparity = row.disparity.data();
+    uchar* const detail = row.detail.data();
+    frame.prediction.warp.forEachBlock(y, [&](int x, const Point& from, int count) {
+        std::memcpy(disparity + x, memory.disparity.ptr<ushort>(from.y) + from.x, count * sizeof(ushort));
+        std::memcpy(detail + x, memory.detail.ptr(from.y) + from.x, count);
     });
-    dispatched::changeDisparities(frame.change, y, cell, frame.cells().width, finer.data());
+}
+
+//! The same, and the disparities of the first pixels of the row's cells, now
+void takeMovedCells(const LastFrame& frame, int y, TemporalRow& row)
+{
+    takeMoved(frame, y, row);
+    const int cells = frame.cells().width;
+    const ushort* const disparity = row.disparity.data();
+    int* const moved = row.moved.data();
+    HDP_VECTORIZED for (int j = 0; j < cells; ++j) moved[j] = disparity[j * cell] << FrameMemory::detailBits;
+    dispatched::changeDisparities(frame.change, y, cell, cells, moved);
 }
 
 //! How the motion changes disparities, corrected by those of this frame, measured (CV_16UC1)
@@ -82,15 +89,14 @@ DisparityChange measuredChange(const LastFrame& frame, const Mat& measured)
 {
     const float unit = 1.f / subpixelScale;
     std::vector<float> predicted, now;
-    std::vector<int> moved(frame.cells().width);
-    std::vector<uchar> details(frame.cells().width);
+    TemporalRow row(measured.cols);
     for (int i = 0; i < frame.cells().height; i += driftStep)
     {
-        takeMovedCells(frame, i * cell, moved, details);
+        takeMovedCells(frame, i * cell, row);
         for (int j = 0; j < frame.cells().width; j += driftStep)
             if (frame.prediction.sources.ptr(i)[j] & MOVED_PLACE)
             {
-                predicted.push_back(moved[j] / (float)FrameMemory::scale);
+                predicted.push_back(row.moved[j] / (float)FrameMemory::scale);
                 now.push_back(measured.ptr<ushort>(i * cell)[j * cell] * unit);
             }
     }
@@ -118,18 +124,19 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
     scratch.shares.create(cells, CV_8UC2);
     scratch.evidence.create(cells, CV_16SC(EVIDENCE_CHANNELS));
     parallel_for_(Range(0, cells.height), [&](const Range& rows) {
-        std::vector<int> moved(cells.width), compared(cells.width);
-        std::vector<uchar> different(cells.width), movedDetail(cells.width);
+        TemporalRow row(measured.cols);
+        std::vector<int> compared(cells.width);
+        std::vector<uchar> different(cells.width);
         for (int i = rows.start; i < rows.end; ++i)
         {
             const int y = i * cell;
             if (!frame.isStill())
-                takeMovedCells(frame, y, moved, movedDetail);
-            dispatched::compareDisparities(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y), moved.data(),
-                                           cells.width, same, maxDistance, frame.prediction.sources.ptr(i),
-                                           scratch.sources.ptr(i), different.data());
+                takeMovedCells(frame, y, row);
+            dispatched::compareDisparities(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y),
+                                           row.moved.data(), cells.width, same, maxDistance,
+                                           frame.prediction.sources.ptr(i), scratch.sources.ptr(i), different.data());
             dispatched::shareCells(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y),
-                                   frame.memory.detail.ptr(y), moved.data(), movedDetail.data(), cells.width, shares,
+                                   frame.memory.detail.ptr(y), row.moved.data(), row.detail.data(), cells.width, shares,
                                    scratch.shares.ptr(i));
             int count = 0;
             for (int j = 0; j < cells.width; ++j)
@@ -150,7 +157,8 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
                                measured.ptr<ushort>(y + k),
                                frame.memory.disparity.ptr<ushort>(y + k) };
             }
-            dispatched::compareCells(ofCells, moved.data(), different.data(), compared.data(), count, offset, evidence);
+            dispatched::compareCells(ofCells, row.moved.data(), different.data(), compared.data(), count, offset,
+                                     evidence);
         }
     });
 }
@@ -190,19 +198,6 @@ bool chooseSources(const LastFrame& frame, VideoScratch& scratch)
     return 100 * std::accumulate(contradicted.begin(), contradicted.end(), (int64)0) > contradictedShare * all;
 }
 
-//! The pixels of a row come from where the motion leads.
-void takeMoved(const LastFrame& frame, int y, TemporalRow& row)
-{
-    const FrameMemory& memory = frame.memory;
-    const int width = memory.disparity.cols;
-    frame.prediction.warp.forEachRun(y, [&](int x, const Point& from, int count) {
-        std::memcpy(&row.disparity[x], memory.disparity.ptr<ushort>(from.y) + from.x, count * sizeof(ushort));
-        std::memcpy(&row.detail[x], memory.detail.ptr(from.y) + from.x, count);
-    });
-    dispatched::unpackRow(row.disparity.data(), row.detail.data(), width, row.moved.data(), row.movedCounts.data());
-    dispatched::changeDisparities(frame.change, y, 1, width, row.moved.data());
-}
-
 void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, int y, TemporalRow& row,
              FrameMemory& next)
 {
@@ -214,7 +209,11 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
     dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width, row.unmoved.data(),
                           row.unmovedCounts.data());
     if (!frame.isStill())
+    {
         takeMoved(frame, y, row);
+        dispatched::unpackRow(row.disparity.data(), row.detail.data(), width, row.moved.data(), row.movedCounts.data());
+        dispatched::changeDisparities(frame.change, y, 1, width, row.moved.data());
+    }
     const int maxDistance = std::max(tolerance / frame.prediction.key.scale, 1) * FrameMemory::scale;
     // The motion is an estimate: what it moves counts for one frame.
     const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale, frame.isStill() ? +T::maxWeight : 1, maxCount };

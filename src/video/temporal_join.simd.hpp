@@ -54,7 +54,7 @@ void compareDisparities(const ushort* measured, const ushort* unmoved, const int
 @param unmoved As well.
 @param unmovedDetail FrameMemory's, of the same pixels.
 @param moved As of compareDisparities().
-@param movedDetail FrameMemory's, where the motion leads, of each cell.
+@param movedDetail The same where the motion leads.
 @param count Number of cells.
 @param rule What they may.
 @param shares Receives two numbers per cell: percent of the unmoved one, and of the moved one. */
@@ -224,7 +224,7 @@ void shareCells(const ushort* measured, const ushort* unmoved, const uchar* unmo
         const int here = measured[j * FrameMemory::cell], there = unmoved[j * FrameMemory::cell];
         const int where = moved[j] >> FrameMemory::detailBits;
         const int unmovedCount = std::min(unmovedDetail[j * FrameMemory::cell] & FrameMemory::countMask, maxCount);
-        const int movedCount = std::min(movedDetail[j] & FrameMemory::countMask, maxCount);
+        const int movedCount = std::min(movedDetail[j * FrameMemory::cell] & FrameMemory::countMask, maxCount);
         const int unmovedAgreed = std::max(unmovedCount - 1, 0), movedAgreed = std::max(movedCount - 1, 0);
         shares[2 * j] = (uchar)choose(std::abs(there - here) <= maxDistance, choose(unmovedAgreed > 0, near, first),
                                       apart * unmovedAgreed | keeps);

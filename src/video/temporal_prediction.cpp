@@ -143,14 +143,16 @@ void findContrast(const Mat& image, Mat& sums, Mat& contrast)
 void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
 {
     static_assert(cell == 2, "Pixels are half cells.");
-    const int endX = cell * before.cols, lastX = endX - cell, lastY = cell * before.rows - cell;
+    const int lastX = cell * before.cols - cell, lastY = cell * before.rows - cell;
+    const uchar* const levels = before.data; // local, as stores may alias the Mat
+    const size_t step = before.step;
     warped.create(before.size(), CV_8U);
     parallelFor(before.rows, [&](int y) {
         uchar* const row = warped.ptr(y);
-        warp.forEachRun(cell * y, [&](int x, const Point& from, int count) {
+        warp.forEachBlock(cell * y, [=](int x, const Point& from, int count) {
             const int fromY = std::min(from.y, lastY);
-            const uchar *above = before.ptr(fromY / cell), *below = before.ptr((fromY + 1) / cell);
-            for (int k = x % cell; k < count && x + k < endX; k += cell)
+            const uchar *above = levels + fromY / cell * step, *below = levels + (fromY + 1) / cell * step;
+            for (int k = x % cell; k < count && x + k < lastX + cell; k += cell)
             {
                 const int fromX = std::min(from.x + k, lastX), left = fromX / cell, right = (fromX + 1) / cell;
                 row[(x + k) / cell] = (uchar)((above[left] + above[right] + below[left] + below[right] + 2) >> 2);
