@@ -11,7 +11,7 @@ namespace cv { namespace stereo { namespace hdp {
 /** Sums over the windows around all pixels, borders replicated, by several threads.
 @param values Whole numbers of one channel.
 @param side Of the windows, in pixels; odd.
-@param depth CV_16U or CV_32S.
+@param depth CV_16U, CV_16S or CV_32S.
 @param sums Receives the sums; another Mat. */
 inline void sumOverWindows(const Mat& values, int side, int depth, Mat& sums)
 {

@@ -53,10 +53,10 @@ struct FrameMemory
 struct VideoScratch
 {
     std::vector<TrackedPoint> points;
-    Mat halved;                             // of predictFrame(): the left image
-    std::vector<Mat> exposed;               // the same: its pyramid, by the last frame's exposure
-    Mat warped, change, contrast, sums[4];  // of findSources(), per cell
-    Mat sources, shares, evidence, choices; // of joinLastFrame(), per cell
+    Mat halved;                                        // of predictFrame(): the left image
+    std::vector<Mat> exposed;                          // the same: its pyramid, by the last frame's exposure
+    Mat warped, change, contrast, difference, sums[3]; // of findSources(), per cell
+    Mat sources, shares, evidence, choices;            // of joinLastFrame(), per cell
 };
 
 }}} // namespace cv::stereo::hdp

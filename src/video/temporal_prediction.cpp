@@ -5,6 +5,7 @@
 #include "temporal_prediction.hpp"
 
 #include "../base/units.hpp"
+#include "../base/vectorized.hpp"
 #include "../base/window_sums.hpp"
 #include "../pair/image_pyramid.hpp"
 
@@ -205,25 +206,28 @@ void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, Video
     sumOverWindows(scratch.contrast, contrastSide, CV_16U, scratch.sums[1]);
     if (warp)
     {
-        sumOverWindows(before, changeSide, CV_16U, scratch.sums[2]);
-        sumOverWindows(now, changeSide, CV_16U, scratch.sums[3]);
+        subtract(now, before, scratch.difference, noArray(), CV_16S);
+        sumOverWindows(scratch.difference, changeSide, CV_16S, scratch.sums[2]);
     }
     const int noise = changeCells * (minNoise + noiseFactor * medianLevel(scratch.change));
     const int maxChange = (int)(changeCells * stillness), share = contrastShare * changeCells;
     sources.create(now.size(), CV_8U);
     parallelFor(now.rows, [&](int y) {
         const ushort *changes = scratch.sums[0].ptr<ushort>(y), *contrasts = scratch.sums[1].ptr<ushort>(y);
-        uchar* ofRow = sources.ptr(y);
-        for (int x = 0; x < now.cols; ++x)
-            ofRow[x] = changes[x] <= noise || 100 * contrastCells * changes[x] <= share * contrasts[x];
+        const int cells = now.cols, maxNoise = noise; // local, as stores may alias all else
+        uchar* const ofRow = sources.ptr(y);
+        HDP_VECTORIZED for (int x = 0; x < cells; ++x) ofRow[x] =
+            (changes[x] <= maxNoise) | (100 * contrastCells * changes[x] <= share * contrasts[x]);
         if (!warp)
             return; // 1 is SAME_PLACE
-        const ushort *there = scratch.sums[2].ptr<ushort>(y), *here = scratch.sums[3].ptr<ushort>(y);
-        for (int x = 0; x < now.cols; ++x)
+        const short* differences = scratch.sums[2].ptr<short>(y);
+        HDP_VECTORIZED for (int x = 0; x < cells; ++x) ofRow[x] =
+            (uchar)(ofRow[x] * MOVED_PLACE + (std::abs(differences[x]) <= maxChange) * SAME_PLACE);
+        const Vec2s* const shifts = warp->ofRow(cell * y);
+        for (int x = 0; x < cells; ++x)
         {
-            const bool isSame = std::abs(here[x] - there[x]) <= maxChange;
-            const bool isMoved = ofRow[x] && warp->isKnown(cell * x, cell * y);
-            ofRow[x] = (uchar)((isSame ? SAME_PLACE : 0) | (isMoved ? MOVED_PLACE : 0));
+            const bool isKnown = shifts[cell * x / FrameWarp::block][0] != FrameWarp::unknown;
+            ofRow[x] &= SAME_PLACE | MOVED_PLACE * isKnown;
         }
     });
 }
