@@ -34,7 +34,7 @@ struct FrameWarp
     //! at from. count is a constant: that of a block, or 1 where the block reaches beyond the image.
     template <typename Take> CV_ALWAYS_INLINE void forEachBlock(int y, const Take& take) const
     {
-        const int width = size.width, lastX = width - 1, lastY = size.height - 1;
+        const int width = size.width, lastY = size.height - 1;
         const Vec2s* const row = ofRow(y);
         for (int x = 0; x < width; x += block)
         {
@@ -44,7 +44,7 @@ struct FrameWarp
                 take(x, Point(fromX, fromY), +block);
             else
                 for (int i = x; i < std::min(x + block, width); ++i)
-                    take(i, Point(std::min(std::max(i + s[0], 0), lastX), fromY), 1);
+                    take(i, (*this)(i, y), 1);
         }
     }
 };
