@@ -175,8 +175,9 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
             if (numDisparities > 5)
                 layer.mask(rng);
             const hdp::CensusCost cost = layer.cost();
-            const hdp::ScanlineProblem problem = { &cost,           &layer.weights, size,           numDisparities,
-                                                   layer.largest(), &layer.windows, usualPenalties, { 60, 100 } };
+            const hdp::ScanlineProblem problem = {
+                &cost, &layer.weights, size, numDisparities, layer.largest(), &layer.windows, usualPenalties, 60, 100
+            };
             const hdp::ScanlineStripe stripe = { Range(0, size.height), Range(0, size.height) };
             std::vector<uchar> stored((size.height + 1) * hdp::ScanlineScratch::storedBytes(size.width));
             Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);

@@ -28,15 +28,12 @@ void ScanlineScratch::prepare(int width, int numDisparities)
     for (std::vector<uchar>* stored : { &priors, &intoSide, &intoNext })
         stored->resize(upperColumns * CandidateWindow::candidates);
     isContiguous.assign(upperColumns, 0);
+    const int length = CandidateWindow::runLength, farthest = numDisparities + CandidateWindow::candidates;
     for (int run = 0; run < CandidateWindow::runs; ++run)
     {
         first[run].assign(upperColumns, 0); // of the margins' candidates, too, the addresses are valid
         priorRow[run].resize(upperColumns);
         firstOfColumn[run].resize(2 * pairs);
-    }
-    const int length = CandidateWindow::runLength, farthest = numDisparities + CandidateWindow::candidates;
-    for (int run = 0; run < CandidateWindow::runs; ++run)
-    {
         orders[run].assign(2 * (farthest + length), 255);
         for (int i = 0; i < length; ++i)
             orders[run][farthest + length + i] = (uchar)(run * length + i);
@@ -53,17 +50,18 @@ void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageF
                         ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
     const Size size = weights.size();
-    const MinimumShape shape = { 4 * (float)bluntSlope, 4 * (float)sharpSlope };
-    const ScanlineProblem problem = { &cost, &weights, size, numDisparities, maxDisparity, &windows, penalties, shape };
+    const float blunt = 4 * (float)bluntSlope, sharp = 4 * (float)sharpSlope; // of sums of four directions
+    const ScanlineProblem problem = { &cost,    &weights,  size,  numDisparities, maxDisparity,
+                                      &windows, penalties, blunt, sharp };
     const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, stripeHeight);
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);
-    buffers.stripes.resize(stripes.size());
+    buffers.resize(stripes.size());
     // What is stored is as large as a thread needs it, not as the image would.
     parallelFor((int)stripes.size(), Mat(), [&](int i, Mat& stored) {
         const int storedRows = (stripes[i].rows.end - stripes[i].reach.start + 1) / 2 * 2;
         stored.create(storedRows, (int)ScanlineScratch::storedBytes(size.width), CV_8U);
-        dispatched::aggregateStripe(problem, stripes[i], buffers.stripes[i], stored.data, disparity, residual);
+        dispatched::aggregateStripe(problem, stripes[i], buffers[i], stored.data, disparity, residual);
     });
 }
 

@@ -25,12 +25,6 @@ struct ScanlinePenalties
     };
 };
 
-//! Sums of the directions, as differences from the winner's, that tell how sharp a minimum is, see winnerFraction()
-struct MinimumShape
-{
-    float blunt, sharp;
-};
-
 //! What is aggregated, see aggregateScanlines()
 struct ScanlineProblem
 {
@@ -41,7 +35,7 @@ struct ScanlineProblem
     int maxDisparity; // of a map
     const Mat* windows;
     ScanlinePenalties penalties;
-    MinimumShape shape;
+    float blunt, sharp; // of sums of the directions, see winnerFraction()
 
     //! Candidates of a window that are inside the range or beside its ends
     int validCandidates() const
@@ -85,10 +79,7 @@ struct ScanlineScratch
     std::vector<unsigned> winnerSums;
 };
 
-struct ScanlineBuffers
-{
-    std::vector<ScanlineScratch> stripes;
-};
+typedef std::vector<ScanlineScratch> ScanlineBuffers; // of the stripes
 
 /** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching from the
 left and from below, in a sweep upward, and from the right and from above, in one downward. The cost of candidate d is

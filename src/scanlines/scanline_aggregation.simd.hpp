@@ -377,7 +377,7 @@ private:
     //! A row's disparities, with winnerFraction(), and residuals
     void finishRow(int group, ushort* disparity, uchar* residual) const
     {
-        const float blunt = p_.shape.blunt, sharp = p_.shape.sharp;
+        const float blunt = p_.blunt, sharp = p_.sharp;
         const int last = p_.validCandidates() - 1, large = p_.penalties.large, maxDisparity = p_.maxDisparity;
         const short *firstOfLow = tables_.firstOfColumn(0), *firstOfHigh = tables_.firstOfColumn(1);
         const uchar *winners = winners_[group], *costs = costs_[group];
