@@ -317,6 +317,22 @@ TEST(HDPStereo_StereoCalibration, refusesOtherModels)
     EXPECT_EQ(0, cvtest::norm(read(replaced("radtan", "none"), Size()).distCoeffs1, NORM_INF));
 }
 
+//! A file of one program may have another one's name for a model: its coefficients count.
+TEST(HDPStereo_StereoCalibration, readsCoefficientsOfAnyModel)
+{
+    for (const int coefficients : { 5, 8 })
+        for (const auto& write : { inKalibrFile, inEurocFiles })
+        {
+            const StereoCalibration c = makeCalibration(coefficients);
+            Files files = write(c);
+            const char* const model = coefficients == 5 ? "plumb_bob" : "rational_polynomial";
+            for (CalibrationFile& file : files)
+                for (CalibrationField& field : file.fields)
+                    field.text = std::regex_replace(field.text, std::regex("radtan|radial-tangential"), model);
+            expectNear(c, read(files, Size()));
+        }
+}
+
 TEST(HDPStereo_CalibrationText, readsWhatYamlHas)
 {
     const CalibrationText text("f",

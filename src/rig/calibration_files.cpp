@@ -84,18 +84,21 @@ void readPose(const CalibrationText& text, const std::string& path, Matx33d& R, 
     T = Vec3d(pose(0, 3), pose(1, 3), pose(2, 3));
 }
 
-//! The names that Kalibr, EuRoC and ROS have for models; count: of the coefficients, 0 if it varies
-bool isFisheyeModel(const CalibrationText& text, const std::string& path, size_t& count)
+//! Model and coefficients under the names that Kalibr, EuRoC and ROS have for them
+void readDistortion(const CalibrationText& text, const std::string& model, const std::string& coefficients,
+                    Camera& camera)
 {
-    const std::string model = text.word(path);
-    count = model == "none" || model == "plumb_bob" || model == "rational_polynomial" ? 0 : 4;
-    if (model == "equidistant" || model == "fisheye")
-        return true;
-    if (count == 4 && model != "radtan" && model != "radial-tangential")
-        text.fail(path,
+    const std::string name = text.word(model);
+    camera.isFisheye = name == "equidistant" || name == "fisheye";
+    const bool hasFour = camera.isFisheye || name == "radtan" || name == "radial-tangential";
+    if (!hasFour && name != "plumb_bob" && name != "rational_polynomial" && name != "none")
+        text.fail(model,
                   "one of plumb_bob, rational_polynomial, radtan, radial-tangential, equidistant and none, not '" +
-                      model + "'");
-    return false;
+                      name + "'");
+    if (name != "none")
+        camera.distortion = text.numbers(coefficients, hasFour ? 4 : 0);
+    if (camera.distortion.empty()) // also of images that are rectified
+        camera.distortion.resize(4);
 }
 
 //! What Kalibr and EuRoC have in common
@@ -108,9 +111,7 @@ Camera readPinhole(const CalibrationText& text, const std::string& camera, const
     result.size = sizeOf(text, size[0], size[1], camera + "resolution");
     const std::vector<double> in = text.numbers(camera + "intrinsics", 4);
     result.matrix = cameraMatrix(in[0], in[1], in[2], in[3]);
-    size_t count;
-    result.isFisheye = isFisheyeModel(text, camera + "distortion_model", count);
-    result.distortion = count == 0 ? std::vector<double>(4) : text.numbers(camera + coefficients, count);
+    readDistortion(text, camera + "distortion_model", camera + coefficients, result);
     const std::string name = nameOf(text, camera + "intrinsics");
     result.names = { name, name, nameOf(text, camera + coefficients) };
     return result;
@@ -154,11 +155,7 @@ NamedCalibration readRos(const Texts& texts)
         Camera& camera = cameras[i];
         camera.size = sizeOf(text, text.number("image_width"), text.number("image_height"), "image_width");
         camera.matrix = Matx33d(text.numbers("camera_matrix/data", 9).data());
-        size_t count;
-        camera.isFisheye = isFisheyeModel(text, "distortion_model", count);
-        camera.distortion = text.numbers("distortion_coefficients/data", count);
-        if (camera.distortion.empty()) // of images that are rectified
-            camera.distortion.resize(4);
+        readDistortion(text, "distortion_model", "distortion_coefficients/data", camera);
         R[i] = Matx33d(text.numbers("rectification_matrix/data", 9).data());
         if (!isRotation(R[i]))
             text.fail("rectification_matrix/data", "a rotation");
