@@ -177,6 +177,19 @@ TEST(HDPStereo_StereoRig, rectifiesAllTypesOfImages)
     expectIdentical(grey, same);
 }
 
+TEST(HDPStereo_StereoRig, rectifiesTheLargestImages)
+{
+    StereoCalibration c = makeCalibration();
+    c.imageSize.width = 32766;
+    const Mat row(c.imageSize, CV_8U, Scalar(1));
+    for (const Size& size : { Size(32766, 3), Size(3, 32766) })
+    {
+        Mat left, right;
+        StereoRig::create(c, 90, size)->rectify(row, row, left, right);
+        EXPECT_EQ(size, left.size());
+    }
+}
+
 TEST(HDPStereo_StereoRig, computesDepthOfWhatHasADisparity)
 {
     const Ptr<StereoRig> rig = StereoRig::create(makeCalibration());
@@ -219,7 +232,9 @@ TEST(HDPStereo_StereoRig, refusesWhatIsImpossible)
     expectBad([](StereoCalibration& c) { c.T.release(); }, "T ");
     for (const double angle : { -1., 0.5, 171., std::nan("") })
         expectRejected([&] { StereoRig::create(good, angle); }, "fieldOfView");
-    expectRejected([&] { StereoRig::create(good, 0, Size(0, 5)); }, "size");
+    for (const Size& size : { Size(0, 5), Size(32767, 1), Size(1, 32767) })
+        expectRejected([&] { StereoRig::create(good, 0, size); }, "size");
+    expectBad([](StereoCalibration& c) { c.imageSize.width = 32767; }, "imageSize");
 
     const Ptr<StereoRig> rig = StereoRig::create(good);
     const Mat image(good.imageSize, CV_8U, Scalar(1)), other(10, 10, CV_8U), deep(good.imageSize, CV_64F);

@@ -86,9 +86,8 @@ bool isRotation(const Matx33d& R) { return norm(R * R.t(), Matx33d::eye(), NORM_
 void checkCalibration(const CalibrationNames& names, StereoCalibration& calibration)
 {
     StereoCalibration c = calibration;
-    const int most = 1 << 15;
-    if (c.imageSize.width < 1 || c.imageSize.height < 1 || c.imageSize.width > most || c.imageSize.height > most)
-        failOf(names.imageSize, "from 1 x 1 to 32768 x 32768");
+    if (!isPossible(c.imageSize))
+        failOf(names.imageSize, "from 1 x 1 to 32766 x 32766");
     checkCamera(names.cameras[0], c.imageSize, c.isFisheye, c.cameraMatrix1, c.distCoeffs1);
     checkCamera(names.cameras[1], c.imageSize, c.isFisheye, c.cameraMatrix2, c.distCoeffs2);
     checkRotation(names.rotation, c.R);

@@ -24,6 +24,12 @@ struct CalibrationNames
 
 const double leastBaseline = 1e-6; // metres
 
+//! Whether cv::remap takes and makes images of this size
+inline bool isPossible(Size size)
+{
+    return std::min(size.width, size.height) >= 1 && std::max(size.width, size.height) < SHRT_MAX;
+}
+
 //! But for the few digits of files
 bool isRotation(const Matx33d& R);
 

@@ -40,11 +40,10 @@ Matx33d cameraMatrix(double fx, double fy, double cx, double cy) { return Matx33
 
 Size sizeOf(const CalibrationText& text, double width, double height, const std::string& path)
 {
-    const int most = 1 << 15;
-    if (!(width >= 1 && width <= most && height >= 1 && height <= most) || width != std::floor(width) ||
-        height != std::floor(height))
-        text.fail(path, format("whole numbers from 1 to %d", most));
-    return Size((int)width, (int)height);
+    const Size size(saturate_cast<int>(width), saturate_cast<int>(height));
+    if (!isPossible(size) || size.width != width || size.height != height)
+        text.fail(path, "whole numbers from 1 to 32766");
+    return size;
 }
 
 //! text: that exceptions name
@@ -356,8 +355,8 @@ cv::stereo::StereoCalibration cv::stereo::readStereoCalibration(const String& fi
                                                                 Size imageSize, double unit)
 {
     CV_TRACE_FUNCTION();
-    if (imageSize != Size() && (imageSize.width < 1 || imageSize.height < 1))
-        CV_Error(Error::StsOutOfRange, "imageSize must be above 0, or not given");
+    if (imageSize != Size() && !hdp::isPossible(imageSize))
+        CV_Error(Error::StsOutOfRange, "imageSize must be from 1 x 1 to 32766 x 32766, or not given");
     if (!(unit > 0 && unit <= 1e6))
         CV_Error(Error::StsOutOfRange, "unit must be above 0, and not above 1000000");
     std::vector<hdp::CalibrationText> texts(1, hdp::readCalibrationText(first));

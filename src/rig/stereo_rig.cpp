@@ -148,9 +148,8 @@ Ptr<StereoRig> StereoRig::create(const StereoCalibration& calibration, double fi
         CV_Error(Error::StsOutOfRange, "fieldOfView must be 0, or from 1 to 170 degrees");
     if (size == Size())
         size = checked.imageSize;
-    const int most = (1 << 15) - 1; // of cv::remap
-    if (size.width < 1 || size.height < 1 || size.width > most || size.height > most)
-        CV_Error(Error::StsOutOfRange, "size must be from 1 x 1 to 32767 x 32767");
+    if (!hdp::isPossible(size))
+        CV_Error(Error::StsOutOfRange, "size must be from 1 x 1 to 32766 x 32766");
     return makePtr<StereoRigImpl>(checked, fieldOfView, size);
 }
 
