@@ -131,6 +131,21 @@ TEST(HDPStereo_RigDrift, refusesWhatIsNoRigAndNoRows)
     expectRejected([&] { drift->correct(StereoCalibration(), Mat::eye(3, 3, CV_64F)); }, "calibration");
 }
 
+//! R and T may be parts of a larger matrix, such as a pose.
+TEST(HDPStereo_RigDrift, correctsPartsOfMatrices)
+{
+    const Ptr<RigDrift> drift = RigDrift::create(K, size);
+    drift->add(rowsOf(turnOf(0.5, 0, 0.3)));
+    const StereoCalibration c = makeCalibration();
+    StereoCalibration parts = c;
+    const Mat pose = poseOf(c.R, c.T), R2 = Mat::eye(3, 3, CV_64F);
+    parts.R = pose(Rect(0, 0, 3, 3));
+    parts.T = pose(Rect(3, 0, 1, 3));
+    const StereoCalibration expected = drift->correct(c, R2), corrected = drift->correct(parts, R2);
+    EXPECT_EQ(0, cvtest::norm(expected.R, corrected.R, NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.T, corrected.T, NORM_INF));
+}
+
 struct Turn
 {
     double pitch, yaw, roll;

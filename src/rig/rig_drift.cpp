@@ -117,7 +117,7 @@ public:
         const Matx33d R2(R2Mat), turned = R2.t() * rotationOf(turn) * R2;
         StereoCalibration corrected = calibration;
         corrected.R = Mat(turned * Matx33d(R), true);
-        corrected.T = Mat(turned * Vec3d(T.ptr<double>()), true); // the camera turns where it is
+        corrected.T = Mat(turned * Vec3d(T), true); // the camera turns where it is
         corrected.cameraMatrix2 = calibration.cameraMatrix2.clone();
         corrected.cameraMatrix2.at<double>(0, 0) *= 1 + turn[GROWTH];
         corrected.cameraMatrix2.at<double>(1, 1) *= 1 + turn[GROWTH];
