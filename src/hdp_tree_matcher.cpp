@@ -201,8 +201,7 @@ public:
         Mat mismatch, ofLayer;
         if (plan.cost.isCensus)
             levelMismatch(layers_[plan.layer].disparity, scratch_[plan.layer].census, mismatch);
-        // Errors of whole disparities: within 0.34 if they are the nearest ones, 0.68 if they are rounded down.
-        const float rounding = !plan.hasFractions ? 0.34f : result_.plan.output.isWhole ? 0.68f : 0.f;
+        const float rounding = result_.plan.output.isWhole ? 0.34f : 0.f; // of 68 % of what is rounded to whole pixels
         disparitySigma(confidenceOfLayer(), mismatch, rounding, ofLayer);
         double scale = 1;
         for (int layer = 0; layer < plan.layer; ++layer)

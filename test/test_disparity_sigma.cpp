@@ -122,6 +122,23 @@ TEST(HDPStereo_DisparitySigma, is_true_of_a_pair)
     }
 }
 
+//! Whole disparities are the nearest ones, and known as well, whether layers have fractions or not.
+TEST(HDPStereo_DisparitySigma, of_whole_disparities)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(200, 150), 32, 9);
+    const Ptr<M> matcher = M::create(0, 32);
+    matcher->setDisparityDepth(CV_32F);
+    const Mat exact = match(*matcher, pair.left, pair.right), sigma = sigmaOf(*matcher);
+    change(*matcher, [](Params& p) { p.useSubpixel = false; });
+    const Mat disparity = match(*matcher, pair.left, pair.right), whole = sigmaOf(*matcher);
+    for (int y = 0; y < 150; ++y)
+        for (int x = 0; x < 200; ++x)
+        {
+            ASSERT_EQ(cvRound(exact.at<float>(y, x)), disparity.at<float>(y, x));
+            ASSERT_NEAR(std::hypot(sigma.at<float>(y, x), 0.34), whole.at<float>(y, x), 1e-4);
+        }
+}
+
 TEST(HDPStereo_DisparitySigma, and_reasons_of_rejected_pixels)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(200, 150), 32, 9);

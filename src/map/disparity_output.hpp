@@ -17,7 +17,7 @@ struct OutputPlan
     int minDisparity;
     int extension;   // columns of the layers that the image does not have, in pixels of the image
     int finestLayer; // 0: the image
-    bool isWhole;    // whether disparities are rounded down to whole pixels
+    bool isWhole;    // whether disparities are rounded to whole pixels
     int disp12MaxDiff, speckleWindowSize, speckleRange; // as of cv::StereoMatcher; <= 0: no filter
 
     bool hasFilters() const { return disp12MaxDiff > 0 || speckleWindowSize > 0; }
