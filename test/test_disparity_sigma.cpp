@@ -6,6 +6,7 @@
 #include "synthetic_pair.hpp"
 #include "../src/base/units.hpp"
 #include "../src/cost/census_cost.hpp"
+#include "../src/map/disparity_reasons.hpp"
 #include "../src/map/disparity_sigma.hpp"
 #include "../src/pair/image_levels.hpp"
 
@@ -169,10 +170,20 @@ TEST(HDPStereo_DisparitySigma, and_reasons_of_rejected_pixels)
                     else if (isRejected)
                         ASSERT_EQ((int)M::REASON_SPECKLE, reason);
                     else
-                        ASSERT_EQ(x * 16 - disparity.at<short>(y, x) < -8, reason == M::REASON_OUTSIDE);
+                        ASSERT_EQ(x * 16 - disparity.at<short>(y, x) <= -8, reason == M::REASON_OUTSIDE);
                 }
             EXPECT_EQ(filters > 0, rejected > 0);
         }
+}
+
+//! Half a pixel before the right image nothing hides a pixel, whether its column is rounded into the image or not.
+TEST(HDPStereo_DisparitySigma, reasons_at_the_border)
+{
+    const Mat disparity = (Mat_<ushort>(1, 6) << 8, 24, 40, 56, 72, 72);
+    Mat reasons;
+    hdp::findReasons(disparity, hdp::OutputPlan{ 0, 0, 0, false, 0, 0, 0 }, 6, reasons);
+    const int outside = M::REASON_OUTSIDE, matched = M::REASON_MATCHED;
+    expectIdentical((Mat_<uchar>(1, 6) << outside, outside, outside, outside, outside, matched), reasons);
 }
 
 TEST(HDPStereo_DisparitySigma, reasons_are_those_of_the_scene)
