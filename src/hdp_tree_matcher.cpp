@@ -216,8 +216,10 @@ public:
         if (!result_.isMatched)
             return reasonsArray.release();
         const PairPlan& pairPlan = result_.plan;
+        const LayerPlan& layer = pairPlan.finest();
         Mat ofLayer;
-        findReasons(layers_[pairPlan.finest().layer].disparity, pairPlan.output, pairPlan.size.width, ofLayer);
+        findReasons(layers_[layer.layer].disparity, pairPlan.output, pairPlan.size.width,
+                    scratch_[layer.layer].cost(layer.cost).limits(), ofLayer);
         give(ofLayer, INTER_NEAREST, reasonsArray);
         const OutputPlan& output = pairPlan.output;
         if (output.hasFilters())

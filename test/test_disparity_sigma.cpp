@@ -181,7 +181,7 @@ TEST(HDPStereo_DisparitySigma, reasons_at_the_border)
 {
     const Mat disparity = (Mat_<ushort>(1, 6) << 8, 24, 40, 56, 72, 72);
     Mat reasons;
-    hdp::findReasons(disparity, hdp::OutputPlan{ 0, 0, 0, false, 0, 0, 0 }, 6, reasons);
+    hdp::findReasons(disparity, hdp::OutputPlan{ 0, 0, 0, false, 0, 0, 0 }, 6, hdp::CostLimits(), reasons);
     const int outside = M::REASON_OUTSIDE, matched = M::REASON_MATCHED;
     expectIdentical((Mat_<uchar>(1, 6) << outside, outside, outside, outside, outside, matched), reasons);
 }

@@ -407,4 +407,27 @@ TEST(HDPStereo_Masks, reason_and_sigma)
     }
 }
 
+//! Pixels without data hide none of the others: those that the filter does not reject are not occluded.
+TEST(HDPStereo_Masks, reasons_are_those_of_the_filter)
+{
+    const MaskedPair pair(CV_8UC1);
+    for (const System& preset : { presetPaper, presetFast, presetQuality, presetTree }) // whose layer is the image
+        for (const int minDisparity : { 0, -12 }) // even ones: half a pixel is rounded as without them
+        {
+            SCOPED_TRACE(testing::Message() << preset.name << ", from " << minDisparity);
+            const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45, minDisparity);
+            matcher->setMasks(pair.leftMask, pair.rightMask);
+            matcher->setDisp12MaxDiff(-1);
+            match(*matcher, pair.left, pair.right);
+            Mat reasons, filtered;
+            matcher->getReasons(reasons);
+            matcher->setDisp12MaxDiff(1);
+            match(*matcher, pair.left, pair.right);
+            matcher->getReasons(filtered);
+            const Mat isOccluded = reasons == HDPTreeMatcher::REASON_OCCLUDED,
+                      isKept = filtered != HDPTreeMatcher::REASON_UNSTABLE;
+            EXPECT_EQ(0, countNonZero(isOccluded & isKept));
+        }
+}
+
 }} // namespace opencv_test

@@ -62,6 +62,15 @@ void CostLimits::apply(int y, const ushort* disparity, uchar* cost) const
         cost[x] = std::min(cost[x], std::min(own[x], limit[wholeDisparity(disparity[x]) - x]));
 }
 
+Mat CostLimits::dropMissing(const Mat& disparity) const
+{
+    if (isEmpty())
+        return disparity;
+    Mat dropped = disparity.clone();
+    dropped.setTo(Scalar(USHRT_MAX), left_.colRange(margin, margin + width_) == 0);
+    return dropped;
+}
+
 void CostLimits::hideUnmatched(int y, const ushort* disparity, uchar* visible) const
 {
     const uchar* const limit = right(y) + width_ - 1;

@@ -41,6 +41,8 @@ public:
     void apply(const int* pixels, int count, int first, int lanes, uchar unit, int steps, uchar* cost) const;
     //! Limits the costs of a row of disparities.
     void apply(int y, const ushort* disparity, uchar* cost) const;
+    //! A disparity map of the left image, USHRT_MAX where there is no data
+    Mat dropMissing(const Mat& disparity) const;
     //! Marks the pixels of a row by 0 whose matches have no data.
     void hideUnmatched(int y, const ushort* disparity, uchar* visible) const;
 

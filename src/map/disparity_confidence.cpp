@@ -163,7 +163,7 @@ void compareAlternatives(const Mat& disparity, int numDisparities, const Matchin
 Mat visiblePixels(const Mat& disparity, const CostLimits& limits)
 {
     Mat visible;
-    findStable(disparity, visible);
+    findStable(limits.dropMissing(disparity), visible);
     for (int y = 0; y < visible.rows && !limits.isEmpty(); ++y)
         limits.hideUnmatched(y, disparity.ptr<ushort>(y), visible.ptr(y));
     return visible;

@@ -33,7 +33,8 @@ M is 1 / (1 + 4 m), where m is the mean change by the median; each difference co
 21 x 21 and 7 x 7 cells of 2 x 2 pixels, the pixel's own in the middle. Borders are replicated. P is 1 without a layer
 above.
 
-v is 1 for a pixel that passes the left-right check, see findStable(), or else 1/2.
+v is 1 for a pixel that passes the left-right check, see findStable(), and whose match has data, or else 1/2. Pixels
+without data hide none.
 @param maps The maps.
 @param numDisparities Of the layer.
 @param cost Of the layer.

@@ -9,10 +9,10 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-void findReasons(const Mat& disparity, const OutputPlan& plan, int width, Mat& reasons)
+void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const CostLimits& limits, Mat& reasons)
 {
     Mat stable;
-    findStable(disparity, stable);
+    findStable(limits.dropMissing(disparity), stable);
     const int scale = 1 << plan.finestLayer, half = subpixelScale / 2;
     reasons.create(disparity.size(), CV_8U);
     parallelFor(reasons.rows, [&](int y) {

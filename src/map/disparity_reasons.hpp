@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_DISPARITY_REASONS_HPP
 
 #include "disparity_output.hpp"
+#include "../cost/cost_limits.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -12,8 +13,10 @@ namespace cv { namespace stereo { namespace hdp {
 @param disparity Of the layer, CV_16UC1, a disparity map.
 @param plan Of the output: where the layer lies in the image.
 @param width Of the image.
+@param limits Of the layer: pixels without data hide none.
 @param reasons Receives CV_8UC1. */
-CV_EXPORTS void findReasons(const Mat& disparity, const OutputPlan& plan, int width, Mat& reasons);
+CV_EXPORTS void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const CostLimits& limits,
+                            Mat& reasons);
 
 }}} // namespace cv::stereo::hdp
 

@@ -55,8 +55,8 @@ void findStable(const Mat& disparity, Mat& stable)
         const int width = stable.cols; // for vectors: bytes that are written could otherwise be those of the number
         HDP_VECTORIZED for (int x = 0; x < width; ++x) row[x] = visibility[x] == VISIBLE ? 255 : 0;
     };
-    const int maxDiff = 1, none = -1; // all are valid
-    checkLeftRight<ushort>(disparity, maxDiff, none, mark);
+    const int maxDiff = 1;
+    checkLeftRight<ushort>(disparity, maxDiff, USHRT_MAX, mark);
 }
 
 }}} // namespace cv::stereo::hdp

@@ -23,7 +23,7 @@ CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);
 /** Left-right check of a layer's disparities. A pixel is stable if the maximum of the disparities that map to its
 column of the right image is larger by a pixel at most: exact equality fails by rounding. One that maps to no column is
 not.
-@param disparity CV_16UC1, a disparity map.
+@param disparity CV_16UC1, a disparity map; USHRT_MAX maps to none.
 @param stable Receives CV_8UC1, 255 where stable, else 0. */
 CV_EXPORTS void findStable(const Mat& disparity, Mat& stable);
 
