@@ -33,7 +33,7 @@ HDP_TUNABLE(int, maxDifference, 8, "pixels",
 HDP_TUNABLE(float, halvingDifference, 0.25f, "pixels", "a mean difference by which the confidence is halved");
 
 // Pixels
-const int stripeColumns = 64; // the same of distances in columns: fewer share cache lines
+const int stripeColumns = 64; // whose distances a thread finds together: fewer share cache lines
 const int distanceBlock = 32; // of a row, whose distances are found together
 
 //! Distances to the nearest pixel at a step in the same column, at most farFromSteps, CV_8UC1
