@@ -222,10 +222,10 @@ TEST(HDPStereo_PriorJoin, model)
         const Mat expected =
             Model(points, pair.left, oracle::CensusCost(left, right, 7), layer, winners).join(maxDisparity);
         Mat joined = winners.clone();
-        const int changed = hdp::joinPrior(points, pair.left, cost, layer, maxDisparity, joined);
+        hdp::joinPrior(points, pair.left, cost, layer, maxDisparity, joined);
         expectIdentical(expected, joined);
-        EXPECT_LE(countDifferent(winners, joined), changed);
-        changes += countDifferent(winners, joined);
+        const int changed = countDifferent(winners, joined);
+        changes += changed;
         refused += changed == 0;
     }
     EXPECT_GT(changes, 1000);
@@ -246,9 +246,10 @@ TEST(HDPStereo_PriorJoin, a_prior_of_another_scene_changes_nothing)
         for (int x = 2; x < 90; x += 6)
             points.push_back({ Point(x, y), pair.truth.at<float>(y, x) > 10 ? 2.f : 20.f, 0.3f });
     const Mat before = winners.clone();
-    EXPECT_EQ(0, hdp::joinPrior(points, pair.left, cost, 0, hdp::largestDisparity(24, 0), winners));
+    hdp::joinPrior(points, pair.left, cost, 0, hdp::largestDisparity(24, 0), winners);
     expectIdentical(before, winners);
-    EXPECT_EQ(0, hdp::joinPrior({}, pair.left, cost, 0, hdp::largestDisparity(24, 0), winners));
+    hdp::joinPrior({}, pair.left, cost, 0, hdp::largestDisparity(24, 0), winners);
+    expectIdentical(before, winners);
 }
 
 }} // namespace opencv_test

@@ -6,6 +6,7 @@
 
 #include "../base/units.hpp"
 #include "../base/vectorized.hpp"
+#include "../base/window_sums.hpp"
 
 #include <cmath>
 
@@ -79,7 +80,7 @@ public:
         return true;
     }
 
-    int join(int maxDisparity)
+    void join(int maxDisparity)
     {
         Mat hypotheses(winners_.size(), CV_16U), speech(winners_.size(), CV_8U), ofWinners, ofHypotheses;
         parallelFor(winners_.rows, std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
@@ -89,17 +90,13 @@ public:
         sumCosts(winners_, ofWinners);
         sumCosts(hypotheses, ofHypotheses);
         const int area = windowSide * windowSide;
-        int changed = 0;
         for (int y = 0; y < winners_.rows; ++y)
             for (int x = 0; x < width_; ++x)
             {
                 const int said = speech.ptr(y)[x], more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners.ptr<ushort>(y)[x];
-                if (said == FOR || more > area * (said == AGAINST ? contradiction : contradictionAlone))
-                    continue;
-                winners_.ptr<ushort>(y)[x] = hypotheses.ptr<ushort>(y)[x];
-                ++changed;
+                if (said != FOR && more <= area * (said == AGAINST ? contradiction : contradictionAlone))
+                    winners_.ptr<ushort>(y)[x] = hypotheses.ptr<ushort>(y)[x];
             }
-        return changed;
     }
 
 private:
@@ -257,7 +254,7 @@ private:
     {
         Mat costs;
         cost_.ofDisparities(disparity, costs);
-        boxFilter(costs, sums, CV_16U, Size(windowSide, windowSide), Point(-1, -1), false, BORDER_REPLICATE);
+        sumOverWindows(costs, windowSide, CV_16U, sums);
     }
 
     const std::vector<PriorPoint>& points_;
@@ -306,11 +303,12 @@ void pointsOfLayer(const Mat& disparity, const Mat& sigma, int minDisparity, int
         }
 }
 
-int joinPrior(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer,
-              int maxDisparity, Mat& winners)
+void joinPrior(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer,
+               int maxDisparity, Mat& winners)
 {
     PriorJoin join(points, guide, cost, layer, winners);
-    return join.judgePoints() ? join.join(maxDisparity) : 0;
+    if (join.judgePoints())
+        join.join(maxDisparity);
 }
 
 }}} // namespace cv::stereo::hdp

@@ -37,10 +37,9 @@ fifths of the points agree, the prior is of something else, and nothing changes.
 @param cost Its census.
 @param layer Its number.
 @param maxDisparity Of a map of the layer.
-@param winners CV_16UC1, a disparity map, changed.
-@return Number of pixels that changed. */
-CV_EXPORTS int joinPrior(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer,
-                         int maxDisparity, Mat& winners);
+@param winners CV_16UC1, a disparity map, changed. */
+CV_EXPORTS void joinPrior(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer,
+                          int maxDisparity, Mat& winners);
 
 }}} // namespace cv::stereo::hdp
 
