@@ -66,21 +66,16 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
     }
     const Mat map = extended.colRange(plan.extension, extended.cols);
     const bool isFloat = disparity.depth() == CV_32F;
-    if (isFloat && ranges.isEmpty())
-        convert(map, CV_32F, 1. / unit, plan.minDisparity, disparity);
+    if (isFloat && !buffers.hasRejected)
+        return convert(map, CV_32F, 1. / unit, plan.minDisparity, disparity);
     Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
-    if (!isFloat || buffers.hasRejected)
-        convert(map, CV_16S, 1, (double)plan.minDisparity * unit, fixedPoint);
+    convert(map, CV_16S, 1, (double)plan.minDisparity * unit, fixedPoint);
     if (!buffers.hasRejected)
         return;
 
     const short invalid = (short)((plan.minDisparity - 1) * unit);
     if (!ranges.isEmpty())
-    {
         moveIntoRanges(ranges, invalid, fixedPoint);
-        if (isFloat)
-            convert(fixedPoint, CV_32F, 1. / unit, 0, disparity);
-    }
     if (!mask.empty())
         fixedPoint.setTo(Scalar(invalid), mask == 0);
     if (!mask.empty() || !ranges.isEmpty())
@@ -93,7 +88,7 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
         removeSpeckles(fixedPoint, plan, invalid, buffers.speckles);
     compare(fixedPoint, Scalar(invalid), buffers.rejected, CMP_EQ);
     if (isFloat)
-        disparity.setTo(Scalar(plan.minDisparity - 1), buffers.rejected);
+        convert(fixedPoint, CV_32F, 1. / unit, 0, disparity);
 }
 
 }}} // namespace cv::stereo::hdp
