@@ -13,14 +13,14 @@ namespace cv { namespace stereo {
 
 namespace {
 
-//! Of each disparity; 0 if there is none
-template <typename T> Mat depthOf(const Mat& disparity, double perPixel, double focalTimesBaseline, double smallest)
+//! Of each disparity in pixels, CV_32FC1; 0 if there is none
+Mat depthOf(const Mat& disparity, double focalTimesBaseline, double smallest)
 {
     Mat depth(disparity.size(), CV_32F);
     for (int y = 0; y < disparity.rows; ++y)
         for (int x = 0; x < disparity.cols; ++x)
         {
-            const double pixels = disparity.at<T>(y, x) / perPixel;
+            const double pixels = disparity.at<float>(y, x);
             const bool isKnown = pixels > 0 && pixels >= smallest && pixels <= std::numeric_limits<float>::max();
             depth.at<float>(y, x) = isKnown ? (float)(focalTimesBaseline / pixels) : 0;
         }
@@ -69,9 +69,9 @@ public:
         if (depthType != CV_32F && depthType != CV_16U)
             CV_Error(Error::StsBadArg, "depthType must be CV_32F or CV_16U");
         const double product = rectification_.focalLength * rectification_.baseline;
-        const Mat metres = disparity.depth() == CV_16S
-                               ? depthOf<short>(disparity, StereoMatcher::DISP_SCALE, product, minDisparity)
-                               : depthOf<float>(disparity, 1, product, minDisparity);
+        Mat pixels;
+        disparity.convertTo(pixels, CV_32F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
+        const Mat metres = depthOf(pixels, product, minDisparity);
         Mat result = metres;
         if (depthType == CV_16U)
         {
