@@ -3,6 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "helpers.hpp"
 #include "plan_text.hpp"
+#include "../src/base/units.hpp"
+#include "../src/pair/image_pyramid.hpp"
 
 namespace opencv_test { namespace {
 
@@ -254,6 +256,23 @@ TEST(HDPStereo_Plan, without_prediction)
         p.matchingCost = M::COST_COLOR_GRADIENT;
         EXPECT_NO_THROW(hdp::plan(p, imageSize, CV_8UC3)) << "trees can be grown over any cost";
     }
+}
+
+//! Layers below look up what is predicted of each candidate.
+TEST(HDPStereo_Plan, maps_have_no_disparity_beyond_the_candidates)
+{
+    for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
+        for (const bool useSubpixel : { false, true })
+            for (int numDisparities = 1; numDisparities < 140; ++numDisparities)
+            {
+                MatcherParameters p = parametersOf(preset);
+                p.useSubpixel = useSubpixel;
+                p.numDisparities = numDisparities;
+                for (const LayerPlan& layer : hdp::plan(p, imageSize, CV_8UC3).layers)
+                    ASSERT_LT(hdp::wholeDisparity(layer.maxDisparity),
+                              hdp::layerDisparities(numDisparities, layer.layer, layer.hasFractions))
+                        << preset << ", " << numDisparities << ", layer " << layer.layer;
+            }
 }
 
 TEST(HDPStereo_Plan, methods_of_the_presets)

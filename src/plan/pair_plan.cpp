@@ -233,7 +233,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.isFinest = layer == finest;
     plan.hasFractions = hasFractions(p);
     plan.numDisparities = layerDisparities(p.numDisparities, layer, plan.hasFractions);
-    plan.maxDisparity = largestDisparity(p.numDisparities, layer);
+    plan.maxDisparity = std::min(largestDisparity(p.numDisparities, layer), (plan.numDisparities - 1) * subpixelScale);
     plan.cost = planCost(p);
     plan.method = methodOf(p, plan);
     const bool hasVolume = plan.method == TREE_SCANLINES || plan.method == COST_SCANLINES;
