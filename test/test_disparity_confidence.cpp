@@ -221,6 +221,29 @@ TEST(HDPStereo_DisparityConfidence, hidden_pixels)
     EXPECT_GT(cv::mean(confidence.colRange(6, 10))[0], 1.5 * cv::mean(confidence.colRange(2, 6))[0]);
 }
 
+//! A surface without data hides no pixel beside it, whatever its disparity is.
+TEST(HDPStereo_DisparityConfidence, pixels_without_data_hide_none)
+{
+    const TexturedPlane plane(true);
+    const int numDisparities = TexturedPlane::numDisparities;
+    const Mat all(plane.left.size(), CV_8U, Scalar(255));
+    const hdp::PairMasks masks = { all.clone(), all };
+    masks.left.colRange(80, 180).setTo(Scalar(0));
+    Mat leftGrey, rightGrey, confidence[2];
+    hdp::greyLevels(plane.left, 8, leftGrey);
+    hdp::greyLevels(plane.right, 8, rightGrey);
+    hdp::CensusCost cost;
+    cost.prepare(leftGrey, rightGrey, numDisparities, 7, 0, masks);
+    for (const bool isNearer : { false, true })
+    {
+        Mat map = plane.map();
+        map.colRange(80, 180).setTo(Scalar(16 * (isNearer ? numDisparities - 1 : 1)));
+        hdp::disparityConfidence(mapAlone(map), numDisparities, cost, confidence[isNearer]);
+    }
+    EXPECT_GT(cv::countNonZero(confidence[0].colRange(70, 79)), 500);
+    expectIdentical(confidence[0].colRange(0, 80), confidence[1].colRange(0, 80));
+}
+
 //! Where the layer above had another disparity, and where the median had to change many
 TEST(HDPStereo_DisparityConfidence, other_maps)
 {
