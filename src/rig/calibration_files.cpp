@@ -261,16 +261,15 @@ Camera readZedCamera(const CalibrationText& text, const std::string& side, const
                                  text.number(section + "CY"));
     camera.isFisheye = distortion != section && !text.has(distortion + "P1");
     camera.names = { nameOf(text, section + "FX, FY"), nameOf(text, section + "CX, CY"), nameOf(text, distortion) };
-    for (const char* name : { "K1", "K2", "P1", "P2", "K3", "K4", "K5", "K6" })
+    typedef std::vector<const char*> Names;
+    const Names all =
+        camera.isFisheye ? Names{ "K1", "K2", "K3", "K4" } : Names{ "K1", "K2", "P1", "P2", "K3", "K4", "K5", "K6" };
+    for (const char* name : all)
     {
-        const bool isTangential = name[0] == 'P', isRational = name[0] == 'K' && name[1] > '3';
-        const bool isOptional = isRational && !camera.isFisheye;
-        if (!(isTangential && camera.isFisheye) && !(isOptional && !text.has(distortion + name)) &&
-            camera.distortion.size() < (camera.isFisheye ? 4 : 8))
-        {
-            camera.names.distortion += std::string(camera.distortion.empty() ? "" : ", ") + name;
-            camera.distortion.push_back(text.number(distortion + name));
-        }
+        if (camera.distortion.size() >= 5 && !text.has(distortion + name)) // those of a rational model
+            continue;
+        camera.names.distortion += std::string(camera.distortion.empty() ? "" : ", ") + name;
+        camera.distortion.push_back(text.number(distortion + name));
     }
     return camera;
 }
