@@ -581,8 +581,8 @@ public:
     About 68 % of the errors of pixels with a value are not larger; it is calibrated on pairs of known truth. It comes
     from getConfidence() and from how much matched levels differ for the texture there is. Disparities that are wrong by
     much are where it is above 1; how much they are wrong it does not tell. It is computed by this call.
-    @param sigma Receives CV_32FC1 of the left image's size, in pixels; infinite where a filter rejected the pixel.
-    Empty before the first compute() and after one that threw an exception.
+    @param sigma Receives CV_32FC1 of the left image's size, in pixels; infinite where a pixel has no data or a filter
+    rejected it. Empty before the first compute() and after one that threw an exception.
      */
     CV_WRAP virtual void getDisparitySigma(OutputArray sigma) const = 0;
 
