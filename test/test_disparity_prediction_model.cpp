@@ -283,6 +283,19 @@ TEST(HDPStereo_ModelTraining, seed_counts)
     EXPECT_GT(likelihoods.size(), 1u);
 }
 
+//! The last row of an odd number has the pixels above the row before it, in train() as in countOffsets().
+TEST(HDPStereo_ModelTraining, odd_last_row_of_a_single_map)
+{
+    RNG rng(11);
+    const MapPair even = sampleMixture(narrowAndWide(), Size(120, 8), rng);
+    MapPair maps = { Mat(17, 240, CV_32F), even.upper };
+    even.lower.copyTo(maps.lower.rowRange(0, 16));
+    even.lower.row(15).copyTo(maps.lower.row(16)); // the only row of the other half
+    const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
+    EXPECT_NO_THROW(model->train(one(maps.lower), one(maps.upper), 1));
+    EXPECT_EQ(1, model->getNumLayers());
+}
+
 //! Offsets of two values only, which a Gaussian could follow to a width of 0
 TEST(HDPStereo_ModelTraining, never_a_singular_model)
 {

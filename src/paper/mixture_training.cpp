@@ -53,11 +53,11 @@ bool isKnown(float disparity)
     return true;
 }
 
-//! Offsets of the pixels of a map that are known in both layers
-Histogram histogramOf(const Mat& map, const Mat& upper)
+//! Offsets of the pixels in some rows of a map that are known in both layers
+Histogram histogramOf(const Mat& map, const Mat& upper, const Range& rows)
 {
     Histogram histogram;
-    for (int y = 0; y < map.rows; ++y)
+    for (int y = rows.start; y < rows.end; ++y)
         for (int x = 0; x < map.cols; ++x)
         {
             const float disparity = map.at<float>(y, x);
@@ -105,11 +105,10 @@ void histogramsOfHalves(const std::vector<Mat>& maps, const std::vector<Mat>& up
     const int band = 16;
     if (maps.size() > 1)
         for (size_t i = 0; i < maps.size(); ++i)
-            parts.push_back(histogramOf(maps[i], uppers[i]));
+            parts.push_back(histogramOf(maps[i], uppers[i], Range(0, maps[i].rows)));
     else
-        for (int y = 0; y / 2 < uppers[0].rows; y += band)
-            parts.push_back(histogramOf(maps[0].rowRange(y, std::min(y + band, maps[0].rows)),
-                                        uppers[0].rowRange(y / 2, std::min((y + band) / 2, uppers[0].rows))));
+        for (int y = 0; y < maps[0].rows; y += band)
+            parts.push_back(histogramOf(maps[0], uppers[0], Range(y, std::min(y + band, maps[0].rows))));
     std::vector<int> order(parts.size());
     for (size_t i = 0; i < order.size(); ++i)
         order[i] = (int)i;
@@ -277,7 +276,7 @@ OffsetHistogram offsetHistogram(const std::vector<Mat>& maps, const std::vector<
     checkMaps(maps, uppers);
     Histogram histogram;
     for (size_t i = 0; i < maps.size(); ++i)
-        add(histogramOf(maps[i], uppers[i]), histogram);
+        add(histogramOf(maps[i], uppers[i], Range(0, maps[i].rows)), histogram);
     return histogram;
 }
 
