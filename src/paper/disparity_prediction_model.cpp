@@ -82,10 +82,9 @@ public:
     {
         fs << "name" << getDefaultName() << "version" << fileVersion << "layerCount" << getNumLayers() << "layers"
            << "[";
-        for (size_t l = 0; l < layers_.size(); ++l)
+        for (const GaussianMixture& layer : layers_)
             fs << "{"
-               << "means" << layers_[l].means << "sigmas" << layers_[l].sigmas << "weights" << layers_[l].weights
-               << "}";
+               << "means" << layer.means << "sigmas" << layer.sigmas << "weights" << layer.weights << "}";
         fs << "]";
     }
 
@@ -102,12 +101,9 @@ public:
         if (!fn["layerCount"].isInt() || (int)fn["layerCount"] != (int)layers.size())
             CV_Error(Error::StsParseError, "layerCount must be the number of layers");
         std::vector<GaussianMixture> read;
-        for (FileNodeIterator it = layers.begin(); it != layers.end(); ++it)
-        {
-            const FileNode layer = *it;
+        for (const FileNode layer : layers)
             read.push_back(checkedMixture(readNumbers(layer, "means"), readNumbers(layer, "sigmas"),
                                           readNumbers(layer, "weights")));
-        }
         layers_.swap(read);
     }
 
@@ -128,11 +124,11 @@ private:
             CV_Error(Error::StsParseError,
                      format("%s must be a sequence of at most %d numbers", key, (int)maxFileComponents));
         std::vector<double> numbers;
-        for (FileNodeIterator it = node.begin(); it != node.end(); ++it)
+        for (const FileNode number : node)
         {
-            if (!(*it).isInt() && !(*it).isReal())
+            if (!number.isInt() && !number.isReal())
                 CV_Error(Error::StsParseError, format("%s must hold numbers only", key));
-            numbers.push_back((double)*it);
+            numbers.push_back((double)number);
         }
         return numbers;
     }
@@ -158,10 +154,10 @@ void DisparityPredictionModel::countOffsets(InputArrayOfArrays disparities, Inpu
     const OffsetHistogram histogram = offsetHistogram(maps, uppers);
     offsets.clear();
     counts.clear();
-    for (OffsetHistogram::const_iterator bin = histogram.begin(); bin != histogram.end(); ++bin)
+    for (const OffsetHistogram::value_type& bin : histogram)
     {
-        offsets.push_back(bin->first);
-        counts.push_back(bin->second);
+        offsets.push_back(bin.first);
+        counts.push_back(bin.second);
     }
 }
 

@@ -10,6 +10,7 @@
 #endif
 
 #include <cmath>
+#include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -19,8 +20,8 @@ typedef OffsetHistogram Histogram;
 
 void add(const Histogram& from, Histogram& to)
 {
-    for (Histogram::const_iterator bin = from.begin(); bin != from.end(); ++bin)
-        to[bin->first] += bin->second;
+    for (const Histogram::value_type& bin : from)
+        to[bin.first] += bin.second;
 }
 
 void checkMaps(const std::vector<Mat>& maps, const std::vector<Mat>& uppers)
@@ -75,8 +76,8 @@ const int minTrainingPixels = 100; // in each half
 double countPixels(const Histogram& histogram)
 {
     double sum = 0;
-    for (Histogram::const_iterator bin = histogram.begin(); bin != histogram.end(); ++bin)
-        sum += bin->second;
+    for (const Histogram::value_type& bin : histogram)
+        sum += bin.second;
     return sum;
 }
 
@@ -84,13 +85,13 @@ double countPixels(const Histogram& histogram)
 bool areConstant(const std::vector<Mat>& maps)
 {
     double smallest = DBL_MAX, largest = -1;
-    for (size_t i = 0; i < maps.size(); ++i)
+    for (const Mat& map : maps)
     {
-        const Mat known = (maps[i] >= 0) & (maps[i] < std::numeric_limits<float>::infinity());
+        const Mat known = (map >= 0) & (map < std::numeric_limits<float>::infinity());
         double low = 0, high = 0;
         if (countNonZero(known) == 0)
             continue;
-        minMaxLoc(maps[i], &low, &high, 0, 0, known);
+        minMaxLoc(map, &low, &high, 0, 0, known);
         smallest = std::min(smallest, low);
         largest = std::max(largest, high);
     }
@@ -110,8 +111,7 @@ void histogramsOfHalves(const std::vector<Mat>& maps, const std::vector<Mat>& up
         for (int y = 0; y < maps[0].rows; y += band)
             parts.push_back(histogramOf(maps[0], uppers[0], Range(y, std::min(y + band, maps[0].rows))));
     std::vector<int> order(parts.size());
-    for (size_t i = 0; i < order.size(); ++i)
-        order[i] = (int)i;
+    std::iota(order.begin(), order.end(), 0);
     RNG rng((uint64)seed + 1); // 0 is no seed
     for (size_t i = order.size() - 1; i > 0 && maps.size() > 1; --i)
         std::swap(order[i], order[rng.uniform(0, (int)i + 1)]);
@@ -131,8 +131,8 @@ void histogramsOfHalves(const std::vector<Mat>& maps, const std::vector<Mat>& up
 double meanLogLikelihood(const GaussianMixture& mixture, const Histogram& histogram)
 {
     double sum = 0;
-    for (Histogram::const_iterator bin = histogram.begin(); bin != histogram.end(); ++bin)
-        sum += bin->second * std::log(std::max(densityOf(mixture, bin->first), DBL_MIN));
+    for (const Histogram::value_type& bin : histogram)
+        sum += bin.second * std::log(std::max(densityOf(mixture, bin.first), DBL_MIN));
     return sum / countPixels(histogram);
 }
 
@@ -152,11 +152,11 @@ Mat_<double> quantiles(const Histogram& histogram)
     const double step = countPixels(histogram) / trainingSamples;
     double before = 0; // pixels of smaller offsets
     int i = 0;
-    for (Histogram::const_iterator bin = histogram.begin(); bin != histogram.end(); ++bin)
+    for (const Histogram::value_type& bin : histogram)
     {
-        for (; i < trainingSamples && (i + 0.5) * step < before + bin->second; ++i)
-            samples(i) = bin->first - 0.5 + ((i + 0.5) * step - before) / bin->second;
-        before += bin->second;
+        for (; i < trainingSamples && (i + 0.5) * step < before + bin.second; ++i)
+            samples(i) = bin.first - 0.5 + ((i + 0.5) * step - before) / bin.second;
+        before += bin.second;
     }
     for (; i < trainingSamples; ++i) // rounding
         samples(i) = histogram.rbegin()->first + 0.5;
