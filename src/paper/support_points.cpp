@@ -170,18 +170,10 @@ void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, Su
 void disparityHistogram(const Mat& points, int numDisparities, std::vector<double>& histogram)
 {
     histogram.assign(numDisparities, 0);
-    bool found = false;
-    for (int y = 0; y < points.rows; ++y)
-        for (int x = 0; x < points.cols; ++x)
-        {
-            const int disparity = points.at<short>(y, x);
-            if (disparity >= 0 && disparity < numDisparities)
-            {
-                ++histogram[disparity];
-                found = true;
-            }
-        }
-    if (!found)
+    for (const short disparity : Mat_<short>(points))
+        if (disparity >= 0 && disparity < numDisparities)
+            ++histogram[disparity];
+    if (countNonZero(histogram) == 0)
         histogram.assign(numDisparities, 1);
 }
 
