@@ -19,17 +19,14 @@ void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& str
     const std::vector<GrowingTrees::Node>& nodes = buffers.trees.nodes;
     for (size_t i = 0; i < nodes.size(); ++i)
         if (nodes[i].parent < 0)
-        {
-            const DisparityTree tree = { (int)i, -nodes[i].parent, nodes[i].interval };
-            forest.trees.push_back(tree);
-        }
+            forest.trees.push_back({ (int)i, -nodes[i].parent, nodes[i].interval });
 }
 
 double searchRatio(const DisparityForest& forest, int numDisparities)
 {
     double searched = 0;
-    for (size_t t = 0; t < forest.trees.size(); ++t)
-        searched += (double)forest.trees[t].size * forest.trees[t].interval.size();
+    for (const DisparityTree& tree : forest.trees)
+        searched += (double)tree.size * tree.interval.size();
     return searched / ((double)forest.links.total() * numDisparities);
 }
 

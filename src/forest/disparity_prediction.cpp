@@ -14,10 +14,7 @@ DisparityInterval growInterval(const std::vector<double>& row, double delta, int
 {
     const int mode = (int)(std::max_element(row.begin(), row.end()) - row.begin());
     if (!(row[mode] > 0))
-    {
-        const DisparityInterval empty = { 1, 0 };
-        return empty;
-    }
+        return { 1, 0 };
     int first = mode, last = mode;
     double selected = row[mode]; // c of the criterion
     for (bool grown = true; grown;)
@@ -34,9 +31,7 @@ DisparityInterval growInterval(const std::vector<double>& row, double delta, int
             grown = true;
         }
     }
-    const DisparityInterval interval = { (ushort)std::max(first - margin, 0),
-                                         (ushort)std::min(last + margin, (int)row.size() - 1) };
-    return interval;
+    return { (ushort)std::max(first - margin, 0), (ushort)std::min(last + margin, (int)row.size() - 1) };
 }
 
 } // namespace
@@ -62,9 +57,8 @@ void predictIntervals(const DisparityPredictionModel& model, int layer, const st
 void upperHistogram(const Mat& upper, int numDisparities, std::vector<double>& histogram)
 {
     std::vector<double> pixels(numDisparities / 2 + 1); // of the layer above
-    for (int y = 0; y < upper.rows; ++y)
-        for (int x = 0; x < upper.cols; ++x)
-            ++pixels[wholeDisparity(upper.at<ushort>(y, x))];
+    for (const ushort disparity : Mat_<ushort>(upper))
+        ++pixels[wholeDisparity(disparity)];
     histogram.resize(numDisparities);
     for (int d = 0; d < numDisparities; ++d)
         histogram[d] = pixels[d / 2] + (double)upper.total() / pixels.size();

@@ -29,8 +29,7 @@ void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk
     uchar* edges = walk.weights.data();
     TreeWalk::Step* pending = walk.pending.data();
     size_t capacity = walk.pending.size();
-    const TreeWalk::Step root = { tree.root, 0, 0 };
-    pending[0] = root;
+    pending[0] = { tree.root, 0, 0 };
     size_t count = 1;
     for (int i = 0; count > 0; ++i)
     {
@@ -49,17 +48,13 @@ void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk
             pending = walk.pending.data();
         }
         const int children = links[p] & ~parentLink;
-        const TreeWalk::Step above = { p - width, i, TreeLink::BELOW };
-        const TreeWalk::Step left = { p - 1, i, TreeLink::RIGHT };
-        const TreeWalk::Step below = { p + width, i, TreeLink::ABOVE };
-        const TreeWalk::Step right = { p + 1, i, TreeLink::LEFT };
-        pending[count] = above;
+        pending[count] = { p - width, i, TreeLink::BELOW };
         count += (children / TreeLink::ABOVE) & 1;
-        pending[count] = left;
+        pending[count] = { p - 1, i, TreeLink::RIGHT };
         count += (children / TreeLink::LEFT) & 1;
-        pending[count] = below;
+        pending[count] = { p + width, i, TreeLink::ABOVE };
         count += (children / TreeLink::BELOW) & 1;
-        pending[count] = right;
+        pending[count] = { p + 1, i, TreeLink::LEFT };
         count += (children / TreeLink::RIGHT) & 1;
     }
     walk.weights[0] = 0;
