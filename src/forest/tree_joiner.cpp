@@ -173,8 +173,7 @@ void startTrees(const Mat& pixelIntv, const Range& rows, GrowingTrees& trees)
         const size_t first = (size_t)y * pixelIntv.cols;
         for (int x = 0; x < pixelIntv.cols; ++x)
         {
-            const GrowingTrees::Node node = { -1, intervals[x] };
-            trees.nodes[first + x] = node;
+            trees.nodes[first + x] = { -1, intervals[x] };
             trees.maxWeights[first + x] = 0;
         }
     }
@@ -186,19 +185,19 @@ void orderEdges(const TreeStrategy& strategy, const Mat& weights, JoinerStripe& 
     std::vector<int>& edges = stripe.edges;
     if (strategy.ordersByWeight())
         return sortByWeight(weights, edges, stripe.sorted);
-    std::vector<bool> given(weights.total() * 2);
-    for (size_t i = 0; i < edges.size(); ++i)
-        given[edges[i]] = true;
+    std::vector<bool> isMissing(weights.total() * 2);
+    for (int edge : edges)
+        isMissing[edge] = true;
     const size_t count = edges.size();
     strategy.orderEdges(weights, edges);
-    bool isPermutation = edges.size() == count;
-    for (size_t i = 0; isPermutation && i < count; ++i)
-    {
-        isPermutation = edges[i] >= 0 && (size_t)edges[i] < given.size() && given[edges[i]];
-        if (isPermutation)
-            given[edges[i]] = false;
-    }
-    if (!isPermutation)
+    size_t found = 0;
+    for (int edge : edges)
+        if (edge >= 0 && (size_t)edge < isMissing.size() && isMissing[edge])
+        {
+            isMissing[edge] = false;
+            ++found;
+        }
+    if (found != count || edges.size() != count)
         CV_Error(Error::StsBadArg, "treeStrategy: orderEdges must leave a permutation of the edges");
 }
 
