@@ -118,7 +118,7 @@ public:
             return 0;
         fits_.resize(pixels_);
         firsts_.resize(pixels_ + 1);
-        findFits();
+        parallelFor(pixels_, [&](int i) { fits_[i] = fitOf(volume_, i); });
         joinRuns();
         int count = 0;
         for (const std::vector<int>& area : findAreas())
@@ -131,14 +131,6 @@ public:
     }
 
 private:
-    void findFits()
-    {
-        parallel_for_(Range(0, volume_.size.height), [&](const Range& rows) {
-            for (int i = rows.start * width_; i < rows.end * width_; ++i)
-                fits_[i] = fitOf(volume_, i);
-        });
-    }
-
     //! Whether enough of some pixels have several runs, and repeat in the left image: most pairs need no more.
     bool looksRepeated() const
     {
