@@ -48,7 +48,7 @@ void CostVolume::create(const DisparityForest& forest)
         if (isUniform)
             first += tree.size;
         else if (ownRows > usualRows_)
-            first += (unsigned)(tree.size * ownRows);
+            first += (unsigned)tree.size * ownRows;
     }
     if (!isUniform)
         rows = first;
