@@ -86,7 +86,8 @@ private:
     const bool subpixel_;
 };
 
-struct Aggregation
+//! Winners over the sums
+struct WinnerAggregation
 {
     const DisparityForest& forest;
     const AggregationProblem& problem;
@@ -117,45 +118,43 @@ struct Aggregation
         takeWinners(scratch.walk, tree.size, candidates, scratch.costs, scratch.winners);
         problem.setDisparities(scratch.walk.pixels.data(), scratch.winners.data(), tree.size, disparity);
     }
+
+    //! Groups of candidates side by side
+    void processLarge(const DisparityTree& tree, AggregationBuffers& buffers) const
+    {
+        TreeWalk& walk = buffers.ofThread.getRef().walk; // groups use other members of it
+        walkTree(forest, tree, walk);
+        const Range candidates = problem.candidates(walk, tree);
+        if (candidates.empty())
+            return;
+
+        // Whole runs for each group
+        const int lanes = countLanes(candidates.size(), tree.size);
+        const int runs = (candidates.size() + lanes - 1) / lanes, count = std::min(runs, maxGroups);
+        const auto firstOf = [&](int group) {
+            return std::min(candidates.start + group * runs / count * lanes, candidates.end);
+        };
+        std::vector<std::vector<RunWinner>>& groups = buffers.groups;
+        groups.resize(maxGroups);
+        parallelFor(count, [&](int g) {
+            std::vector<float>& costs = buffers.ofThread.getRef().costs;
+            takeWinners(walk, tree.size, Range(firstOf(g), firstOf(g + 1)), costs, groups[g]);
+        });
+
+        parallel_for_(Range(0, tree.size), [&](const Range& range) {
+            for (int i = range.start; i < range.end; ++i)
+                for (int g = 1; g < count; ++g)
+                    cpu_baseline::joinWinner(groups[0][i], groups[g][i], firstOf(g));
+            problem.setDisparities(&walk.pixels[range.start], &groups[0][range.start], range.size(), disparity);
+        });
+    }
 };
 
-//! A large tree with many candidates: groups of them side by side
-void processLarge(const Aggregation& aggregation, const DisparityTree& tree, AggregationBuffers& buffers)
+//! Calls processLarge() for each large tree with many candidates, one by one, and processSmall() for the others, in
+//! parallel.
+template <typename Aggregation> void aggregateTrees(const Aggregation& aggregation, AggregationBuffers& buffers)
 {
-    TreeWalk& walk = buffers.ofThread.getRef().walk; // groups use other members of it
-    walkTree(aggregation.forest, tree, walk);
-    const Range candidates = aggregation.problem.candidates(walk, tree);
-    if (candidates.empty())
-        return;
-
-    // Whole runs for each group
-    const int lanes = countLanes(candidates.size(), tree.size);
-    const int runs = (candidates.size() + lanes - 1) / lanes, count = std::min(runs, maxGroups);
-    const auto firstOf = [&](int group) {
-        return std::min(candidates.start + group * runs / count * lanes, candidates.end);
-    };
-    std::vector<std::vector<RunWinner>>& groups = buffers.groups;
-    groups.resize(maxGroups);
-    parallelFor(count, [&](int g) {
-        std::vector<float>& costs = buffers.ofThread.getRef().costs;
-        aggregation.takeWinners(walk, tree.size, Range(firstOf(g), firstOf(g + 1)), costs, groups[g]);
-    });
-
-    parallel_for_(Range(0, tree.size), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-            for (int g = 1; g < count; ++g)
-                cpu_baseline::joinWinner(groups[0][i], groups[g][i], firstOf(g));
-        aggregation.problem.setDisparities(&walk.pixels[range.start], &groups[0][range.start], range.size(),
-                                           aggregation.disparity);
-    });
-}
-
-//! Calls processLarge(tree) for each large tree with many candidates, one by one, and processSmall(tree, scratch) for
-//! the others, in parallel.
-template <typename Large, typename Small>
-void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, const Large& processLarge,
-                 const Small& processSmall)
-{
+    const DisparityForest& forest = aggregation.forest;
     // Tasks of about the same work, in the order of the trees
     std::vector<Range> tasks;
     int64 work = taskWork;
@@ -165,7 +164,7 @@ void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, con
         const int candidates = tree.interval.size();
         if (tree.size >= largeTree && candidates > countLanes(candidates, tree.size)) // several runs, side by side
         {
-            processLarge(tree);
+            aggregation.processLarge(tree, buffers);
             work = taskWork;
             continue;
         }
@@ -181,7 +180,7 @@ void forEachTree(const DisparityForest& forest, AggregationBuffers& buffers, con
     parallelFor((int)tasks.size(), [&](int i) {
         AggregationScratch& scratch = buffers.ofThread.getRef();
         for (int t = tasks[i].start; t < tasks[i].end; ++t)
-            processSmall(forest.trees[t], scratch);
+            aggregation.processSmall(forest.trees[t], scratch);
     });
 }
 
@@ -278,11 +277,8 @@ EdgeSimilarity::EdgeSimilarity(double gamma)
 void takeWinners(const DisparityForest& forest, const AggregationProblem& problem, double gamma,
                  AggregationBuffers& buffers, Mat& disparity)
 {
-    const Aggregation aggregation = { forest, problem, EdgeSimilarity(gamma), disparity.ptr<ushort>() };
-
-    forEachTree(
-        forest, buffers, [&](const DisparityTree& tree) { processLarge(aggregation, tree, buffers); },
-        [&](const DisparityTree& tree, AggregationScratch& scratch) { aggregation.processSmall(tree, scratch); });
+    const WinnerAggregation aggregation = { forest, problem, EdgeSimilarity(gamma), disparity.ptr<ushort>() };
+    aggregateTrees(aggregation, buffers);
 }
 
 void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
@@ -299,9 +295,7 @@ void aggregateMeans(const DisparityForest& forest, const TwoLayerCost& cost, dou
     volume.create(forest);
     volume.steps = cost.steps();
     const MeanAggregation aggregation = { forest, cost, EdgeSimilarity(gamma), volume };
-    forEachTree(
-        forest, buffers, [&](const DisparityTree& tree) { aggregation.processLarge(tree, buffers); },
-        [&](const DisparityTree& tree, AggregationScratch& scratch) { aggregation.processSmall(tree, scratch); });
+    aggregateTrees(aggregation, buffers);
 }
 
 }}} // namespace cv::stereo::hdp
