@@ -124,9 +124,10 @@ template <int count, typename Word> inline Word countInBytes(Word a, Word b, Wor
     return (nibbles & repeated<Word>(0x0f)) + ((nibbles >> 4) & repeated<Word>(0x0f));
 }
 
-template <int lanes, int count, typename Word, typename T>
+template <int lanes, int count, typename T>
 void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, T* cost)
 {
+    typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
     // Bits are counted in all words of a block at once, in order to fill vectors.
     const int block = lanes > 16 ? 1 : 32, words = lanes / (int)sizeof(Word);
     const double rowsPerPixel = 1. / planes.width;
@@ -162,13 +163,10 @@ template <int lanes> struct EvaluateTask
 {
     template <typename T> static void run(const CensusPlanes& planes, const int* pixels, int size, int first, T* cost)
     {
-        typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
-        if (planes.count == 3)
-            evaluateCosts<lanes, 3, Word>(planes, pixels, size, first, cost);
-        else if (planes.count == 2)
-            evaluateCosts<lanes, 2, Word>(planes, pixels, size, first, cost);
-        else
-            evaluateCosts<lanes, 1, Word>(planes, pixels, size, first, cost);
+        const auto evaluate = planes.count == 3   ? &evaluateCosts<lanes, 3, T>
+                              : planes.count == 2 ? &evaluateCosts<lanes, 2, T>
+                                                  : &evaluateCosts<lanes, 1, T>;
+        evaluate(planes, pixels, size, first, cost);
     }
 };
 
@@ -206,12 +204,8 @@ template <int count> void costOfRow(const CensusPlanes& planes, int y, const ush
 
 void censusCostOfRow(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost)
 {
-    if (planes.count == 3)
-        costOfRow<3>(planes, y, disparity, cost);
-    else if (planes.count == 2)
-        costOfRow<2>(planes, y, disparity, cost);
-    else
-        costOfRow<1>(planes, y, disparity, cost);
+    const auto costs = planes.count == 3 ? &costOfRow<3> : planes.count == 2 ? &costOfRow<2> : &costOfRow<1>;
+    costs(planes, y, disparity, cost);
 }
 
 #endif

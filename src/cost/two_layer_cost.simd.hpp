@@ -91,15 +91,10 @@ void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const in
 void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
                     int lanes, uchar* cost)
 {
-    switch (own.count)
-    {
-    case 1:
-        return countTwoLayers<1>(own, below, pixels, count, first, lanes, cost);
-    case 2:
-        return countTwoLayers<2>(own, below, pixels, count, first, lanes, cost);
-    default:
-        return countTwoLayers<3>(own, below, pixels, count, first, lanes, cost);
-    }
+    const auto countCosts = own.count == 3   ? &countTwoLayers<3>
+                            : own.count == 2 ? &countTwoLayers<2>
+                                             : &countTwoLayers<1>;
+    countCosts(own, below, pixels, count, first, lanes, cost);
 }
 
 #endif
