@@ -80,15 +80,13 @@ void CensusCost::prepareImage(const Mat& image, int radius, int tolerance, bool 
 void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
 {
     dispatched::evaluateCensusCost(planes_, pixels, count, first, lanes, cost);
-    if (!limits_.isEmpty())
-        limits_.apply(pixels, count, first, lanes, 1, cost);
+    limits_.apply(pixels, count, first, lanes, 1.f, 1, cost);
 }
 
 void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const
 {
     dispatched::countCensusCost(planes_, pixels, count, first, lanes, cost);
-    if (!limits_.isEmpty())
-        limits_.apply(pixels, count, first, lanes, 1, 1, cost);
+    limits_.apply(pixels, count, first, lanes, (uchar)1, 1, cost);
 }
 
 void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
@@ -96,8 +94,7 @@ void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
     costs.create(disparity.size(), CV_8U);
     parallelFor(disparity.rows, [&](int y) {
         dispatched::censusCostOfRow(planes_, y, disparity.ptr<ushort>(y), costs.ptr(y));
-        if (!limits_.isEmpty())
-            limits_.apply(y, disparity.ptr<ushort>(y), costs.ptr(y));
+        limits_.apply(y, disparity.ptr<ushort>(y), costs.ptr(y));
     });
 }
 

@@ -25,38 +25,35 @@ void CostLimits::prepare(const PairMasks& masks, int numDisparities)
     copyBordered(max(pixelsWithData(right), +ordinary), 0, 0, margin, right_.cols - margin - width_, true, right_);
 }
 
-void CostLimits::apply(const int* pixels, int count, int first, int lanes, float unit, float* cost) const
+template <typename Cost>
+void CostLimits::apply(const int* pixels, int count, int first, int lanes, Cost unit, int steps, Cost* cost) const
 {
+    if (isEmpty())
+        return;
+    const int shift = steps - 1; // divides by the steps
     for (int i = 0; i < count; ++i, cost += lanes)
     {
         const int y = pixels[i] / width_, x = pixels[i] - y * width_;
-        const uchar* const limit = right(y) + width_ - 1 - x + first;
+        const uchar* const limit = right(y) + width_ - 1 - x;
         if (left(y)[x] == 0)
-            std::fill(cost, cost + lanes, 0.f);
+            std::fill(cost, cost + lanes, (Cost)0);
         else
             for (int k = 0; k < lanes; ++k)
-                cost[k] = limit[k] == none ? cost[k] : std::min(cost[k], limit[k] * unit);
+            {
+                const int candidate = first + k;
+                const uchar both = std::min(limit[candidate >> shift], limit[(candidate + shift) >> shift]);
+                cost[k] = both == none ? cost[k] : std::min(cost[k], (Cost)(unit * both));
+            }
     }
 }
 
-void CostLimits::apply(const int* pixels, int count, int first, int lanes, uchar unit, int steps, uchar* cost) const
-{
-    for (int i = 0; i < count; ++i, cost += lanes)
-    {
-        const int y = pixels[i] / width_, x = pixels[i] - y * width_;
-        const uchar own = left(y)[x];
-        const uchar* const limit = right(y) + width_ - 1 - x;
-        for (int k = 0; k < lanes; ++k)
-        {
-            const int candidate = first + k;
-            const uchar both = std::min(limit[candidate / steps], limit[(candidate + steps - 1) / steps]);
-            cost[k] = (uchar)std::min((int)cost[k], unit * std::min(own, both));
-        }
-    }
-}
+template void CostLimits::apply(const int*, int, int, int, float, int, float*) const;
+template void CostLimits::apply(const int*, int, int, int, uchar, int, uchar*) const;
 
 void CostLimits::apply(int y, const ushort* disparity, uchar* cost) const
 {
+    if (isEmpty())
+        return;
     const uchar *own = left(y), *limit = right(y) + width_ - 1;
     for (int x = 0; x < width_; ++x)
         cost[x] = std::min(cost[x], std::min(own[x], limit[wholeDisparity(disparity[x]) - x]));

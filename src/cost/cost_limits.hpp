@@ -34,11 +34,10 @@ public:
     //! none. Candidate d of pixel x is at [width - 1 - x + d].
     const uchar* right(int y) const { return right_.ptr(y) + margin; }
 
-    /** Limits what MatchingCost::evaluate() has found.
-    @param unit The cost of a bit. */
-    void apply(const int* pixels, int count, int first, int lanes, float unit, float* cost) const;
-    //! steps: candidates per pixel of disparity. What is between two pixels has data if both have.
-    void apply(const int* pixels, int count, int first, int lanes, uchar unit, int steps, uchar* cost) const;
+    //! Limits what MatchingCost::evaluate() has found, in floats or bytes. unit: the cost of a bit; steps: candidates
+    //! per pixel of disparity, 1 or 2. What is between two pixels has data if both have.
+    template <typename Cost>
+    void apply(const int* pixels, int count, int first, int lanes, Cost unit, int steps, Cost* cost) const;
     //! Limits the costs of a row of disparities.
     void apply(int y, const ushort* disparity, uchar* cost) const;
     //! A disparity map of the left image, USHRT_MAX where there is no data

@@ -26,8 +26,7 @@ void TwoLayerCost::evaluate(const int* pixels, int count, int first, int lanes, 
     if (below_)
     {
         dispatched::countTwoLayers(own_->data(), below_->data(), pixels, count, first, lanes, cost);
-        if (!own_->limits().isEmpty())
-            own_->limits().apply(pixels, count, first, lanes, scale, steps(), cost);
+        own_->limits().apply(pixels, count, first, lanes, (uchar)scale, steps(), cost);
         return;
     }
     own_->evaluate(pixels, count, first, lanes, cost);

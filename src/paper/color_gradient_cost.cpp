@@ -100,8 +100,7 @@ void ColorGradientCost::prepareImage(const Mat& image, bool mirrored, int after,
 void ColorGradientCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
 {
     dispatched::evaluateColorGradientCost(planes_, pixels, count, first, lanes, cost);
-    if (!limits_.isEmpty())
-        limits_.apply(pixels, count, first, lanes, bit_, cost);
+    limits_.apply(pixels, count, first, lanes, bit_, 1, cost);
 }
 
 }}} // namespace cv::stereo::hdp
