@@ -25,6 +25,7 @@ void TwoLayerCost::evaluate(const int* pixels, int count, int first, int lanes, 
 {
     if (below_)
     {
+        CV_DbgAssert(first % 2 == 0);
         dispatched::countTwoLayers(own_->data(), below_->data(), pixels, count, first, lanes, cost);
         own_->limits().apply(pixels, count, first, lanes, (uchar)scale, steps(), cost);
         return;

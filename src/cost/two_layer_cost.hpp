@@ -27,7 +27,7 @@ public:
 
     //! Candidates per pixel of disparity
     int steps() const { return below_ ? 2 : 1; }
-    //! CensusCost::evaluate(), times scale and rounded up
+    //! CensusCost::evaluate(), times scale and rounded up. With a layer below, first is even.
     void evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const;
 
 private:
