@@ -8,14 +8,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-/** Support points @cite Geiger2010ELAS: every 4th pixel in x and y, matched by descriptors of gradients.
-
-A pixel's descriptor is 16 gradients around it; the dissimilarity of two pixels is the L1 distance of the descriptors
-at (+-2, +-2) around them. A point is kept if it has texture, its best dissimilarity is below 0.95 times the second
-one, the match of its match is at most 2 pixels away, and at least 4 of the points within +-4 grid places (itself
-among them) differ from it by at most 4.
-
-The authors' program has them instead of the paper's grid of 5 x 5 pixels; it counts those of the right image, too. */
 struct SupportPointBuffers
 {
     Mat grey, derivative, horizontal, vertical; // of one image, and its gradients
@@ -23,8 +15,19 @@ struct SupportPointBuffers
     Mat matches;
 };
 
-//! Finds the support points of a pair of one size, CV_8UC1 or CV_8UC3, over disparities 0 .. numDisparities - 1.
-//! points: CV_16SC1 of ceil(rows / 4) x ceil(cols / 4), the disparity at (4 y, 4 x) or -1.
+/** Finds support points @cite Geiger2010ELAS: every 4th pixel in x and y, matched by descriptors of gradients.
+
+A pixel's descriptor is 16 gradients around it; the dissimilarity of two pixels is the L1 distance of the descriptors
+at (+-2, +-2) around them. A point is kept if it has texture, its best dissimilarity is below 0.95 times the second
+one, the match of its match is at most 2 pixels away, and at least 4 of the points within +-4 grid places (itself
+among them) differ from it by at most 4.
+
+The authors' program has them instead of the paper's grid of 5 x 5 pixels; it counts those of the right image, too.
+@param left CV_8UC1 or CV_8UC3.
+@param right Of the same size and type.
+@param numDisparities Disparities 0 .. numDisparities - 1 are compared.
+@param buffers Memory to work in.
+@param points Receives CV_16SC1 of ceil(rows / 4) x ceil(cols / 4), the disparity at (4 y, 4 x) or -1. */
 CV_EXPORTS void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, SupportPointBuffers& buffers,
                                   Mat& points);
 
