@@ -116,9 +116,7 @@ private:
 
     static bool hasTexture(const uchar* descriptor)
     {
-        const uchar none[descriptorSize] = { 128, 128, 128, 128, 128, 128, 128, 128,
-                                             128, 128, 128, 128, 128, 128, 128, 128 };
-        return distanceOf(descriptor, none) >= minTexture;
+        return (int)v_reduce_sad(v_load(descriptor), v_setall_u8(128)) >= minTexture; // 128: no gradient
     }
 
     const Mat (&descriptors_)[2];
