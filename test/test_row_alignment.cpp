@@ -339,6 +339,20 @@ TEST(HDPStereo_RowAlignment, good_pairs_stay_as_they_are)
     }
 }
 
+//! Levels that differ by a factor alone leave nothing between windows, and rounding may leave less.
+TEST(HDPStereo_RowAlignment, no_noise)
+{
+    RNG rng(17);
+    const Mat texture = randomImage(rng, Size(208, 150), CV_8UC1, 10);
+    for (const Size factors : { Size(7, 19), Size(11, 15), Size(22, 9), Size(25, 11), Size(23, 26) })
+    {
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32);
+        match(*matcher, texture.colRange(0, 200) * factors.width, texture.colRange(8, 208) * factors.height);
+        EXPECT_LE(0, matcher->getFindings().noise) << factors;
+        EXPECT_NO_THROW(matcher->setPairModel(matcher->getPairModel())) << factors;
+    }
+}
+
 //! Nothing to match, or nothing but what is ambiguous
 TEST(HDPStereo_RowAlignment, no_evidence)
 {

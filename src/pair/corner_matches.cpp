@@ -190,7 +190,8 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
         if (rightVariance <= 0)
             return;
         const double gain = std::sqrt(variance / rightVariance);
-        residual = 2 * (variance - gain * ((double)sums[2] * n - sum * sums[0])) / ((double)n * n);
+        // Rounding may make it less than 0.
+        residual = std::max(2 * (variance - gain * ((double)sums[2] * n - sum * sums[0])) / ((double)n * n), 0.);
         if (iteration == iterations)
             break;
         // Sums of the gradient times (gain * R - L), both without their means
