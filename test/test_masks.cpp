@@ -195,6 +195,7 @@ TEST(HDPStereo_Masks, nothing_has_data)
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45);
         matcher->setMasks(none, none);
         EXPECT_EQ(0, cv::countNonZero(match(*matcher, pair.left, pair.right) != -16)) << preset.name;
+        EXPECT_NO_THROW(createSystem(preset, 45)->setPairModel(matcher->getPairModel())) << preset.name;
         matcher->setMasks(noArray(), none);
         EXPECT_EQ(0, cv::countNonZero(match(*matcher, pair.left, pair.right) < 0)) << preset.name;
         const Mat nan(pair.left.size(), CV_32FC1, Scalar(notANumber));

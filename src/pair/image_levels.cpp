@@ -143,6 +143,8 @@ void greyLevels(const Mat& image, int bits, Mat& grey, double brightness)
 
 double findBrightness(const Mat& left, const Mat& right, double share)
 {
+    if (share == 0) // nothing to be seen
+        return 1;
     const int step = std::max(left.rows / rowsThatTell, 1), white = 255 * greyScale;
     double doublings = 0;
     for (int i = 1; i <= maxDoublings; ++i)
