@@ -383,6 +383,8 @@ TEST(HDPStereo_PairModel, bad_values)
         { "addedColumns", [](PairModel& m) { m.addedColumns = -1; } },
         { "rows", [=](PairModel& m) { m.rows[4] = nan; } },
         { "rows", [](PairModel& m) { m.rows.pop_back(); } },
+        { "rows", [](PairModel& m) { m.rows[1] = 8589934591.999998; } },
+        { "rows", [](PairModel& m) { m.rows[4] = -1e300; } },
         { "light", [=](PairModel& m) { m.light[9] = nan; } },
         { "light", [](PairModel& m) { m.light.push_back(0); } },
         { "noise", [](PairModel& m) { m.noise = -1; } },

@@ -214,6 +214,9 @@ void checkPairModel(const PairModel& model)
     visitFields(model, Checker());
     checkNumbers(model.rows, RowModel::terms, "rows");
     checkNumbers(model.light, LightModel::terms, "light");
+    const Point2d corner(0.5 * (model.width + model.addedColumns), 0.5 * model.height);
+    if (norm(RowModel::basis(corner).mul(RowModel::Coefficients(model.rows.data())), NORM_L1) > maxWhole)
+        CV_Error(Error::StsOutOfRange, "PairModel: rows must move pixels by at most 2^24 rows");
 }
 
 void checkPairModelOf(const PairModel& model, Size size, int type, int layers)
