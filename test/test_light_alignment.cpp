@@ -129,6 +129,20 @@ TEST(HDPStereo_LightAlignment, good_pairs_stay_as_they_are)
     EXPECT_EQ(LightModel::identity(), foundBy(*matcher, false).coefficients);
 }
 
+//! Whatever a model says: the cost of colours and gradients sees the levels of the images.
+TEST(HDPStereo_LightAlignment, of_grey_levels_alone)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(64, 48), 16, 6);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_PAPER);
+    const Mat disparity = match(*matcher, pair.left, pair.right);
+    PairModel model = matcher->getPairModel();
+    model.isLightChanged = true;
+    model.light[0] = 0.7;
+    matcher->setPairModel(model);
+    expectIdentical(disparity, match(*matcher, pair.left, pair.right));
+    EXPECT_EQ(0.7, foundBy(*matcher, false).coefficients[0]);
+}
+
 //! Every part of the image has a lamp of its own: nothing that a model explains.
 TEST(HDPStereo_LightAlignment, other_lamps)
 {

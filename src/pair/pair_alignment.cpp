@@ -64,6 +64,7 @@ void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector
     findings = given ? given->findings : PairFindings();
     if (!given)
         findAlignment(plan, buffers, images, findings);
+    findings.hasLight &= isGrey(images);
     const ImageFrame frame = (given ? given->frame : ImageFrame(images[0].guide.size())).ofLayer(plan.finestLayer);
 
     Mat& finest = images[plan.finestLayer].right;
@@ -74,7 +75,7 @@ void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector
         if (!images[0].masks.isEmpty())
             alignMask(findings.rows.ofLayer(plan.finestLayer), frame, plan.finestLayer, images);
     }
-    if (findings.hasLight && isGrey(images))
+    if (findings.hasLight)
         alignLight(finest, findings.light, frame);
     if (findings.hasRows || findings.hasLight)
         for (size_t layer = plan.finestLayer + 1; layer < images.size(); ++layer)
