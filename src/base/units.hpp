@@ -16,6 +16,9 @@ const int subpixelScale = 16;
 //! The unit of grey levels in CV_16UC1 images is 1 / greyScale of a level of 8 bits, and whiteLevel is the highest one.
 const int greyScale = 4, whiteLevel = 256 * greyScale - 1;
 
+//! Grey level 0.299 R + 0.587 G + 0.114 B of a pixel of 8 bits, in 1 / 65536
+CV_ALWAYS_INLINE int greyOf(const uchar* bgr) { return 7471 * bgr[0] + 38470 * bgr[1] + 19595 * bgr[2]; }
+
 //! The candidate next to a disparity of a map, the larger one of two
 inline int wholeDisparity(int disparity) { return (int)((unsigned)(disparity + subpixelScale / 2) / subpixelScale); }
 

@@ -18,13 +18,10 @@ namespace {
 
 template <int channels> void greyRow(const uchar* pixels, int width, int times, ushort* levels)
 {
-    const unsigned shift = 14 - times, half = 1u << (shift - 1);
-    static_assert(65536 / greyScale == 1 << 14, "The weights are in 1 / 65536.");
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
-    {
-        const uchar* bgr = pixels + channels * x;
-        levels[x] = (ushort)((7471u * bgr[0] + 38470u * bgr[1] + 19595u * bgr[2] + half) >> shift);
-    }
+    const int shift = 14 - times, half = 1 << (shift - 1);
+    static_assert(65536 / greyScale == 1 << 14, "greyOf() is in 1 / 65536.");
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
+        (ushort)((greyOf(pixels + channels * x) + half) >> shift);
 }
 
 } // namespace

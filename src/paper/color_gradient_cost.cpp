@@ -6,6 +6,8 @@
 #include "color_gradient_cost.simd.hpp"
 #include "paper/color_gradient_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
+#include "../base/units.hpp"
+
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
@@ -24,16 +26,16 @@ const int borderGain = 4;
 // surfaces
 const float bitsOfMost = 9;
 
-//! Grey levels, 0.299 R + 0.587 G + 0.114 B, in 1 / 65536. Rounded to whole levels they cost accuracy: the gradients of
-//! smooth surfaces are below one level.
+//! Grey levels in 1 / 65536, see greyOf(). Rounded to whole levels they cost accuracy: the gradients of smooth surfaces
+//! are below one level.
 void gradientLevels(const uchar* pixels, int count, int channels, int* grey)
 {
     if (channels == 1)
         for (int x = 0; x < count; ++x)
             grey[x] = pixels[x] * 65536;
     else
-        for (int x = 0; x < count; ++x, pixels += 3)
-            grey[x] = 7471 * pixels[0] + 38470 * pixels[1] + 19595 * pixels[2];
+        for (int x = 0; x < count; ++x)
+            grey[x] = greyOf(pixels + 3 * x);
 }
 
 //! Half the central difference of the grey levels along each row, in 1 / gradientScale levels; at the ends borderGain
