@@ -73,7 +73,7 @@ Range supportedDisparities(const std::vector<CornerMatch>& matches, int& support
 //! Returns how many there are; range: theirs
 int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, Range& range)
 {
-    const int bits = countBits(left, right); // what has no data has the levels of what has
+    const int bits = bitsInUse(left, right); // what has no data has the levels of what has
     greyLevels(left, bits, leftLevels_);
     greyLevels(right, bits, rightLevels_);
     const int width = left.cols;

@@ -67,8 +67,8 @@ inline Mat halve(const Mat& image)
     return image.depth() == CV_16U ? halve<ushort>(image, 0.5) : halve<uchar>(image, 0);
 }
 
-//! The number of bits in use, see hdp::countBits(). left, right: CV_16UC1.
-inline int countBits(const Mat& left, const Mat& right)
+//! The number of bits in use, see hdp::bitsInUse(). left, right: CV_16UC1.
+inline int bitsInUse(const Mat& left, const Mat& right)
 {
     std::vector<ushort> pixels(left.begin<ushort>(), left.end<ushort>());
     pixels.insert(pixels.end(), right.begin<ushort>(), right.end<ushort>());

@@ -84,44 +84,44 @@ TEST(HDPStereo_ImageLevels, of_8_bits_are_the_image_without_alpha)
 
 TEST(HDPStereo_ImageLevels, count_of_bits)
 {
-    const auto countBits = [](const Mat& left, const Mat& right) {
-        const int bits = hdp::countBits(left, right);
-        EXPECT_EQ(oracle::countBits(left, right), bits);
+    const auto bitsInUse = [](const Mat& left, const Mat& right) {
+        const int bits = hdp::bitsInUse(left, right);
+        EXPECT_EQ(oracle::bitsInUse(left, right), bits);
         return bits;
     };
     RNG rng(52);
     const Size size(70, 50);
     for (int type : { CV_8UC1, CV_8UC3, CV_8UC4 })
-        EXPECT_EQ(8, hdp::countBits(randomImage(rng, size, type), randomImage(rng, size, type)));
+        EXPECT_EQ(8, hdp::bitsInUse(randomImage(rng, size, type), randomImage(rng, size, type)));
     for (int used = 1; used <= 16; ++used)
     {
         SCOPED_TRACE(testing::Message() << used << " bits");
         const Mat bright = randomImage(rng, size, CV_16UC1, 1 << used);
         const Mat dark = randomImage(rng, size, CV_16UC1, std::max(1 << used >> 3, 2));
-        EXPECT_EQ(std::max(used, 8), countBits(bright, dark));
-        EXPECT_EQ(std::max(used, 8), countBits(dark, bright));
+        EXPECT_EQ(std::max(used, 8), bitsInUse(bright, dark));
+        EXPECT_EQ(std::max(used, 8), bitsInUse(dark, bright));
         const Mat column = bright.col(3); // of 50 pixels
-        EXPECT_EQ(std::max(used, 8), countBits(column, column));
+        EXPECT_EQ(std::max(used, 8), bitsInUse(column, column));
         for (int number : { 6, 7 }) // of white pixels, of 7000 in both images
         {
             Mat defective = dark.clone();
             for (int i = 0; i < number; ++i)
                 defective.at<ushort>(500 * i) = 65535;
-            EXPECT_EQ(number == 7 ? 16 : std::max(used - 3, 8), countBits(dark, defective));
-            EXPECT_EQ(number == 7 ? 16 : std::max(used - 3, 8), countBits(defective, dark));
+            EXPECT_EQ(number == 7 ? 16 : std::max(used - 3, 8), bitsInUse(dark, defective));
+            EXPECT_EQ(number == 7 ? 16 : std::max(used - 3, 8), bitsInUse(defective, dark));
         }
     }
-    const auto countBitsOf = [&](int level) {
+    const auto bitsInUseOf = [&](int level) {
         const Mat pixel(1, 1, CV_16UC1, Scalar(level));
-        return countBits(pixel, pixel);
+        return bitsInUse(pixel, pixel);
     };
     for (int bits = 9; bits <= 16; ++bits)
     {
-        EXPECT_EQ(bits - 1, countBitsOf((1 << (bits - 1)) - 1));
-        EXPECT_EQ(bits, countBitsOf(1 << (bits - 1)));
+        EXPECT_EQ(bits - 1, bitsInUseOf((1 << (bits - 1)) - 1));
+        EXPECT_EQ(bits, bitsInUseOf(1 << (bits - 1)));
     }
-    EXPECT_EQ(8, countBitsOf(0));
-    EXPECT_EQ(16, countBitsOf(65535));
+    EXPECT_EQ(8, bitsInUseOf(0));
+    EXPECT_EQ(16, bitsInUseOf(65535));
 }
 
 //! From the documentation: a share of pixels, white ones left out, for each doubling

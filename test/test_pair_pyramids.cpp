@@ -42,7 +42,7 @@ TEST(HDPStereo_PairPyramids, layers_of_both_images)
         const Mat extendedLeft = moved(left, plan.extension, 0);
         const Mat extendedRight = moved(right, plan.extension, plan.minDisparity);
 
-        const int bits = hdp::countBits(left, right);
+        const int bits = hdp::bitsInUse(left, right);
         double brightness = 1;
         Mat grey[2], buffer[2];
         hdp::greyLevels(extendedLeft, bits, grey[0]);

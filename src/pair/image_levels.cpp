@@ -59,7 +59,7 @@ void convertRows(const Mat& image, Mat& converted, const Convert& convert)
 
 } // namespace
 
-int countBits(const Mat& left, const Mat& right, double share)
+int bitsInUse(const Mat& left, const Mat& right, double share)
 {
     int bits = minBits;
     if (left.depth() == CV_8U)

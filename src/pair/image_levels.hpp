@@ -17,11 +17,11 @@ again, if more than one pixel in 1024 has a level of 128 or more.
 @param left The images.
 @param right
 @param share Of the pixels that count; the others are black. */
-CV_EXPORTS int countBits(const Mat& left, const Mat& right, double share = 1);
+CV_EXPORTS int bitsInUse(const Mat& left, const Mat& right, double share = 1);
 
 /** The colours or grey levels of an image in 8 bits, the upper ones of those in use.
 @param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
-@param bits See countBits().
+@param bits See bitsInUse().
 @param buffer Memory for the result.
 @param brightness See greyLevels().
 @return CV_8UC1 or CV_8UC3: the image itself, if it is that. */
@@ -35,7 +35,7 @@ A brightness of 2 or 4 doubles levels once or twice; what is brighter then is wh
 dark levels alone: below the knee, which is the share b - 1 of white for b < 2 and b / 2 - 1 for b > 2. Those above it
 are on the line from there to white. So the levels depend on the brightness without a jump.
 @param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
-@param bits See countBits().
+@param bits See bitsInUse().
 @param grey Receives CV_16UC1.
 @param brightness 1 to 4. */
 CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey, double brightness = 1);
@@ -46,7 +46,7 @@ part of the scene, and it is left out. Between the two, the more would become wh
 What is white already has nothing to lose, and does not count as far as it is no more than what stays dark. More than
 two doublings would make noise look like texture.
 @param left,right See greyLevels().
-@param share See countBits().
+@param share See bitsInUse().
 @return 1 to 4. */
 CV_EXPORTS double findBrightness(const Mat& left, const Mat& right, double share = 1);
 

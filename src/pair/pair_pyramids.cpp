@@ -109,7 +109,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
     LevelFindings& levels = pyramids.levels;
     levels = given ? *given : LevelFindings();
     if (!given)
-        levels.bits = countBits(blackened(left, masks.left), blackened(right, masks.right), share);
+        levels.bits = bitsInUse(blackened(left, masks.left), blackened(right, masks.right), share);
     if (plan.isCensus)
     {
         const PairMasks moved = masks.isEmpty() ? masks : PairMasks({ pyramids.leftMask[0], pyramids.rightMask[0] });

@@ -28,7 +28,7 @@ struct LayerImages
 //! What there is to know of the levels of a pair
 struct LevelFindings
 {
-    int bits = 8;                      // in use, see countBits()
+    int bits = 8;                      // in use, see bitsInUse()
     double brightness = 1;             // what the levels are brightened by, see greyLevels()
     BlockGrid leftBlocks, rightBlocks; // of JPEG compression
 };
