@@ -72,7 +72,7 @@ void findCorners(const Mat& image, const Mat& has, const CornerSearch& search, s
         }
     };
     std::vector<Point> corners;
-    bestOfCells(grid, cell, cornerStep, -1, scoreRow, corners);
+    bestPixelPerCell(grid, cell, cornerStep, -1, scoreRow, corners);
     corners.erase(std::remove(corners.begin(), corners.end(), nowhere), corners.end());
     matches.assign(corners.size(), CornerMatch());
     for (size_t i = 0; i < corners.size(); ++i)

@@ -96,7 +96,8 @@ Point2d refine(const Mat& before, Point from, const Mat& now, Point match)
 
 } // namespace
 
-void bestOfCells(Size grid, int cell, int step, double minScore, const RowScores& scoreRow, std::vector<Point>& best)
+void bestPixelPerCell(Size grid, int cell, int step, double minScore, const RowScores& scoreRow,
+                      std::vector<Point>& best)
 {
     std::vector<int> columns;
     for (int x = 0; x < grid.width * cell; ++x)
@@ -145,7 +146,7 @@ void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& poi
             *scores++ = isTracked ? texture(before[0], place) : 0;
         }
     };
-    bestOfCells(grid, cell, cell / 2, minSum - 1, scoreRow, places);
+    bestPixelPerCell(grid, cell, cell / 2, minSum - 1, scoreRow, places);
     points.clear();
     for (const Point& place : places)
         if (place != nowhere)

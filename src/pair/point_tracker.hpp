@@ -31,7 +31,8 @@ typedef std::function<void(int y, const std::vector<int>& columns, double* score
 @param minScore A pixel has to have more.
 @param scoreRow The score; called by several threads.
 @param best Receives a pixel of each cell, row by row, or nowhere. */
-void bestOfCells(Size grid, int cell, int step, double minScore, const RowScores& scoreRow, std::vector<Point>& best);
+void bestPixelPerCell(Size grid, int cell, int step, double minScore, const RowScores& scoreRow,
+                      std::vector<Point>& best);
 
 //! Number of levels that trackPoints() needs if the finest one has this size; each has a pixel.
 CV_EXPORTS int trackingLevels(Size size);
