@@ -142,34 +142,25 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     match.isValid = true;
 }
 
-//! A window of the left image
-struct TrackedWindow
-{
-    short values[CornerMatching::trackWidth * CornerMatching::trackHeight];
-    short gradientX[CornerMatching::trackWidth * CornerMatching::trackHeight];
-    short gradientY[CornerMatching::trackWidth * CornerMatching::trackHeight];
-    int sums[9]; // of L, L * L, X, Y, X * X, X * Y, Y * Y, L * X and L * Y
-};
-
 void track(const Mat& left, const Mat& right, CornerMatch& match)
 {
     match.isValid = false;
-    const int width = CornerMatching::trackWidth, height = CornerMatching::trackHeight, n = width * height;
+    const int width = CornerMatching::trackWidth, height = CornerMatching::trackHeight, n = TrackedWindow::pixels;
     const int fractionBits = CornerMatching::fractionBits, fractions = 1 << fractionBits;
     const Point first = match.left - Point(width / 2, height / 2);
     const Rect inside(1, 1, left.cols - 2, left.rows - 2); // has gradients
     if (!inside.contains(first) || !inside.contains(first + Point(width - 1, height - 1)))
         return;
-    TrackedWindow w;
-    dispatched::cutWindow(left.ptr<ushort>(first.y) + first.x, left.step1(), w.values, w.gradientX, w.gradientY,
-                          w.sums);
-    const double sum = w.sums[0], sumX = w.sums[2], sumY = w.sums[3];
-    const double productX = w.sums[7] - sumX * sum / n, productY = w.sums[8] - sumY * sum / n;
-    const double variance = (double)w.sums[1] * n - sum * sum; // times n * n
+    TrackedWindow window;
+    dispatched::cutWindow(left.ptr<ushort>(first.y) + first.x, left.step1(), window);
+    const TrackedWindow::Sums& sums = window.sums;
+    const double sum = sums.l, sumX = sums.x, sumY = sums.y;
+    const double productX = sums.lx - sumX * sum / n, productY = sums.ly - sumY * sum / n;
+    const double variance = (double)sums.ll * n - sum * sum; // times n * n
     if (variance < minContrast * minContrast * n * n)
         return;
     // Gradients are over two pixels.
-    const double xx = 0.25 * w.sums[4], xy = 0.25 * w.sums[5], yy = 0.25 * w.sums[6];
+    const double xx = 0.25 * sums.xx, xy = 0.25 * sums.xy, yy = 0.25 * sums.yy;
     const double determinant = xx * yy - xy * xy;
     if (determinant <= 0)
         return;
@@ -183,20 +174,19 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
         const Point whole(x >> fractionBits, y >> fractionBits);
         if (whole.x < 0 || whole.y < 0 || whole.x + width >= right.cols || whole.y + height >= right.rows)
             return;
-        int sums[5];
-        dispatched::trackingSums(right.ptr<ushort>(whole.y) + whole.x, right.step1(), x & (fractions - 1),
-                                 y & (fractions - 1), w.values, w.gradientX, w.gradientY, sums);
-        const double rightVariance = (double)sums[1] * n - (double)sums[0] * sums[0];
+        const RightSums other = dispatched::trackingSums(right.ptr<ushort>(whole.y) + whole.x, right.step1(),
+                                                         x & (fractions - 1), y & (fractions - 1), window);
+        const double rightVariance = (double)other.rr * n - (double)other.r * other.r;
         if (rightVariance <= 0)
             return;
         const double gain = std::sqrt(variance / rightVariance);
         // Rounding may make it less than 0.
-        residual = std::max(2 * (variance - gain * ((double)sums[2] * n - sum * sums[0])) / ((double)n * n), 0.);
+        residual = std::max(2 * (variance - gain * ((double)other.lr * n - sum * other.r)) / ((double)n * n), 0.);
         if (iteration == iterations)
             break;
         // Sums of the gradient times (gain * R - L), both without their means
-        const double ex = 0.5 * (gain * (sums[3] - sumX * sums[0] / n) - productX);
-        const double ey = 0.5 * (gain * (sums[4] - sumY * sums[0] / n) - productY);
+        const double ex = 0.5 * (gain * (other.xr - sumX * other.r / n) - productX);
+        const double ey = 0.5 * (gain * (other.yr - sumY * other.r / n) - productY);
         place.x = (double)x / fractions - (yy * ex - xy * ey) / determinant;
         place.y = (double)y / fractions - (xx * ey - xy * ex) / determinant;
         if (std::max(std::abs(place.x - start.x), std::abs(place.y - start.y)) > maxMove)

@@ -55,6 +55,27 @@ struct SearchArea
     };
 };
 
+//! A window of the left image that is tracked, and its gradients over two pixels
+struct TrackedWindow
+{
+    enum
+    {
+        pixels = CornerMatching::trackWidth * CornerMatching::trackHeight
+    };
+    struct Sums
+    {
+        int l, ll, x, y, xx, xy, yy, lx, ly; // of levels, of their squares, of gradients, of products
+    };
+    short values[pixels], gradientX[pixels], gradientY[pixels];
+    Sums sums;
+};
+
+//! Sums over a window of the right image: of levels r, and of products with what a TrackedWindow has
+struct RightSums
+{
+    int r, rr, lr, xr, yr;
+};
+
 //! What findCornerMatches() looks for
 struct CornerSearch
 {

@@ -38,32 +38,24 @@ void windowSums(const ushort* first, size_t step, int count, int* columns, int* 
 @param correlations Receives -1 to 1, row by row; 0 without texture. */
 void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations);
 
-/** The left window of trackCornerMatches(), its gradients over two pixels, and its sums.
+/** The left window of trackCornerMatches().
 @param left First pixel of the window.
 @param step From a row to the next, in pixels.
-@param values Receives the window without gaps.
-@param gradientX Receives its gradients.
-@param gradientY
-@param sums Receives the sums of L, L * L, X, Y, X * X, X * Y, Y * Y, L * X and L * Y. */
-void cutWindow(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9]);
+@param window Receives it. */
+void cutWindow(const ushort* left, size_t step, TrackedWindow& window);
 
 /** One window of the right image for trackCornerMatches(): its sums with the left one.
 @param right The pixel above and left of the first one's place.
 @param step From a row to the next, in pixels.
 @param fx Fraction of the place, in 1 / 2^fractionBits of a pixel.
 @param fy
-@param left The left window, without gaps.
-@param gradientX Of the left window.
-@param gradientY
-@param sums Receives the sums of R, R * R, L * R, gradientX * R and gradientY * R. */
-void trackingSums(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
-                  const short* gradientY, int sums[5]);
+@param window The left window. */
+RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const TrackedWindow& window);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
-const int windowPixels = CornerMatching::trackWidth * CornerMatching::trackHeight;
 const short middle = 512; // of levels up to 1023
 
 } // namespace
@@ -173,15 +165,15 @@ void correlate(const ushort* left, int sum, float scale, const SearchArea& area,
     }
 }
 
-void cutWindow(const ushort* left, size_t step, short* values, short* gradientX, short* gradientY, int sums[9])
+void cutWindow(const ushort* left, size_t step, TrackedWindow& window)
 {
     for (int y = 0; y < CornerMatching::trackHeight; ++y)
     {
         const ushort* const row = left + y * step;
         const ushort *const above = row - step, *const below = row + step;
-        short* const l = values + y * CornerMatching::trackWidth;
-        short* const gx = gradientX + y * CornerMatching::trackWidth;
-        short* const gy = gradientY + y * CornerMatching::trackWidth;
+        short* const l = window.values + y * CornerMatching::trackWidth;
+        short* const gx = window.gradientX + y * CornerMatching::trackWidth;
+        short* const gy = window.gradientY + y * CornerMatching::trackWidth;
         HDP_VECTORIZED for (int x = 0; x < CornerMatching::trackWidth; ++x)
         {
             l[x] = (short)row[x];
@@ -189,31 +181,29 @@ void cutWindow(const ushort* left, size_t step, short* values, short* gradientX,
             gy[x] = (short)(below[x] - above[x]);
         }
     }
-    int sum = 0, square = 0, sumX = 0, sumY = 0, xx = 0, xy = 0, yy = 0, productX = 0, productY = 0;
-    HDP_VECTORIZED for (int i = 0; i < windowPixels; ++i)
+    TrackedWindow::Sums sums = {};
+    HDP_VECTORIZED for (int i = 0; i < TrackedWindow::pixels; ++i)
     {
-        sum += values[i];
-        square += values[i] * values[i];
-        sumX += gradientX[i];
-        sumY += gradientY[i];
-        xx += gradientX[i] * gradientX[i];
-        xy += gradientX[i] * gradientY[i];
-        yy += gradientY[i] * gradientY[i];
-        productX += values[i] * gradientX[i];
-        productY += values[i] * gradientY[i];
+        const short l = window.values[i], x = window.gradientX[i], y = window.gradientY[i];
+        sums.l += l;
+        sums.ll += l * l;
+        sums.x += x;
+        sums.y += y;
+        sums.xx += x * x;
+        sums.xy += x * y;
+        sums.yy += y * y;
+        sums.lx += l * x;
+        sums.ly += l * y;
     }
-    const int all[9] = { sum, square, sumX, sumY, xx, xy, yy, productX, productY };
-    for (int i = 0; i < 9; ++i)
-        sums[i] = all[i];
+    window.sums = sums;
 }
 
-void trackingSums(const ushort* right, size_t step, int fx, int fy, const short* left, const short* gradientX,
-                  const short* gradientY, int sums[5])
+RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const TrackedWindow& window)
 {
     const int bits = CornerMatching::fractionBits, half = 1 << (2 * bits - 1);
     const short w11 = (short)(fx * fy), w10 = (short)((fy << bits) - w11), w01 = (short)((fx << bits) - w11),
                 w00 = (short)(2 * half - w11 - w10 - w01);
-    short values[windowPixels];
+    short values[TrackedWindow::pixels];
     for (int y = 0; y < CornerMatching::trackHeight; ++y)
     {
         const ushort *const a = right + y * step, *const b = a + step;
@@ -222,20 +212,17 @@ void trackingSums(const ushort* right, size_t step, int fx, int fy, const short*
             (short)((w00 * (short)a[x] + w01 * (short)a[x + 1] + w10 * (short)b[x] + w11 * (short)b[x + 1] + half) >>
                     (2 * bits));
     }
-    int sum = 0, square = 0, product = 0, productX = 0, productY = 0;
-    HDP_VECTORIZED for (int i = 0; i < windowPixels; ++i)
+    RightSums sums = {};
+    HDP_VECTORIZED for (int i = 0; i < TrackedWindow::pixels; ++i)
     {
-        sum += values[i];
-        square += values[i] * values[i];
-        product += values[i] * left[i];
-        productX += values[i] * gradientX[i];
-        productY += values[i] * gradientY[i];
+        const short r = values[i];
+        sums.r += r;
+        sums.rr += r * r;
+        sums.lr += window.values[i] * r;
+        sums.xr += window.gradientX[i] * r;
+        sums.yr += window.gradientY[i] * r;
     }
-    sums[0] = sum;
-    sums[1] = square;
-    sums[2] = product;
-    sums[3] = productX;
-    sums[4] = productY;
+    return sums;
 }
 
 #endif
