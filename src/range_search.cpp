@@ -4,6 +4,7 @@
 #include "precomp.hpp"
 #include "range_search.hpp"
 
+#include "base/vectorized.hpp"
 #include "pair/image_levels.hpp"
 #include "pair/image_pyramid.hpp"
 
@@ -38,8 +39,8 @@ const int mostDisparity = SHRT_MAX / StereoMatcher::DISP_SCALE - 2;
 Range limited(double first, double last, int width)
 {
     const int limit = std::min(width - 1, mostDisparity);
-    const int start = std::min(std::max(cvFloor(first), -limit), limit);
-    return Range(start, std::max(std::min(cvCeil(last), limit), start) + 1);
+    const int start = clamped(cvFloor(first), -limit, limit);
+    return Range(start, clamped(cvCeil(last), start, limit) + 1);
 }
 
 } // namespace

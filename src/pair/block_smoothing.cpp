@@ -48,8 +48,8 @@ void smoothStep(ushort* row, int x, double limit)
     for (int i = 0; i < side / 2; ++i)
     {
         const int part = (twice * (side - 1 - 2 * i) + 2 * side) >> 5;
-        row[x - 1 - i] = (ushort)std::min(std::max(row[x - 1 - i] + part, 0), whiteLevel);
-        row[x + i] = (ushort)std::min(std::max(row[x + i] - part, 0), whiteLevel);
+        row[x - 1 - i] = (ushort)clamped(row[x - 1 - i] + part, 0, whiteLevel);
+        row[x + i] = (ushort)clamped(row[x + i] - part, 0, whiteLevel);
     }
 }
 

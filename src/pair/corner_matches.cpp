@@ -113,7 +113,7 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     const int minColumns = SearchArea::minColumns, width = windows.sums.cols;
     const int end = std::min(first.x + 1 - disparities.start, width);
     const int most = std::max(disparities.end, disparities.start + minColumns);
-    const int x0 = std::min(std::max(first.x + 1 - most, 0), width - minColumns), count = end - x0;
+    const int x0 = clamped(first.x + 1 - most, 0, width - minColumns), count = end - x0;
     if (count <= 0)
         return;
     const int y0 = first.y - CornerMatching::searchRadius, columns = std::max(count, minColumns);

@@ -142,7 +142,7 @@ template <typename T> void mixColumns(const Mat& right, int row, const int weigh
 {
     const T* rows[4];
     for (int i = 0; i < 4; ++i)
-        rows[i] = right.ptr<T>(std::min(std::max(row - 1 + i, 0), right.rows - 1));
+        rows[i] = right.ptr<T>(clamped(row - 1 + i, 0, right.rows - 1));
     dispatched::mixRows(rows, weights, columns.start * right.channels(), columns.end * right.channels(), aligned);
 }
 

@@ -5,6 +5,7 @@
 #include "pair_plan.hpp"
 
 #include "../base/units.hpp"
+#include "../base/vectorized.hpp"
 #include "../pair/image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -71,7 +72,7 @@ HDP_TUNABLE(int, laterPrior, 2, "bits per 2 pixels", "from the pass before, whic
 int windowSide(const MatcherParameters& p)
 {
     const int side = p.blockSize > 0 ? p.blockSize / 2 * 2 + 1 : 5;
-    return p.matchingCost == M::COST_CENSUS ? std::min(std::max(side, 3), 7) : std::min(side, maxWindow);
+    return p.matchingCost == M::COST_CENSUS ? clamped(side, 3, 7) : std::min(side, maxWindow);
 }
 
 //! Aggregation below the top layer. Without prediction there are no layers, and the plain tree algorithm matches the
@@ -267,7 +268,7 @@ int censusTolerance(const LayerPlan& layer, const LayerNoise& noise, bool hasPri
         return 0;
     const int least = !layer.isFinest; // rounded means and faint shading are no texture
     const int tolerance = cvRound(toleratedNoise * greyScale * noise.ofLayer(layer.layer));
-    return std::min(std::max(tolerance, least), +CensusCost::mostTolerance);
+    return clamped(tolerance, least, +CensusCost::mostTolerance);
 }
 
 } // namespace
