@@ -76,10 +76,10 @@ public:
             clock_.run("known disparities", [&] { takeKnown(inputs_, pairPlan, known_); });
         else
             known_ = KnownDisparities();
-        if (matchPair(pair_, pairPlan) == CONTRADICTED)
+        if (matchPair(pairPlan) == CONTRADICTED)
         {
             lastFrame_.clear();
-            matchPair(pair_, pairPlan);
+            matchPair(pairPlan);
         }
 
         disparityArray.create(left.size(), depth);
@@ -284,7 +284,7 @@ private:
 
     //! From the images to the disparities of the finest layer. CONTRADICTED: the pair was matched as the next frame of
     //! a video, and is none.
-    Verdict matchPair(const CompletePair& pair, const PairPlan& pairPlan)
+    Verdict matchPair(const PairPlan& pairPlan)
     {
         const int finest = pairPlan.finest().layer;
         const GivenPair& given = pairPlan.given;
@@ -292,7 +292,7 @@ private:
             lastFrame_ = FrameMemory();
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
-            buildPairPyramids(pair.left, pair.right, pair.masks, pairPlan.pyramids, pyramids_, images,
+            buildPairPyramids(pair_.left, pair_.right, pair_.masks, pairPlan.pyramids, pyramids_, images,
                               given.isGiven ? &given.levels : nullptr);
         });
         result_.brightness = roundedBrightness(pyramids_.levels.brightness);

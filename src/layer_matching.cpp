@@ -149,7 +149,7 @@ private:
     {
         const DisparityForest& forest = shared_.forest;
         CostVolume& volume = shared_.volume;
-        prepareVolumeCost();
+        shared_.volumeCost.prepare(own_.census, in_.below);
         aggregateMeans(forest, shared_.volumeCost, plan_.trees.gamma, shared_.aggregation, volume);
         if (plan_.checksLastFrame)
         {
@@ -186,9 +186,6 @@ private:
     //! The same in candidates of a volume, see run()
     const Mat& candidateIntervals() const { return plan_.seesBelow ? own_.candidateIntervals : intervals(); }
 
-    //! What the costs of a volume are
-    void prepareVolumeCost() { shared_.volumeCost.prepare(own_.census, in_.below); }
-
     void predictFromLastFrame()
     {
         const int side = 1 << (plan_.layer - in_.pair.finest().layer);
@@ -203,7 +200,7 @@ private:
         result_.searchRatio = 1;
         clock_.run("disparity prediction", [&] {
             const DisparityInterval all = { 0, (ushort)(plan_.numDisparities - 1) };
-            prepareVolumeCost();
+            shared_.volumeCost.prepare(own_.census, in_.below);
             shared_.volume.fill(shared_.volumeCost, in_.images.guide.size(), all);
             if (!plan_.prefersLastFrame)
                 return;
