@@ -92,20 +92,19 @@ Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
     if (image.depth() == CV_8U && times == 0)
         return colors;
     const std::vector<ushort> curve = brightnessCurve(brightness);
-    if (image.depth() == CV_16U)
+    if (image.depth() == CV_8U)
     {
-        buffer.create(image.size(), CV_8UC1);
-        convertRows<ushort, uchar>(image, buffer, [&](const ushort* pixels, uchar* levels, int width) {
-            for (int x = 0; x < width; ++x)
-                levels[x] =
-                    (uchar)(curve[std::min(shifted(pixels[x] * greyScale, times), (int)curve.size() - 1)] / greyScale);
-        });
+        Mat bytes(1, 256, CV_8U);
+        for (int level = 0; level < 256; ++level)
+            bytes.at<uchar>(level) = (uchar)(curve[level * greyScale << times] / greyScale);
+        LUT(colors, bytes, buffer);
         return buffer;
     }
-    buffer.create(colors.size(), colors.type());
-    convertRows<uchar, uchar>(colors, buffer, [&](const uchar* pixels, uchar* levels, int width) {
-        for (int i = 0; i < width * colors.channels(); ++i)
-            levels[i] = (uchar)(curve[(pixels[i] * greyScale) << times] / greyScale);
+    buffer.create(image.size(), CV_8UC1);
+    convertRows<ushort, uchar>(image, buffer, [&](const ushort* pixels, uchar* levels, int width) {
+        for (int x = 0; x < width; ++x)
+            levels[x] =
+                (uchar)(curve[std::min(shifted(pixels[x] * greyScale, times), (int)curve.size() - 1)] / greyScale);
     });
     return buffer;
 }
