@@ -123,13 +123,14 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     dispatched::windowSums(window, left.step1(), 1, memory, &sum, &scale);
     if (scale == 0 || scale * minContrast * pixels > 1)
         return;
-    const SearchArea area = { right.ptr<ushort>(y0) + x0,
-                              windows.sums.ptr<int>(y0) + x0,
-                              windows.scales.ptr<float>(y0) + x0,
-                              right.step1(),
-                              windows.sums.step1(),
-                              rows,
-                              columns };
+    SearchArea area;
+    area.pixels = right.ptr<ushort>(y0) + x0;
+    area.sums = windows.sums.ptr<int>(y0) + x0;
+    area.scales = windows.scales.ptr<float>(y0) + x0;
+    area.step = right.step1();
+    area.sumStep = windows.sums.step1();
+    area.rows = rows;
+    area.columns = columns;
     correlations.resize(rows * columns);
     dispatched::correlate(window, sum, scale, area, correlations.data());
     for (int row = columns; row <= rows * columns; row += columns) // disparities before the first one

@@ -57,8 +57,10 @@ std::vector<LevelPair> toLevels(const CoarseMatches& coarse)
         if (!match.isValid || !inside.contains(match.left) || !inside.contains(matched))
             continue;
         const double x = (match.x + 0.5) / right.cols - 0.5, y = (match.y + 0.5) / right.rows - 0.5;
-        const LevelPair pair = { LightModel::basis(meanLevel(right, matched), x, y), meanLevel(left, match.left),
-                                 levelDeviation };
+        LevelPair pair;
+        pair.basis = LightModel::basis(meanLevel(right, matched), x, y);
+        pair.value = meanLevel(left, match.left);
+        pair.deviation = levelDeviation;
         pairs.push_back(pair);
     }
     return pairs;

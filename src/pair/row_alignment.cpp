@@ -49,9 +49,10 @@ std::vector<RowMove> toMoves(const std::vector<CornerMatch>& matches, int layer,
     for (const CornerMatch& match : matches)
         if (match.isValid)
         {
-            const Point2d place = fromCentre(match.x, match.left.y, layer, size);
-            const RowMove move = { RowModel::basis(place), (match.y - match.left.y) * scale,
-                                   std::sqrt(match.variance + ownDeviation * ownDeviation) * scale };
+            RowMove move;
+            move.basis = RowModel::basis(fromCentre(match.x, match.left.y, layer, size));
+            move.value = (match.y - match.left.y) * scale;
+            move.deviation = std::sqrt(match.variance + ownDeviation * ownDeviation) * scale;
             moves.push_back(move);
         }
     return moves;
