@@ -388,6 +388,7 @@ TEST(HDPStereo_PairModel, bad_values)
         { "light", [=](PairModel& m) { m.light[9] = nan; } },
         { "light", [](PairModel& m) { m.light.push_back(0); } },
         { "noise", [](PairModel& m) { m.noise = -1; } },
+        { "noise", [](PairModel& m) { m.noise = 1e9; } },
         { "noiseLayer", [](PairModel& m) { m.noiseLayer = 16; } },
         { "black", [=](PairModel& m) { m.black = nan; } },
         { "white", [](PairModel& m) { m.white = m.black - 1; } },

@@ -34,7 +34,7 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("addedColumns", m.addedColumns, m.addedColumns >= 0 && m.addedColumns <= maxWhole, "0..2^24");
     visit("areRowsMoved", m.areRowsMoved, true, "");
     visit("isLightChanged", m.isLightChanged, true, "");
-    visit("noise", m.noise, isStep(m.noise), notNegative);
+    visit("noise", m.noise, m.noise >= 0 && m.noise <= 10000, "0..10000");
     visit("noiseLayer", m.noiseLayer, m.noiseLayer >= 0 && m.noiseLayer <= 15, "0..15");
     visit("black", m.black, std::isfinite(m.black), "finite");
     visit("white", m.white, std::isfinite(m.white) && m.white >= m.black, "finite and >= black");

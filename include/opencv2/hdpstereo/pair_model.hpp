@@ -82,7 +82,7 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     //! Whether the light of the right image is changed by them, for HDPTreeMatcher::COST_CENSUS
     CV_PROP_RW bool isLightChanged;
 
-    CV_PROP_RW double noise;   //!< as HDPTreeMatcher::Findings::noise, of noiseLayer: finite, >= 0
+    CV_PROP_RW double noise;   //!< as HDPTreeMatcher::Findings::noise, of noiseLayer, 0..10000
     CV_PROP_RW int noiseLayer; //!< the layer in which it was measured, 0..15; 0 is the image
 
     CV_PROP_RW double black; //!< level of CV_32F that is matched as 0 of CV_16U: finite; 0 for other depths
