@@ -17,7 +17,7 @@ const double white = 255 * greyScale;
 HDP_TUNABLE(int, meanRadius, 3, "pixels", "of the square around a corner whose mean level counts: noise averages out");
 HDP_TUNABLE(double, levelDeviation, 0.5 / 255, "of white", "by which matched levels differ at best: they are rounded");
 HDP_TUNABLE(double, maxRest, 4. / 255, "of white", "median difference that a model which fits may leave");
-HDP_TUNABLE(double, maxRestShare, 0.6, "share", "of that difference before the model: one that explains less is none");
+HDP_TUNABLE(double, maxRestShare, 0.7, "share", "of that difference before the model: one that explains less is none");
 
 // Expected deviations of the coefficients from those of the same light. What vignetting and gamma do is within them;
 // what few matches cannot tell stays as it is.
