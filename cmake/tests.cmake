@@ -21,6 +21,11 @@ foreach(kind test perf)
   use_opencv_ts(opencv_${kind}_hdpstereo)
 endforeach()
 target_precompile_headers(opencv_test_hdpstereo PRIVATE test/test_precomp.hpp)
+# These compile stages of the library once more, for vectors that OpenCV emulates: that is what is tested.
+if(HDPSTEREO_SANITIZE MATCHES "address")
+  set_source_files_properties(test/test_range_scanlines.cpp test/test_scanline_aggregation.cpp test/test_sixteen_words.cpp
+    test/test_volume_scanlines.cpp PROPERTIES COMPILE_OPTIONS -fsanitize=address SKIP_PRECOMPILE_HEADERS ON)
+endif()
 # Optional: a filter of ximgproc on our disparities. Inside OpenCV's build that test skips itself: there, a module's tests
 # see what the module itself depends on.
 if(TARGET opencv_ximgproc)
