@@ -54,6 +54,8 @@ void defFields(py::class_<PairModel>& type)
     defNumbers(type, "light", &PairModel::light, "coefficients of HDPTreeMatcher.Findings.light: 10 finite numbers");
     type.def_readwrite("isLightChanged", &PairModel::isLightChanged,
                        "whether the light of the right image is changed by them, for COST_CENSUS");
+    type.def_readwrite("rowError", &PairModel::rowError,
+                       "HDPTreeMatcher.Findings.rowError, 0..2^24 pixels; 0: unknown");
     type.def_readwrite("noise", &PairModel::noise, "as HDPTreeMatcher.Findings.noise, of noiseLayer: finite, >= 0");
     type.def_readwrite("noiseLayer", &PairModel::noiseLayer, "layer in which it was measured, 0 to 15; 0 is the image");
     type.def_readwrite("black", &PairModel::black,

@@ -25,7 +25,7 @@ namespace {
 const char* const nameInFiles = "StereoMatcher.HDPTree"; // as OpenCV's StereoMatcher.SGBM
 
 // Factor of the errors from a layer to the one below that it is enlarged to: means of pixels have less noise
-const double sigmaPerLayer = 1.6;
+const double sigmaPerLayer = 1.45;
 
 //! The setter and the getter of a parameter
 #define HDP_PARAMETER(T, Name, member)                                                                                 \
@@ -148,11 +148,12 @@ public:
         findings.areRowsMoved = r.findings.hasRows;
         findings.light.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
         findings.isLightChanged = r.findings.hasLight;
-        findings.noise = findings.minDisparity = findings.numDisparities = 0;
+        findings.rowError = findings.noise = findings.minDisparity = findings.numDisparities = 0;
         if (!r.isMatched)
             return findings;
         findings.minDisparity = r.plan.output.minDisparity;
         findings.numDisparities = r.plan.alignment.numDisparities;
+        findings.rowError = r.findings.rowError;
         findings.noise = r.findings.noise.ofLayer(r.plan.finest().layer) / r.brightness;
         findings.searchRatios.assign(r.plan.top().layer + 1, 0);
         for (const LayerPlan& layer : r.plan.layers)
@@ -202,7 +203,7 @@ public:
         if (plan.cost.isCensus)
             levelMismatch(layers_[plan.layer].disparity, scratch_[plan.layer].census, mismatch);
         const float rounding = result_.plan.output.isWhole ? 0.34f : 0.f; // of 68 % of what is rounded to whole pixels
-        disparitySigma(confidenceOfLayer(), mismatch, rounding, ofLayer);
+        disparitySigma(confidenceOfLayer(), mismatch, result_.findings.rowError, rounding, ofLayer);
         double scale = 1;
         for (int layer = 0; layer < plan.layer; ++layer)
             scale *= sigmaPerLayer;

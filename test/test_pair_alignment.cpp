@@ -53,20 +53,21 @@ TEST(HDPStereo_PairAlignment, rows_of_exact_matches)
         hdp::CoarseMatches coarse = makeMatches(rng, 200, model);
         for (size_t i = 0; i < coarse.matches.size(); i += 5) // wrong ones
             coarse.matches[i].y += rng.uniform(-9., 9.);
-        RowModel found;
-        hdp::LayerNoise noise;
-        ASSERT_TRUE(hdp::estimateRows(coarse, 0, 64, found, noise)) << round;
+        hdp::RowFindings found;
+        hdp::estimateRows(coarse, 0, 64, found);
+        ASSERT_TRUE(found.hasRows) << round;
+        EXPECT_NEAR(0.02, found.rowError, 0.002) << "least that matches are believed to have";
         for (const CornerMatch& match : coarse.matches)
         {
             const Point2d place = fromCentre(Point2d(match.x, match.left.y));
-            ASSERT_NEAR(model.at(place), found.at(place), 0.02) << round;
+            ASSERT_NEAR(model.at(place), found.rows.at(place), 0.02) << round;
         }
         std::vector<double> residuals;
         for (const CornerMatch& match : coarse.matches)
             residuals.push_back(match.residual);
         std::sort(residuals.begin(), residuals.end());
-        EXPECT_EQ(0, noise.layer);
-        EXPECT_NEAR(std::sqrt(residuals[residuals.size() / 10] / 1.5) / hdp::greyScale, noise.deviation, 1e-12)
+        EXPECT_EQ(0, found.noise.layer);
+        EXPECT_NEAR(std::sqrt(residuals[residuals.size() / 10] / 1.5) / hdp::greyScale, found.noise.deviation, 1e-12)
             << "of the tenth of the matches that differ least";
     }
 }
@@ -74,17 +75,36 @@ TEST(HDPStereo_PairAlignment, rows_of_exact_matches)
 TEST(HDPStereo_PairAlignment, rows_are_not_believed)
 {
     RNG rng(62);
-    RowModel found;
-    hdp::LayerNoise noise;
-    EXPECT_FALSE(hdp::estimateRows(makeMatches(rng, 23, makeModel(3, 0, 0)), 0, 64, found, noise)) << "too few";
-    EXPECT_EQ(RowModel::Coefficients(), found.coefficients);
-    EXPECT_EQ(0, noise.deviation);
-    EXPECT_FALSE(hdp::estimateRows(makeMatches(rng, 200, makeModel(7, 0, 0)), 0, 6, found, noise)) << "too far";
-    EXPECT_EQ(RowModel::Coefficients(), found.coefficients);
-    EXPECT_TRUE(hdp::estimateRows(makeMatches(rng, 200, makeModel(7, 0, 0)), 0, 8, found, noise));
-    EXPECT_FALSE(hdp::estimateRows(makeMatches(rng, 200, makeModel(0.1, 0, 0)), 0, 8, found, noise))
-        << "not worth the interpolation";
-    EXPECT_NEAR(0.1, found.coefficients[0], 0.01) << "reported all the same";
+    const auto find = [&](int matches, double offset, int maxOffset) {
+        hdp::RowFindings found;
+        hdp::estimateRows(makeMatches(rng, matches, makeModel(offset, 0, 0)), 0, maxOffset, found);
+        return found;
+    };
+    const hdp::RowFindings few = find(23, 3, 64), far = find(200, 7, 6), small = find(200, 0.1, 8);
+    EXPECT_FALSE(few.hasRows);
+    EXPECT_EQ(RowModel::Coefficients(), few.rows.coefficients);
+    EXPECT_EQ(0, few.noise.deviation);
+    EXPECT_EQ(0, few.rowError);
+    EXPECT_FALSE(far.hasRows);
+    EXPECT_EQ(RowModel::Coefficients(), far.rows.coefficients);
+    EXPECT_TRUE(find(200, 7, 8).hasRows);
+    EXPECT_FALSE(small.hasRows) << "not worth the interpolation";
+    EXPECT_NEAR(0.1, small.rows.coefficients[0], 0.01) << "reported all the same";
+}
+
+TEST(HDPStereo_PairAlignment, row_error_is_that_of_the_matches)
+{
+    RNG rng(63);
+    for (const double deviation : { 0.05, 0.1, 0.3 })
+    {
+        hdp::CoarseMatches coarse = makeMatches(rng, 1000, makeModel(1, 0, 0));
+        for (size_t i = 0; i < coarse.matches.size(); ++i)
+            coarse.matches[i].y += i % 5 == 0 ? rng.uniform(-9., 9.) : rng.gaussian(deviation);
+        hdp::RowFindings found;
+        hdp::estimateRows(coarse, 0, 64, found);
+        EXPECT_GE(found.rowError, deviation);
+        EXPECT_LE(found.rowError, 1.5 * deviation) << "of the right matches, or nearly";
+    }
 }
 
 //! Smooth levels, so that the square around a match has the level of the match

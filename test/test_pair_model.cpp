@@ -72,6 +72,7 @@ PairModel makeUnusualModel()
     for (size_t i = 0; i < model.light.size(); ++i)
         model.light[i] = (double)i / 7;
     model.isLightChanged = true;
+    model.rowError = 1. / 9;
     model.noise = 1. / 7;
     model.noiseLayer = 1;
     model.black = -1. / 3;
@@ -119,6 +120,7 @@ TEST(HDPStereo_PairModel, the_pair_again)
                 const M::Findings given = other->getFindings();
                 EXPECT_EQ(found.rows, given.rows);
                 EXPECT_EQ(found.light, given.light);
+                EXPECT_EQ(found.rowError, given.rowError);
                 EXPECT_EQ(found.noise, given.noise);
 
                 other->setPairModel(PairModel());
@@ -277,7 +279,9 @@ TEST(HDPStereo_PairModel, enlarged)
     model.numDisparities = 16;
     for (double& coefficient : model.rows)
         coefficient = rng.uniform(-1., 1.);
+    model.rowError = 0.1;
     const PairModel large = model.enlarged(2, 403, 240);
+    EXPECT_DOUBLE_EQ(0.4, large.rowError);
     EXPECT_EQ(Size(403, 240), Size(large.tileWidth, large.tileHeight));
     hdp::RowModel small, enlarged;
     std::copy(model.rows.begin(), model.rows.end(), small.coefficients.val);
@@ -365,7 +369,7 @@ TEST(HDPStereo_PairModel, files)
         expectRejected([&] { readFrom(without); }, name);
         ++fields;
     }
-    EXPECT_EQ(24, fields);
+    EXPECT_EQ(25, fields);
 }
 
 TEST(HDPStereo_PairModel, bad_values)
@@ -387,6 +391,8 @@ TEST(HDPStereo_PairModel, bad_values)
         { "rows", [](PairModel& m) { m.rows[4] = -1e300; } },
         { "light", [=](PairModel& m) { m.light[9] = nan; } },
         { "light", [](PairModel& m) { m.light.push_back(0); } },
+        { "rowError", [](PairModel& m) { m.rowError = -1; } },
+        { "rowError", [=](PairModel& m) { m.rowError = nan; } },
         { "noise", [](PairModel& m) { m.noise = -1; } },
         { "noise", [](PairModel& m) { m.noise = 1e9; } },
         { "noiseLayer", [](PairModel& m) { m.noiseLayer = 16; } },

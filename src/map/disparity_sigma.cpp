@@ -19,22 +19,28 @@ const int window = 9;
 
 const int unit = subpixelScale;
 
-// Errors in pixels by which 50 to 80 % are not larger, of PRESET_FAST on pairs of Middlebury, ETH3D and KITTI, each set
-// as much as the others; made to fall with the confidence and to rise with the mismatch.
+// Of pairs of usual sharpness. The rows of matched corners are off by errors of the same kind as disparities; sigma rises
+// with the root of them, not as fast as they do, as some of them are the rig's.
+const double usualRowError = 0.12; // pixels
+const double minRowError = 0.03, maxRowError = 0.25;
+
+// Errors in pixels by which 50 to 80 % are not larger, at the usual row error, of FAST, QUALITY and TREE on pairs of
+// Middlebury, ETH3D, SceneFlow and KITTI, each set as much as the others; made to fall with the confidence and to rise
+// with the mismatch, and smooth.
 const int confidences = 9, mismatches = 7;
 const float confidenceOf[confidences] = { 2, 10, 20, 30, 44, 64, 88, 116, 150 };
 const float mismatchOf[mismatches] = { 0.15f, 0.3f, 0.45f, 0.65f, 0.9f, 1.4f, 2.5f };
 const float unknownMismatch = 0.65f; // that of most pixels
 const float sigmas[confidences][mismatches] = {
-    { 1.70f, 2.09f, 2.51f, 2.51f, 2.93f, 3.45f, 5.73f },
-    { 1.70f, 2.09f, 2.36f, 2.36f, 2.58f, 3.04f, 4.51f },
-    { 1.37f, 1.37f, 1.37f, 1.37f, 1.37f, 1.45f, 1.74f },
-    { 0.67f, 0.67f, 0.67f, 0.75f, 0.77f, 0.77f, 0.93f },
-    { 0.43f, 0.43f, 0.43f, 0.48f, 0.515f, 0.565f, 0.68f },
-    { 0.335f, 0.335f, 0.35f, 0.39f, 0.427f, 0.448f, 0.485f },
-    { 0.284f, 0.285f, 0.303f, 0.322f, 0.35f, 0.373f, 0.373f },
-    { 0.225f, 0.25f, 0.255f, 0.294f, 0.321f, 0.336f, 0.336f },
-    { 0.198f, 0.2f, 0.207f, 0.243f, 0.243f, 0.243f, 0.31f },
+    { 1.10f, 1.30f, 1.40f, 1.40f, 1.50f, 2.70f, 3.80f }, //
+    { 0.62f, 0.82f, 1.10f, 1.10f, 1.20f, 1.60f, 1.80f }, //
+    { 0.43f, 0.49f, 0.61f, 0.67f, 0.76f, 0.87f, 0.89f }, //
+    { 0.38f, 0.39f, 0.45f, 0.52f, 0.58f, 0.64f, 0.65f }, //
+    { 0.33f, 0.34f, 0.37f, 0.44f, 0.48f, 0.51f, 0.52f }, //
+    { 0.28f, 0.32f, 0.33f, 0.37f, 0.40f, 0.43f, 0.44f }, //
+    { 0.25f, 0.28f, 0.29f, 0.31f, 0.33f, 0.35f, 0.36f }, //
+    { 0.23f, 0.25f, 0.28f, 0.29f, 0.31f, 0.32f, 0.33f }, //
+    { 0.22f, 0.23f, 0.24f, 0.27f, 0.30f, 0.32f, 0.32f },
 };
 
 //! Where a value is between ascending ones: the first of two, and the share of the second
@@ -96,8 +102,10 @@ void levelMismatch(const Mat& disparity, const CensusCost& cost, Mat& mismatch)
     });
 }
 
-void disparitySigma(const Mat& confidence, const Mat& mismatch, float rounding, Mat& sigma)
+void disparitySigma(const Mat& confidence, const Mat& mismatch, double rowError, float rounding, Mat& sigma)
 {
+    const double error = rowError > 0 ? std::min(std::max(rowError, minRowError), maxRowError) : usualRowError;
+    const float ofPair = (float)std::sqrt(error / usualRowError);
     Place places[256];
     for (int i = 0; i < 256; ++i)
         places[i] = placeOf((float)i, confidenceOf, confidences);
@@ -112,7 +120,7 @@ void disparitySigma(const Mat& confidence, const Mat& mismatch, float rounding, 
             const float* const lower = sigmas[row.first + 1] + column.first;
             const float above = upper[0] + column.share * (upper[1] - upper[0]),
                         below = lower[0] + column.share * (lower[1] - lower[0]);
-            const float value = above + row.share * (below - above);
+            const float value = ofPair * (above + row.share * (below - above));
             sigma.at<float>(y, x) = rounding > 0 ? std::sqrt(value * value + rounding * rounding) : value;
         }
     });

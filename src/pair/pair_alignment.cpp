@@ -51,7 +51,7 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
         right.push_back(buffers.rightLevels);
     }
     matchCoarsely(left, right, images[0].masks, Range(0, plan.numDisparities), buffers.coarse);
-    findings.hasRows = estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings.rows, findings.noise);
+    estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings);
     if (plan.findsLight && isGrey(images))
         findings.hasLight = estimateLight(buffers.coarse, findings.light);
 }

@@ -29,12 +29,10 @@ struct AlignmentPlan
 };
 
 //! What was found in a pair, about the right image's centre, and what of it was applied
-struct PairFindings
+struct PairFindings : RowFindings
 {
-    RowModel rows;
     LightModel light;
-    bool hasRows = false, hasLight = false;
-    LayerNoise noise = LayerNoise();
+    bool hasLight = false;
 };
 
 //! What is known of a pair already, and what the models are about

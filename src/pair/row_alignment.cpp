@@ -82,6 +82,15 @@ double noiseOf(const std::vector<CornerMatch>& matches)
     return std::sqrt(residuals[tenth] / 1.5);
 }
 
+//! Standard deviation of the matches from the model, by the median, as some matches are wrong
+double deviationFrom(const Coefficients& model, const std::vector<RowMove>& moves)
+{
+    std::vector<double> distances;
+    for (const RowMove& move : moves)
+        distances.push_back(std::abs(move.value - model.dot(move.basis)));
+    return deviationOfMedian * medianOf(distances);
+}
+
 //! Means over the image
 struct MeanSquares
 {
@@ -183,10 +192,9 @@ double LayerNoise::ofLayer(int other) const
     return noise;
 }
 
-bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model, LayerNoise& noise)
+void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowFindings& findings)
 {
-    model = RowModel();
-    noise = LayerNoise();
+    findings = RowFindings();
     const Size size = coarse.left[0].size();
     while (finestLayer < coarse.layer && coarse.left[finestLayer].total() > (size_t)trackedArea)
         ++finestLayer;
@@ -204,8 +212,9 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         const MeanSquares ofFit = meanSquares(fit, size);
         RowModel fitted;
         fitted.coefficients = fit.coefficients;
-        noise.deviation = noiseOf(matches) / greyScale;
-        noise.layer = layer;
+        findings.rowError = std::hypot(deviationFrom(fit.coefficients, moves), ownDeviation * (1 << layer));
+        findings.noise.deviation = noiseOf(matches) / greyScale;
+        findings.noise.layer = layer;
         if (ofFit.deviation < ofBest.deviation)
         {
             ofBest = ofFit;
@@ -217,9 +226,9 @@ bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         trackCornerMatches(coarse.left[layer - 1], coarse.right[layer - 1], matches);
     }
     if (ofBest.deviation == DBL_MAX || maxMoveAtCorners(best, size) > maxOffset)
-        return false;
-    model = best;
-    return ofBest.move > minMove * minMove;
+        return;
+    findings.rows = best;
+    findings.hasRows = ofBest.move > minMove * minMove;
 }
 
 void alignRows(const Mat& right, const RowModel& model, const ImageFrame& frame, Mat& aligned)

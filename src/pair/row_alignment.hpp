@@ -56,17 +56,25 @@ struct LayerNoise
     CV_EXPORTS double ofLayer(int other) const;
 };
 
+//! How the rows of a pair lie
+struct RowFindings
+{
+    RowModel rows;        // zero if matches do not tell
+    bool hasRows = false; // whether the model is certain, and moves rows by enough to be applied
+    double rowError =
+        0; // standard deviation of the matches' rows from those of the model, in pixels of the image; 0 if
+           // unknown
+    LayerNoise noise = LayerNoise(); // of the last layer that was looked at, 0 if unknown: what remains between the
+                                     // windows of matches, in the tenth of them with the lowest one
+};
+
 /** Finds how the rows of the right image lie against those of the left one, from matches that are followed from the
 coarse layer to the finest one.
 @param coarse What matchCoarsely() found.
 @param finestLayer The last layer that matches are followed to; one of 600000 pixels is fine enough.
 @param maxOffset Maximum difference of a pixel's rows that is believed, in pixels of the image.
-@param model Receives the model, zero if the matches do not tell.
-@param noise Receives the noise of the last layer that was looked at, 0 if unknown: what remains between the windows of
-matches, in the tenth of them with the lowest one.
-@return Whether the model is certain, and moves rows by enough to be applied. */
-CV_EXPORTS bool estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowModel& model,
-                             LayerNoise& noise);
+@param findings Receives the result. */
+CV_EXPORTS void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowFindings& findings);
 
 /** Moves the rows of the right image to those of the left one: aligned(x, y) = right(x, y + model(x, y)), by cubic
 interpolation. Beyond the image are its first and last rows.

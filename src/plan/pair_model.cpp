@@ -34,6 +34,7 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("addedColumns", m.addedColumns, m.addedColumns >= 0 && m.addedColumns <= maxWhole, "0..2^24");
     visit("areRowsMoved", m.areRowsMoved, true, "");
     visit("isLightChanged", m.isLightChanged, true, "");
+    visit("rowError", m.rowError, m.rowError >= 0 && m.rowError <= maxWhole, "0..2^24");
     visit("noise", m.noise, m.noise >= 0 && m.noise <= 10000, "0..10000");
     visit("noiseLayer", m.noiseLayer, m.noiseLayer >= 0 && m.noiseLayer <= 15, "0..15");
     visit("black", m.black, std::isfinite(m.black), "finite");
@@ -115,8 +116,8 @@ int blockStart(int column) { return (column % BlockGrid::side + BlockGrid::side)
 PairModel::PairModel()
     : width(0), height(0), depth(CV_8U), x(0), y(0), tileWidth(0), tileHeight(0), minDisparity(0), numDisparities(0),
       addedColumns(0), rows(RowModel::terms, 0.), areRowsMoved(false), light(LightModel::terms, 0.),
-      isLightChanged(false), noise(0), noiseLayer(0), black(0), white(0), bits(8), brightness(1), leftBlockStart(0),
-      leftBlockStep(0), rightBlockStart(0), rightBlockStep(0)
+      isLightChanged(false), rowError(0), noise(0), noiseLayer(0), black(0), white(0), bits(8), brightness(1),
+      leftBlockStart(0), leftBlockStep(0), rightBlockStart(0), rightBlockStep(0)
 {
     light[0] = 1;
 }
@@ -150,6 +151,7 @@ PairModel PairModel::enlarged(int times, int largeWidth, int largeHeight) const
     model.minDisparity = saturate_cast<int>(minDisparity * scale);
     model.numDisparities = saturate_cast<int>(numDisparities * scale);
     model.addedColumns = saturate_cast<int>(addedColumns * scale);
+    model.rowError = std::min(rowError * scale, (double)maxWhole);
     model.rows[0] *= scale;
     model.rows[3] /= scale;
     model.rows[4] /= scale;
@@ -269,6 +271,7 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     std::copy(model.light.begin(), model.light.end(), findings.light.coefficients.val);
     findings.light = findings.light.scaled(brightness);
     findings.hasLight = model.isLightChanged;
+    findings.rowError = model.rowError;
     findings.noise.deviation = model.noise * brightness;
     findings.noise.layer = model.noiseLayer;
     return given;
@@ -291,6 +294,7 @@ PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisp
     model.areRowsMoved = findings.hasRows;
     model.light.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
     model.isLightChanged = findings.hasLight;
+    model.rowError = findings.rowError;
     model.noise = findings.noise.deviation / brightness;
     model.noiseLayer = findings.noise.layer;
     model.black = floats.black;

@@ -82,6 +82,9 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     //! Whether the light of the right image is changed by them, for HDPTreeMatcher::COST_CENSUS
     CV_PROP_RW bool isLightChanged;
 
+    //! HDPTreeMatcher::Findings::rowError, 0..2^24 pixels; 0: unknown
+    CV_PROP_RW double rowError;
+
     CV_PROP_RW double noise;   //!< as HDPTreeMatcher::Findings::noise, of noiseLayer, 0..10000
     CV_PROP_RW int noiseLayer; //!< the layer in which it was measured, 0..15; 0 is the image
 
