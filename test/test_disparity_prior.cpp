@@ -24,7 +24,7 @@ Mat makePrior(RNG& rng, const Mat& truth, int count, double share, float off)
     return prior;
 }
 
-TEST(HDPStereo_DisparityPrior, is_believed_as_far_as_the_images_do_not_contradict_it)
+TEST(HDPStereo_SlowDisparityPrior, is_believed_as_far_as_the_images_do_not_contradict_it)
 {
     const Mat all(Size(320, 200), CV_8U, Scalar(255));
     for (const System& preset : presetsWithPrior)
