@@ -66,15 +66,9 @@ struct ByteLanes
         return ByteLanes(v_load_halves(low[0] + offset, high[0] + offset),
                          v_load_halves(low[1] + offset, high[1] + offset));
     }
-    //! The bytes at first in the first half of the lanes, those at second in the other half
-    static ByteLanes load(const uchar* first, const uchar* second) { return ByteLanes(v_load(first), v_load(second)); }
-    ByteLanes firstHalfTwice() const { return _mm256_permute2x128_si256(v.val, v.val, 0); }
-    //! A lane of the first half, one of the second and so on
-    ByteLanes inTurns() const
+    static ByteLanes loadInTurns(const uchar* first, const uchar* second)
     {
-        const __m256i swapped = _mm256_permute2x128_si256(v.val, v.val, 1);
-        const __m256i low = _mm256_unpacklo_epi8(v.val, swapped), high = _mm256_unpackhi_epi8(v.val, swapped);
-        return _mm256_inserti128_si256(low, _mm256_castsi256_si128(high), 1);
+        return ByteLanes(inTurns(first, second), inTurns(first + 8, second + 8));
     }
     //! The group at bytes as the first or the last one, and 0, 1, .. 15 in the other one
     static ByteLanes first(const uchar* bytes) { return ByteLanes(v_load(bytes), laneNumbers()); }
@@ -99,14 +93,8 @@ struct ByteLanes
     {
         return v_load_halves(low[0] + offset, high[0] + offset);
     }
-    static ByteLanes load(const uchar* first, const uchar* second) { return v_load_halves(first, second); }
-    ByteLanes firstHalfTwice() const { return v_combine_low(v, v); }
-    ByteLanes inTurns() const
-    {
-        Vector low, high;
-        v_zip(v, v_combine_high(v, v), low, high);
-        return low;
-    }
+    //! A byte of the first, one of the second and so on; 8 more of each may be read.
+    static ByteLanes loadInTurns(const uchar* first, const uchar* second) { return inTurns(first, second); }
     static ByteLanes first(const uchar* bytes) { return v_load(bytes); }
     static ByteLanes last(const uchar* bytes) { return v_load(bytes); }
     static ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes&) { return v_load(bytes); }
@@ -115,6 +103,13 @@ struct ByteLanes
     void storeLast(uchar* bytes) const { v_store(bytes, v); }
 #endif
     void store(uchar* bytes) const { v_store(bytes, v); }
+
+    static v_uint8x16 inTurns(const uchar* first, const uchar* second)
+    {
+        v_uint8x16 low, high;
+        v_zip(v_load(first), v_load(second), low, high);
+        return low;
+    }
 
     static v_uint8x16 laneNumbers()
     {

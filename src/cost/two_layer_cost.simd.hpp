@@ -34,29 +34,23 @@ struct PixelCensus
     //! C of some candidates from number k on
     template <int planes> CV_ALWAYS_INLINE ByteLanes costs(size_t rightPlane, int k) const
     {
-        return ofPlanes<planes>([=](int plane) { return ByteLanes::load(right + plane * rightPlane + k); });
+        ByteLanes sum = (ByteLanes::repeat(left[0]) ^ ByteLanes::load(right + k)).countBits();
+        for (int plane = 1; plane < planes; ++plane)
+            sum = sum + (ByteLanes::repeat(left[plane]) ^ ByteLanes::load(right + plane * rightPlane + k)).countBits();
+        return sum;
     }
 
     //! C(floor(h / 2)) + C(ceil(h / 2)) of candidates h, from number 2 * k on
     template <int planes> CV_ALWAYS_INLINE ByteLanes costsOfHalves(size_t rightPlane, int k) const
     {
-        const ByteLanes cost = ofPlanes<planes>([=](int plane) {
+        ByteLanes sum = ByteLanes::repeat(0);
+        for (int plane = 0; plane < planes; ++plane)
+        {
+            const ByteLanes pixel = ByteLanes::repeat(left[plane]);
             const uchar* const from = right + plane * rightPlane + k;
-            return ByteLanes::load(from, from + 1);
-        });
-        return (cost.firstHalfTwice() + cost).inTurns();
-    }
-
-private:
-    //! C of candidates; load: gives them in a plane
-    template <int planes, class Load> CV_ALWAYS_INLINE ByteLanes ofPlanes(const Load& load) const
-    {
-        const auto difference = [&](int plane) { return ByteLanes::repeat(left[plane]) ^ load(plane); };
-        if (planes == 3)
-            return ByteLanes::countBits(difference(0), difference(1), difference(2));
-        ByteLanes sum = difference(0).countBits();
-        for (int plane = 1; plane < planes; ++plane)
-            sum = sum + difference(plane).countBits();
+            sum = sum + (pixel ^ ByteLanes::loadInTurns(from, from)).countBits() +
+                  (pixel ^ ByteLanes::loadInTurns(from, from + 1)).countBits();
+        }
         return sum;
     }
 };
