@@ -28,6 +28,11 @@ template <int terms> struct FitSample
     Vec<double, terms> basis;
     double value;
     double deviation; // expected of the value
+
+    double distanceFrom(const Vec<double, terms>& coefficients) const
+    {
+        return std::abs(value - coefficients.dot(basis));
+    }
 };
 
 //! What is expected before any sample is seen
@@ -56,7 +61,7 @@ std::vector<double> fitResiduals(const std::vector<FitSample<terms>>& samples, c
     std::vector<double> residuals;
     residuals.reserve(samples.size());
     for (const FitSample<terms>& sample : samples)
-        residuals.push_back(std::abs(sample.value - coefficients.dot(sample.basis)) / sample.deviation);
+        residuals.push_back(sample.distanceFrom(coefficients) / sample.deviation);
     return residuals;
 }
 

@@ -87,7 +87,7 @@ double deviationFrom(const Coefficients& model, const std::vector<RowMove>& move
 {
     std::vector<double> distances;
     for (const RowMove& move : moves)
-        distances.push_back(std::abs(move.value - model.dot(move.basis)));
+        distances.push_back(move.distanceFrom(model));
     return deviationOfMedian * medianOf(distances);
 }
 

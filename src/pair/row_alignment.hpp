@@ -61,11 +61,10 @@ struct RowFindings
 {
     RowModel rows;        // zero if matches do not tell
     bool hasRows = false; // whether the model is certain, and moves rows by enough to be applied
-    double rowError =
-        0; // standard deviation of the matches' rows from those of the model, in pixels of the image; 0 if
-           // unknown
-    LayerNoise noise = LayerNoise(); // of the last layer that was looked at, 0 if unknown: what remains between the
-                                     // windows of matches, in the tenth of them with the lowest one
+
+    // Of the last layer that was looked at, 0 if unknown
+    double rowError = 0; // standard deviation of the matches' rows from a model of them, in pixels of the image
+    LayerNoise noise = LayerNoise(); // what remains between windows of matches, in the tenth with the lowest one
 };
 
 /** Finds how the rows of the right image lie against those of the left one, from matches that are followed from the

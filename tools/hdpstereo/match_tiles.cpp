@@ -183,10 +183,10 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
                           .enlarged(times, size.width, size.height);
     if (found.noise > 0)
     {
-        model.rowError = found.rowError;
         const bool isFloat = model.depth == CV_32F && model.white > model.black;
         model.noise = found.noise * (isFloat ? (found.white - found.black) / (model.white - model.black) : 1);
         model.noiseLayer = found.noiseLayer;
+        model.rowError = found.rowError;
     }
     model.leftBlockStart = (found.leftBlockStart + part.x) % 8;
     model.leftBlockStep = found.leftBlockStep;

@@ -438,7 +438,7 @@ public:
         //! Whether the rows of the right image were moved before matching.
         CV_PROP bool areRowsMoved;
 
-        /** @brief Standard deviation of matched corners from their rows, in pixels, beside what #rows explains.
+        /** @brief Standard deviation of matched corners from their rows, in pixels, beside what a model of rows tells.
 
         Corners are matched along and across rows; across, it is known where they belong. About 0.1 in pairs that are
         sharp and well calibrated, 0.2 in KITTI. HDPTreeMatcher::getDisparitySigma() rises with it. 0 if too few corners
@@ -587,8 +587,8 @@ public:
 
     About 68 % of the errors of pixels with a value are not larger; it is calibrated on pairs of known truth. It comes
     from getConfidence(), from how much matched levels differ for the texture there is, and from Findings::rowError.
-    Disparities that are wrong by much are where it is above 1; how much they are wrong it does not tell. It is computed
-    by this call.
+    About two thirds of the disparities that are wrong by more than 3 pixels have one above 1; how much they are wrong
+    it does not tell. It is computed by this call.
     @param sigma Receives CV_32FC1 of the left image's size, in pixels; infinite where a pixel has no data or a filter
     rejected it. Empty before the first compute() and after one that threw an exception.
      */
