@@ -43,26 +43,46 @@ else()
   set(dispatched_modes) # the baseline alone
 endif()
 
-# The stages of a target for each of dispatched_modes
+# What is compiled for one mode: a library of objects, whose files share a precompiled header.
+function(add_objects_of_mode target mode sources definitions options)
+  set(objects ${target}_${mode})
+  add_library(${objects} OBJECT ${sources})
+  foreach(property COMPILE_DEFINITIONS COMPILE_OPTIONS INCLUDE_DIRECTORIES LINK_LIBRARIES)
+    set_property(TARGET ${objects} PROPERTY ${property} $<TARGET_PROPERTY:${target},${property}>)
+  endforeach()
+  target_compile_definitions(${objects} PRIVATE __OPENCV_BUILD=1 ${definitions}
+    $<$<STREQUAL:$<TARGET_PROPERTY:${target},TYPE>,SHARED_LIBRARY>:CVAPI_EXPORTS>)
+  target_compile_options(${objects} PRIVATE ${options})
+  target_precompile_headers(${objects} PRIVATE src/precomp.hpp <opencv2/core/hal/intrin.hpp>)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+endfunction()
+
+# The stages of a target for the baseline and for each of dispatched_modes
 function(add_dispatched_stages target)
   set(dispatch_generated "${PROJECT_BINARY_DIR}/dispatch")
   file(GENERATE OUTPUT "${dispatch_generated}/cvconfig.h" CONTENT "#define CV_ENABLE_INTRINSICS\n")
   file(GENERATE OUTPUT "${dispatch_generated}/cv_cpu_config.h" CONTENT "${cpu_config}")
+  list(TRANSFORM dispatched_stages REPLACE "(.+)" "src/\\1.cpp" OUTPUT_VARIABLE sources)
+  add_objects_of_mode(${target} BASELINE "${sources}" "" "")
+  set(all_modes BASELINE)
+  foreach(mode IN LISTS dispatched_modes)
+    set(definitions CV_CPU_DISPATCH_MODE=${mode})
+    foreach(feature IN LISTS ${mode}_features)
+      list(APPEND definitions CV_CPU_COMPILE_${feature}=1)
+    endforeach()
+    set(sources "")
+    foreach(stage IN LISTS dispatched_stages)
+      list(APPEND sources "${dispatch_generated}/${stage}.${mode}.cpp")
+      file(GENERATE OUTPUT "${dispatch_generated}/${stage}.${mode}.cpp"
+        CONTENT "#include \"precomp.hpp\"\n#include \"${stage}.simd.hpp\"\n")
+    endforeach()
+    set_source_files_properties(${sources} PROPERTIES GENERATED TRUE)
+    add_objects_of_mode(${target} ${mode} "${sources}" "${definitions}" "${${mode}_flags};${dispatched_options}")
+    set(all_modes "${mode}, ${all_modes}")
+  endforeach()
   foreach(stage IN LISTS dispatched_stages)
-    set_property(SOURCE src/${stage}.cpp APPEND PROPERTY COMPILE_DEFINITIONS __OPENCV_BUILD=1)
-    set_property(SOURCE src/${stage}.cpp PROPERTY SKIP_PRECOMPILE_HEADERS ON) # theirs are for other options
     set(declarations "")
-    set(all_modes BASELINE)
     foreach(mode IN LISTS dispatched_modes)
-      set(source "${dispatch_generated}/${stage}.${mode}.cpp")
-      file(GENERATE OUTPUT "${source}" CONTENT "#include \"precomp.hpp\"\n#include \"${stage}.simd.hpp\"\n")
-      set(definitions __OPENCV_BUILD=1 CV_CPU_DISPATCH_MODE=${mode})
-      foreach(feature IN LISTS ${mode}_features)
-        list(APPEND definitions CV_CPU_COMPILE_${feature}=1)
-      endforeach()
-      set_source_files_properties("${source}" PROPERTIES GENERATED TRUE SKIP_PRECOMPILE_HEADERS ON
-        COMPILE_OPTIONS "${${mode}_flags};${dispatched_options}" COMPILE_DEFINITIONS "${definitions}")
-      target_sources(${target} PRIVATE "${source}")
       string(APPEND declarations
 "#undef CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 #undef CV_CPU_OPTIMIZATION_NAMESPACE_END
@@ -70,7 +90,6 @@ function(add_dispatched_stages target)
 #define CV_CPU_OPTIMIZATION_NAMESPACE_END }
 #include \"${stage}.simd.hpp\"
 ")
-      set(all_modes "${mode}, ${all_modes}")
     endforeach()
     file(GENERATE OUTPUT "${dispatch_generated}/${stage}.simd_declarations.hpp" CONTENT
 "#undef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY

@@ -11,17 +11,29 @@ set(ts_generated "${PROJECT_BINARY_DIR}/opencv_ts")
 foreach(header cvconfig.h cv_cpu_config.h opencv_tests_config.hpp)
   file(GENERATE OUTPUT "${ts_generated}/${header}" CONTENT "")
 endforeach()
-file(GLOB ts_sources "${OPENCV_SOURCE_DIR}/modules/ts/src/*.cpp")
-add_library(opencv_ts STATIC ${ts_sources})
-target_compile_definitions(opencv_ts PRIVATE __OPENCV_BUILD=1)
 # Of the source's core those headers that are not installed: the source may be that of another version.
-target_include_directories(opencv_ts SYSTEM PUBLIC "${ts_generated}" "${OPENCV_SOURCE_DIR}/modules/ts/include"
-  ${OpenCV_INCLUDE_DIRS} "${OPENCV_SOURCE_DIR}/modules/core/include")
-if(HDPSTEREO_SANITIZE)
-  target_compile_options(opencv_ts PRIVATE -fno-sanitize=all) # it is not what is tested, and takes long
+set(ts_include_directories "${ts_generated}" "${OPENCV_SOURCE_DIR}/modules/ts/include" ${OpenCV_INCLUDE_DIRS}
+  "${OPENCV_SOURCE_DIR}/modules/core/include")
+set(ts_libraries opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio opencv_highgui Threads::Threads)
+if(HDPSTEREO_TESTS_FROM)
+  add_library(opencv_ts STATIC IMPORTED)
+  set_target_properties(opencv_ts PROPERTIES IMPORTED_LOCATION "${HDPSTEREO_TESTS_FROM}/lib/libopencv_ts.a")
+  target_include_directories(opencv_ts INTERFACE ${ts_include_directories})
+  target_link_libraries(opencv_ts INTERFACE ${ts_libraries})
+else()
+  file(GLOB ts_sources "${OPENCV_SOURCE_DIR}/modules/ts/src/*.cpp")
+  add_library(opencv_ts STATIC ${ts_sources})
+  target_compile_definitions(opencv_ts PRIVATE __OPENCV_BUILD=1)
+  target_include_directories(opencv_ts SYSTEM PUBLIC ${ts_include_directories})
+  # It is not what is tested, and takes long.
+  if(HDPSTEREO_SANITIZE)
+    target_compile_options(opencv_ts PRIVATE -fno-sanitize=all)
+  endif()
+  if(NOT MSVC)
+    target_compile_options(opencv_ts PRIVATE -O0)
+  endif()
+  target_link_libraries(opencv_ts PUBLIC ${ts_libraries})
 endif()
-target_link_libraries(opencv_ts PUBLIC
-  opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio opencv_highgui Threads::Threads)
 
 # What a test program is compiled with. It is not what is tested: the optimizer, and sanitizers of the tests' own code,
 # would take half of the time of a build. What it gives the library lies on the heap, which AddressSanitizer guards all the

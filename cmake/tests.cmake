@@ -1,6 +1,6 @@
 # The suite, for CTest; CMakePresets.json has the builds to run it in. Labels:
 #   unit, tools       one test for each test suite of opencv_test_hdpstereo and opencv_test_hdpstereo_tools
-#   slow, threads     unit tests that take minutes under a sanitizer; those for ThreadSanitizer
+#   slow, threads     unit tests that are left out under AddressSanitizer, as they take long; those for ThreadSanitizer
 #   instruction-sets  unit tests, and the maps to the bit, without the wider instruction sets; the objects for those
 #   preload           programs under hdpstereo-run, and what it puts in the place of StereoSGBM
 #   samples, python   programs of samples/ and of OpenCV's own samples; both Python modules
@@ -10,22 +10,36 @@
 # What cannot run for want of something is shown as skipped. The web page has tests of its own, scripts/check_web.sh, which
 # first build OpenCV for WebAssembly.
 
+file(GLOB test_sources CONFIGURE_DEPENDS test/test_*.cpp)
+# These compile stages of the library once more, for vectors that OpenCV emulates: that is what is tested.
+set(sources_with_stages test/test_range_scanlines.cpp test/test_scanline_aggregation.cpp test/test_sixteen_words.cpp
+  test/test_volume_scanlines.cpp)
+list(TRANSFORM sources_with_stages PREPEND "${PROJECT_SOURCE_DIR}/")
+if(HDPSTEREO_SANITIZE MATCHES "address")
+  set_source_files_properties(${sources_with_stages} PROPERTIES COMPILE_OPTIONS -fsanitize=address
+    SKIP_PRECOMPILE_HEADERS ON)
+endif()
+# All others are not sanitized themselves, so those of another build will do.
+set(other_test_sources "")
+if(HDPSTEREO_TESTS_FROM)
+  set(other_test_sources ${test_sources})
+  set(test_sources "${PROJECT_SOURCE_DIR}/test/test_main.cpp" ${sources_with_stages})
+  list(REMOVE_ITEM other_test_sources ${test_sources})
+endif()
+file(GLOB test_headers CONFIGURE_DEPENDS test/*.hpp)
+add_executable(opencv_test_hdpstereo ${test_sources} ${test_headers})
+if(NOT HDPSTEREO_SANITIZE)
+  file(GLOB perf_sources CONFIGURE_DEPENDS perf/*.cpp perf/*.hpp)
+  add_executable(opencv_perf_hdpstereo ${perf_sources})
+endif()
 foreach(kind test perf)
-  if(kind STREQUAL "perf" AND HDPSTEREO_SANITIZE)
-    continue()
+  if(TARGET opencv_${kind}_hdpstereo)
+    target_include_directories(opencv_${kind}_hdpstereo PRIVATE ${kind})
+    target_link_libraries(opencv_${kind}_hdpstereo PRIVATE opencv_hdpstereo)
+    use_opencv_ts(opencv_${kind}_hdpstereo)
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${kind}/*.cpp ${kind}/*.hpp)
-  add_executable(opencv_${kind}_hdpstereo ${sources})
-  target_include_directories(opencv_${kind}_hdpstereo PRIVATE ${kind})
-  target_link_libraries(opencv_${kind}_hdpstereo PRIVATE opencv_hdpstereo)
-  use_opencv_ts(opencv_${kind}_hdpstereo)
 endforeach()
 target_precompile_headers(opencv_test_hdpstereo PRIVATE test/test_precomp.hpp)
-# These compile stages of the library once more, for vectors that OpenCV emulates: that is what is tested.
-if(HDPSTEREO_SANITIZE MATCHES "address")
-  set_source_files_properties(test/test_range_scanlines.cpp test/test_scanline_aggregation.cpp test/test_sixteen_words.cpp
-    test/test_volume_scanlines.cpp PROPERTIES COMPILE_OPTIONS -fsanitize=address SKIP_PRECOMPILE_HEADERS ON)
-endif()
 # Optional: a filter of ximgproc on our disparities. Inside OpenCV's build that test skips itself: there, a module's tests
 # see what the module itself depends on.
 if(TARGET opencv_ximgproc)
@@ -73,8 +87,8 @@ function(add_unit_tests name labels program filter)
     SKIP_REGULAR_EXPRESSION "\\[     SKIP \\].*\\[  PASSED  \\] [0-9]+ tests?\\.[\r\n ]*$")
 endfunction()
 
-# One test for each test suite in the sources of a program
-function(add_suites program label)
+# One test for each test suite in the sources of a program, with additions to the environment
+function(add_suites program label environment)
   set(suites "")
   foreach(source IN LISTS ARGN)
     file(STRINGS "${source}" tests REGEX "^TEST(_P)?[(]")
@@ -87,26 +101,38 @@ function(add_suites program label)
     set(labels ${label})
     if(suite MATCHES "_Slow")
       set(labels slow)
-    elseif(suite MATCHES "_RepetitivePattern$")
+    elseif(suite MATCHES "_(RepetitivePattern|Adversarial|PresetsOnAloe|RigDepth|Threads)$")
       list(APPEND labels slow)
-    elseif(suite MATCHES "_(Threads|Endurance|MatcherContract)$")
+    endif()
+    if(suite MATCHES "_(Threads|Endurance|MatcherContract)$")
       list(APPEND labels threads)
     endif()
     add_unit_tests(${suite} "${labels}" ${program} "${suite}.*:*/${suite}.*")
+    set_property(TEST ${suite} APPEND PROPERTY ENVIRONMENT ${environment})
   endforeach()
 endfunction()
 
-file(GLOB test_sources CONFIGURE_DEPENDS test/test_*.cpp)
-add_suites(opencv_test_hdpstereo unit ${test_sources})
+add_suites(opencv_test_hdpstereo unit "" ${test_sources})
+if(HDPSTEREO_TESTS_FROM)
+  execute_process(COMMAND "${CMAKE_CXX_COMPILER}" -print-file-name=libasan.so
+    OUTPUT_VARIABLE libasan OUTPUT_STRIP_TRAILING_WHITESPACE)
+  add_suites("${HDPSTEREO_TESTS_FROM}/bin/opencv_test_hdpstereo" unit
+    "LD_LIBRARY_PATH=${CMAKE_LIBRARY_OUTPUT_DIRECTORY};LD_PRELOAD=${libasan}" ${other_test_sources})
+endif()
 if(HDPSTEREO_TOOLS)
-  file(GLOB tools_test_sources CONFIGURE_DEPENDS tools/test/test_*.cpp)
-  add_suites(opencv_test_hdpstereo_tools tools ${tools_test_sources})
+  if(HDPSTEREO_TESTS_FROM)
+    add_suites("${HDPSTEREO_TESTS_FROM}/bin/opencv_test_hdpstereo_tools" tools
+      "HDPSTEREO_PROGRAMS=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}" tools/test/test_programs.cpp tools/test/test_mgm.cpp)
+  else()
+    file(GLOB tools_test_sources CONFIGURE_DEPENDS tools/test/test_*.cpp)
+    add_suites(opencv_test_hdpstereo_tools tools "" ${tools_test_sources})
+  endif()
   # The longest one under a sanitizer, and on one core for most of it: it begins first.
   set_tests_properties(HDPStereo_Programs PROPERTIES COST 1)
 endif()
 if(HDPSTEREO_PRELOAD)
   file(GLOB preload_test_sources CONFIGURE_DEPENDS preload/test/test_*.cpp)
-  add_suites(opencv_test_hdpstereo_preload preload ${preload_test_sources})
+  add_suites(opencv_test_hdpstereo_preload preload "" ${preload_test_sources})
 endif()
 
 # Samples. These figures are checked elsewhere; this is the only place where the programs see a pair of full size.
@@ -125,7 +151,9 @@ endif()
 if(HDPSTEREO_TOOLS)
   add_check(program_hdpstereo tools hdpstereo_program ${aloe} aloe_map.png --compare --picture=aloe_picture.png
     --point-cloud=aloe.ply --focal=1000 --baseline=1)
-  add_check(benchmark_small tools hdp_benchmark ${aloe} --resize=160x136 --num-disparities=32 --runs=2 --stages)
+  if(TARGET hdp_benchmark)
+    add_check(benchmark_small tools hdp_benchmark ${aloe} --resize=160x136 --num-disparities=32 --runs=2 --stages)
+  endif()
 endif()
 
 if(HDPSTEREO_SANITIZE)
@@ -134,11 +162,27 @@ endif()
 
 add_check(includes unit "${PROJECT_SOURCE_DIR}/scripts/check_includes.sh")
 
-# Once more with the slower instruction sets: all that has an oracle, and the reference outputs
-foreach(without AVX512-ICL "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2" "AVX512-ICL,AVX512-SKX,AVX2,SSE4.2")
-  add_unit_tests(unit_without_${without} instruction-sets opencv_test_hdpstereo
-    "HDPStereo_*Cost*:HDPStereo_*Aggregation*:HDPStereo_*Refinement*:*_DisparityConfidence*:*HDPStereo_ReferenceOutput*")
+# Once more with the slower instruction sets: all that has an oracle, and the reference outputs. Where the processor has
+# none of what is left out, that would be the same once more.
+set(flags "")
+if(EXISTS /proc/cpuinfo)
+  file(STRINGS /proc/cpuinfo flags REGEX "^flags" LIMIT_COUNT 1)
+endif()
+set(without "")
+foreach(set_and_flag AVX512-ICL:avx512_bitalg AVX512-SKX:avx512bw AVX2:avx2 SSE4.2:sse4_2)
+  string(REPLACE ":" ";" set_and_flag ${set_and_flag})
+  list(GET set_and_flag 0 instructions)
+  list(GET set_and_flag 1 flag)
+  string(APPEND without "${instructions}")
+  set(missing "")
+  if(NOT flags MATCHES " ${flag}( |$)")
+    set(missing "${instructions} in this processor")
+  endif()
+  add_optional_check(unit_without_${without} instruction-sets "${missing}" opencv_test_hdpstereo
+    "--gtest_filter=HDPStereo_*Cost*:HDPStereo_*Aggregation*:HDPStereo_*Refinement*:*_DisparityConfidence*:*HDPStereo_ReferenceOutput*")
   set_property(TEST unit_without_${without} APPEND PROPERTY ENVIRONMENT "OPENCV_CPU_DISABLE=${without}")
+  set_tests_properties(unit_without_${without} PROPERTIES FAIL_REGULAR_EXPRESSION "Running 0 tests")
+  string(APPEND without ",")
 endforeach()
 add_check(maps_of_instruction_sets instruction-sets "${PROJECT_SOURCE_DIR}/scripts/check_instruction_sets.sh"
   $<TARGET_FILE:opencv_test_hdpstereo> "${CMAKE_BINARY_DIR}/maps")

@@ -7,9 +7,14 @@ checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${HDPSTEREO_BUILD:-$checkout/build} # everything the scripts make is in here, but the demo's pictures
 # shellcheck disable=SC2034  # for the others
 jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
-# OPENCV_CPU_DISABLE of all instruction sets that the library is built for, and of fewer and fewer of them
+# OPENCV_CPU_DISABLE of all instruction sets that the library is built for and this processor has, and of fewer and fewer
 # shellcheck disable=SC2034
-disabled_sets=("" "AVX512-ICL" "AVX512-ICL,AVX512-SKX" "AVX512-ICL,AVX512-SKX,AVX2" "AVX512-ICL,AVX512-SKX,AVX2,SSE4.2")
+disabled_sets=("")
+without=
+for set_and_flag in AVX512-ICL:avx512_bitalg AVX512-SKX:avx512bw AVX2:avx2 SSE4.2:sse4_2; do
+    without+=${without:+,}${set_and_flag%:*}
+    ! grep -qw "${set_and_flag#*:}" /proc/cpuinfo || disabled_sets+=("$without")
+done
 TIMEFORMAT='   (%1R s; %1U s + %1S s of processor time)'
 
 say()

@@ -32,6 +32,18 @@ if find_opencv_source; then
     fi
 fi
 
+# Of the sanitized suite the library and the programs are sanitized. The tests of the library are not, so those that
+# the release build has will do; --gtest_* runs a program that has all of them.
+if [ "$preset" = sanitize ]; then
+    tests_from=
+    if [[ ${1:-} != --gtest_* ]] && [ -x "$build/release/bin/opencv_test_hdpstereo" ]; then
+        say "Bringing the tests in $build/release up to date"
+        cmake --build "$build/release" --target opencv_test_hdpstereo opencv_test_hdpstereo_tools --parallel "$jobs"
+        tests_from=$build/release
+    fi
+    options+=("-DHDPSTEREO_TESTS_FROM=$tests_from")
+fi
+
 say "Building in $build/$preset"
 time {
     configure "$preset" "${options[@]}"

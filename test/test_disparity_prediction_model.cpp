@@ -175,7 +175,7 @@ void expectMixture(const Mixture& expected, const Mixture& actual, double tolera
     }
 }
 
-TEST(HDPStereo_ModelTraining, recovers_a_known_mixture)
+TEST(HDPStereo_SlowModelTraining, recovers_a_known_mixture)
 {
     const Mixture mixtures[] = { narrowAndWide(),
                                  { { -3 }, { 2.5 }, { 1 } },
@@ -204,7 +204,7 @@ TEST(HDPStereo_ModelTraining, recovers_a_known_mixture)
 }
 
 //! The density must come as near to what was sampled as the true mixture does, whatever the number of components.
-TEST(HDPStereo_ModelTraining, chooses_enough_components)
+TEST(HDPStereo_SlowModelTraining, chooses_enough_components)
 {
     const Mixture mixture{ { 0.25, 15, -25 }, { 0.8, 5, 8 }, { 0.6, 0.25, 0.15 } };
     RNG rng(6);
@@ -241,7 +241,7 @@ TEST(HDPStereo_ModelTraining, chooses_enough_components)
 }
 
 //! More Gaussians are only taken if they make the half that they were not fitted to more likely.
-TEST(HDPStereo_ModelTraining, components_are_chosen_by_the_other_half)
+TEST(HDPStereo_SlowModelTraining, components_are_chosen_by_the_other_half)
 {
     bool isFewerEnough = false;
     for (int set = 0; set < 3; ++set)
@@ -316,7 +316,7 @@ TEST(HDPStereo_ModelTraining, never_a_singular_model)
     EXPECT_NEAR(1. / 8, far, 0.02);
 }
 
-TEST(HDPStereo_ModelTraining, reproducible)
+TEST(HDPStereo_SlowModelTraining, reproducible)
 {
     RNG rng(8);
     std::vector<Mat> lower, upper;

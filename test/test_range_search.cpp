@@ -45,7 +45,7 @@ void expectCovers(const Range& found, int moved)
     EXPECT_LE(found.size(), 3 * (last - first));
 }
 
-TEST(HDPStereo_RangeSearch, any_sign_and_type)
+TEST(HDPStereo_SlowRangeSearch, any_sign_and_type)
 {
     const struct
     {
@@ -79,7 +79,7 @@ TEST(HDPStereo_RangeSearch, any_sign_and_type)
     }
 }
 
-TEST(HDPStereo_RangeSearch, all_presets_and_threads)
+TEST(HDPStereo_SlowRangeSearch, all_presets_and_threads)
 {
     Range first;
     for (int preset = HDPTreeMatcher::PRESET_PAPER; preset <= HDPTreeMatcher::PRESET_TREE; ++preset)

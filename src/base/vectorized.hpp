@@ -15,14 +15,16 @@ the compiler, in groups of 8 that are unrolled. */
 #pragma clang diagnostic ignored "-Wpass-failed" // a loop that it cannot make vectors of is slower, but not wrong
 #define HDP_VECTORIZED _Pragma("clang loop vectorize(assume_safety)")
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define HDP_UNROLLED // with all checks in each round, that takes minutes to compile
+#define HDP_SANITIZED // what is unrolled or has many cases takes minutes to compile with all checks
+#define HDP_UNROLLED
 #else
 #define HDP_UNROLLED _Pragma("clang loop unroll(full)")
 #endif
 #elif defined(__GNUC__)
 #define HDP_VECTORIZED _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define HDP_UNROLLED // as above
+#define HDP_SANITIZED // as above
+#define HDP_UNROLLED
 #else
 #define HDP_UNROLLED _Pragma("GCC unroll 8")
 #endif

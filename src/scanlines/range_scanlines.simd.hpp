@@ -237,12 +237,16 @@ void sweepStripe(const RangeProblem& problem, const ScanlineStripe& stripe, Rang
 void aggregateRangeStripe(const RangeProblem& problem, const ScanlineStripe& stripe, RangeScratch& scratch,
                           Mat& disparity)
 {
+    const int vectors = RangeLanes<0>::vectorsOf(problem);
+#ifdef HDP_SANITIZED
+    const auto sweep = vectors == 2 ? sweepStripe<2> : sweepStripe<0>;
+#else
     static void (*const sweeps[])(const RangeProblem&, const ScanlineStripe&, RangeScratch&,
                                   Mat&) = { sweepStripe<1>, sweepStripe<2>, sweepStripe<3>, sweepStripe<4> };
-    const int vectors = RangeLanes<0>::vectorsOf(problem);
     const auto sweep = vectors <= 4   ? sweeps[vectors - 1]
                        : vectors == 8 ? sweepStripe<8> // of 16 bytes: 128 candidates, as four of 32
                                       : sweepStripe<0>;
+#endif
     sweep(problem, stripe, scratch, disparity);
 }
 

@@ -27,12 +27,19 @@ inline String readText(const String& path)
     return String(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
 }
 
+//! Where the programs are: of this build, or those that the environment names
+inline String programs()
+{
+    const char* const others = std::getenv("HDPSTEREO_PROGRAMS");
+    return others ? others : HDP_PROGRAMS;
+}
+
 //! Runs a program of the build's bin/, by the shell, with additions to the environment such as A=1 B=2.
 inline Execution run(const DatasetFolder& folder, const String& command, const String& output = String(),
                      const String& environment = String())
 {
     const String out = output.empty() ? folder.path("stdout") : output, err = folder.path("stderr");
-    const String line = environment + " " + HDP_PROGRAMS + "/" + command + " >'" + out + "' 2>'" + err + "'";
+    const String line = environment + " " + programs() + "/" + command + " >'" + out + "' 2>'" + err + "'";
     const int status = std::system(line.c_str());
     const bool exited = status != -1 && WIFEXITED(status);
     EXPECT_TRUE(exited) << command;
@@ -60,6 +67,64 @@ inline String pairOf(const DatasetFolder& folder)
 }
 
 inline String firstLine(const String& text) { return text.substr(0, text.find('\n')); }
+
+//! Two scenes of one pair in 16 bit: rounded to 8, the texture of faint has 13 levels; that of rounded is rounded.
+struct FaintPair
+{
+    FaintPair() : pair(makeSyntheticPair(Size(160, 120), 32, 23))
+    {
+        Mat truth;
+        pair.truth.convertTo(truth, CV_16U, 256);
+        for (const String scene : { "scenes/faint/", "scenes/rounded/" })
+        {
+            for (const String side : { "left", "right" })
+            {
+                Mat image;
+                cv::cvtColor(side == "left" ? pair.left : pair.right, image, COLOR_BGR2GRAY);
+                image.convertTo(image, CV_16U, 13, 61000);
+                if (scene == "scenes/rounded/")
+                    image.convertTo(image, CV_8U, 1. / 257);
+                folder.write(scene + side + ".png", image);
+            }
+            folder.write(scene + "disp_left.png", truth);
+        }
+    }
+
+    String images(const String& scene) const
+    {
+        return " " + folder.path("scenes/" + scene + "/left.png") + " " +
+               folder.path("scenes/" + scene + "/right.png") + " --num-disparities=32";
+    }
+
+    int countErrors(const String& map, double scale) const
+    {
+        Mat disparity;
+        cv::imread(folder.path(map), IMREAD_UNCHANGED).convertTo(disparity, CV_32F, scale);
+        EXPECT_EQ(pair.truth.size(), disparity.size());
+        return disparity.empty() ? INT_MAX : cv::countNonZero(cv::abs(disparity - pair.truth) >= 1);
+    }
+
+    DatasetFolder folder;
+    SyntheticPair pair;
+};
+
+//! --help, and what is not: one line that says so
+inline void testHelpAndWrongArguments(const char* program)
+{
+    SCOPED_TRACE(program);
+    const DatasetFolder folder;
+    const Execution help = run(folder, String(program) + " --help");
+    EXPECT_EQ(0, help.status);
+    EXPECT_NE(String::npos, help.output.find("--help"));
+    for (const char* arguments : { "", "--no-such-option=1", "no/such/file.png no/such/file.png" })
+    {
+        SCOPED_TRACE(arguments);
+        const Execution wrong = run(folder, String(program) + " " + arguments);
+        EXPECT_EQ(1, wrong.status);
+        EXPECT_EQ(0u, wrong.errors.find("error: ")) << wrong.errors;
+        EXPECT_EQ(firstLine(wrong.errors) + "\n", wrong.errors);
+    }
+}
 
 } // namespace opencv_test
 
