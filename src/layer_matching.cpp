@@ -102,7 +102,8 @@ private:
             left.convertTo(left, CV_8U, 1. / greyScale);
             right.convertTo(right, CV_8U, 1. / greyScale);
         }
-        findSupportPoints(left, right, plan_.numDisparities, shared_.supportPointBuffers, shared_.supportPoints);
+        findSupportPoints(left, right, plan_.hasIntervals ? candidateIntervals() : Mat(), plan_.numDisparities,
+                          shared_.supportPointBuffers, shared_.supportPoints);
         disparityHistogram(shared_.supportPoints, plan_.numDisparities, result_.prior);
     }
 

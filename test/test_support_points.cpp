@@ -7,16 +7,15 @@
 #include "synthetic_pair.hpp"
 #include "../src/paper/support_points.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
-void testSupportPoints(const Mat& left, const Mat& right, int numDisparities, int atLeast)
+void testSupportPoints(const Mat& left, const Mat& right, int numDisparities, int atLeast, const Mat& intervals = Mat())
 {
     SCOPED_TRACE(testing::Message() << left.size() << ", " << numDisparities << " disparities");
     hdp::SupportPointBuffers buffers;
     Mat points;
-    hdp::findSupportPoints(left, right, numDisparities, buffers, points);
-    const Mat expected = oracle::SupportPoints(left, right, numDisparities).find();
+    hdp::findSupportPoints(left, right, intervals, numDisparities, buffers, points);
+    const Mat expected = oracle::SupportPoints(left, right, numDisparities, intervals).find();
     expectIdentical(expected, points);
     EXPECT_GE(cv::countNonZero(expected >= 0), atLeast) << "the test is empty";
 }
@@ -34,6 +33,22 @@ TEST(HDPStereo_SupportPoints, direct_search_in_noise)
     testSupportPoints(randomImage(rng, Size(70, 61), CV_8UC1), randomImage(rng, Size(70, 61), CV_8UC1), 40, 0);
     // Few levels: many equal dissimilarities, little texture
     testSupportPoints(randomImage(rng, Size(72, 60), CV_8UC1, 3), randomImage(rng, Size(72, 60), CV_8UC1, 3), 16, 0);
+}
+
+TEST(HDPStereo_SupportPoints, within_the_intervals_of_pixels)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(131, 90), 24, 1);
+    RNG rng(5);
+    for (int largest : { 1, 12, 24 })
+    {
+        Mat intervals(pair.left.size(), CV_16UC2);
+        for (Vec2w& interval : Mat_<Vec2w>(intervals))
+        {
+            interval[0] = (ushort)rng.uniform(0, 24);
+            interval[1] = (ushort)std::min(interval[0] + rng.uniform(0, largest), 23);
+        }
+        testSupportPoints(pair.left, pair.right, 24, 20, intervals);
+    }
 }
 
 TEST(HDPStereo_SupportPoints, more_disparities_than_columns)
@@ -67,7 +82,7 @@ TEST(HDPStereo_SupportPoints, buffers_serve_pairs_of_any_size)
     {
         const SyntheticPair pair = makeSyntheticPair(size, 16, 4);
         Mat points;
-        hdp::findSupportPoints(pair.left, pair.right, 16, buffers, points);
+        hdp::findSupportPoints(pair.left, pair.right, Mat(), 16, buffers, points);
         expectIdentical(oracle::SupportPoints(pair.left, pair.right, 16).find(), points);
     }
 }
@@ -95,5 +110,4 @@ TEST(HDPStereo_SupportPoints, histogram_without_points_is_uniform)
     }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test
