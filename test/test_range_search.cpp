@@ -227,8 +227,7 @@ TEST(HDPStereo_RangeSearch, corners_of_any_sign_that_match_both_ways)
         const Mat rightImage = canvas.colRange(20 + disparity, 20 + disparity + size.width);
         hdp::SearchWindows windows;
         std::vector<CornerMatch> matches;
-        const hdp::CornerSearch search = { Range(-size.width, size.width), 200, 4 };
-        hdp::findCornerMatches(left, rightImage, hdp::PairMasks(), search, windows, matches);
+        hdp::findCornerMatches(left, rightImage, hdp::PairMasks(), Range(-size.width, size.width), 4, windows, matches);
         int valid = 0, right = 0;
         for (const CornerMatch& match : matches)
         {

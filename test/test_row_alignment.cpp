@@ -169,7 +169,7 @@ TEST(HDPStereo_RowAlignment, matches_correlate_best)
     hdp::greyLevels(misalign(pair.right, makeModel(1)), 8, right);
     hdp::SearchWindows windows;
     std::vector<hdp::CornerMatch> matches;
-    hdp::findCornerMatches(left, right, hdp::PairMasks(), { Range(0, 25), 500, 4 }, windows, matches);
+    hdp::findCornerMatches(left, right, hdp::PairMasks(), Range(0, 25), 4, windows, matches);
     int valid = 0, oneRow = 0;
     for (const hdp::CornerMatch& match : matches)
     {
@@ -197,7 +197,7 @@ TEST(HDPStereo_RowAlignment, matches_within_few_disparities)
     hdp::greyLevels(pair.right, 8, right);
     hdp::SearchWindows windows;
     std::vector<hdp::CornerMatch> matches;
-    hdp::findCornerMatches(left, right, hdp::PairMasks(), { Range(0, 4), 500, 4 }, windows, matches);
+    hdp::findCornerMatches(left, right, hdp::PairMasks(), Range(0, 4), 4, windows, matches);
     int valid = 0, atBorder = 0;
     for (const hdp::CornerMatch& match : matches)
     {

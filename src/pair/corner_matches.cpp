@@ -52,31 +52,34 @@ Mat windowsWithData(const Mat& mask)
 }
 
 //! The best corner of every cell, by the smaller eigenvalue of the structure tensor. has: see windowsWithData()
-void findCorners(const Mat& image, const Mat& has, const CornerSearch& search, std::vector<CornerMatch>& matches)
+void findCorners(const Mat& image, const Mat& has, int spacing, SearchWindows& windows,
+                 std::vector<CornerMatch>& matches)
 {
     const int margin = CornerMatching::searchSide / 2 + CornerMatching::searchRadius;
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
-    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / search.maxCorners)), search.spacing);
+    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / maxCorners)), spacing);
     const Size grid(inside.width / cell, inside.height / cell);
-    const int count = grid.width * cell, radius = CornerMatching::tensorSide / 2;
-    const auto scoreRow = [&](int y, const std::vector<int>& columns, double* scores) {
-        std::vector<int> memory(3 * (count + 2 * radius)), tensors(3 * count);
-        int *const xx = tensors.data(), *const xy = xx + count, *const yy = xy + count;
-        dispatched::structureTensors(image.ptr<ushort>(inside.y + y - radius) + inside.x - radius, image.step1(), count,
-                                     memory.data(), xx, xy, yy);
-        for (int x : columns)
-        {
-            const double mean = 0.5 * (xx[x] + yy[x]), half = 0.5 * (xx[x] - yy[x]);
-            const bool counts = has.empty() || has.ptr(inside.y + y)[inside.x + x];
-            *scores++ = counts ? mean - std::sqrt(half * half + (double)xy[x] * xy[x]) : -1;
-        }
+    const int radius = CornerMatching::tensorSide / 2, width = inside.width;
+    windows.tensors.create(inside.height, 3 * width, CV_32S);
+    parallelFor(inside.height, std::vector<int>(3 * image.cols), [&](int y, std::vector<int>& columns) {
+        if (y % cell % cornerStep == 0)
+            dispatched::structureTensors(image.ptr<ushort>(inside.y + y - radius) + inside.x - radius, image.step1(),
+                                         width, columns.data(), windows.tensors.ptr<int>(y));
+    });
+    const auto score = [&](const Point& pixel) {
+        if (!has.empty() && !has.at<uchar>(inside.tl() + pixel))
+            return -1.;
+        const int* const tensor = windows.tensors.ptr<int>(pixel.y) + pixel.x;
+        const double xx = tensor[0], xy = tensor[width], yy = tensor[2 * width];
+        const double mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy);
+        return mean - std::sqrt(half * half + xy * xy);
     };
-    std::vector<Point> corners;
-    bestPixelPerCell(grid, cell, cornerStep, -1, scoreRow, corners);
-    corners.erase(std::remove(corners.begin(), corners.end(), nowhere), corners.end());
-    matches.assign(corners.size(), CornerMatch());
-    for (size_t i = 0; i < corners.size(); ++i)
-        matches[i].left = inside.tl() + corners[i];
+    matches.clear();
+    for (const Point& corner : bestPixels(grid, cell, cornerStep, -1, score))
+    {
+        matches.push_back(CornerMatch());
+        matches.back().left = inside.tl() + corner;
+    }
 }
 
 void measureWindows(const Mat& image, SearchWindows& windows)
@@ -94,21 +97,19 @@ void measureWindows(const Mat& image, SearchWindows& windows)
 bool isUnique(const std::vector<float>& values, int columns, int best)
 {
     const double rival = 1 - (1 - values[best]) * (1 + rivalCorrelation) - rivalDistance;
-    const int beside = rivalReach, rows = (int)values.size() / columns, x = best % columns, y = best / columns;
-    int rivals = 0;
-    for (const float value : values)
-        rivals += value > rival;
-    for (int i = std::max(y - beside, 0); i <= std::min(y + beside, rows - 1); ++i)
-        for (int j = std::max(x - beside, 0); j <= std::min(x + beside, columns - 1); ++j)
-            rivals -= values[i * columns + j] > rival;
-    return rivals == 0;
+    const auto isBeside = [&](int a, int b) { return std::abs(a - b) <= rivalReach; };
+    for (int i = 0; i < (int)values.size(); ++i)
+        if (values[i] > rival && !(isBeside(i % columns, best % columns) && isBeside(i / columns, best / columns)))
+            return false;
+    return true;
 }
 
+//! correlations: memory for those of a corner, by rows, then by columns
 void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, const Range& disparities,
                std::vector<float>& correlations, CornerMatch& match)
 {
     match.isValid = false;
-    const int side = CornerMatching::searchSide, pixels = side * side, rows = 2 * CornerMatching::searchRadius + 1;
+    const int side = CornerMatching::searchSide, pixels = side * side, rows = SearchArea::rows;
     const Point first = match.left - Point(side / 2, side / 2);
     const int minColumns = SearchArea::minColumns, width = windows.sums.cols;
     const int end = std::min(first.x + 1 - disparities.start, width);
@@ -123,14 +124,12 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     dispatched::windowSums(window, left.step1(), 1, memory, &sum, &scale);
     if (scale == 0 || scale * minContrast * pixels > 1)
         return;
-    SearchArea area;
-    area.pixels = right.ptr<ushort>(y0) + x0;
-    area.sums = windows.sums.ptr<int>(y0) + x0;
-    area.scales = windows.scales.ptr<float>(y0) + x0;
-    area.step = right.step1();
-    area.sumStep = windows.sums.step1();
-    area.rows = rows;
-    area.columns = columns;
+    const SearchArea area = { right.ptr<ushort>(y0) + x0,
+                              windows.sums.ptr<int>(y0) + x0,
+                              windows.scales.ptr<float>(y0) + x0,
+                              right.step1(),
+                              windows.sums.step1(),
+                              columns };
     correlations.resize(rows * columns);
     dispatched::correlate(window, sum, scale, area, correlations.data());
     for (int row = columns; row <= rows * columns; row += columns) // disparities before the first one
@@ -202,27 +201,17 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     match.isValid = true;
 }
 
-//! The first layer of a pyramid that has no more than maxCoarseArea pixels
-int coarseLayer(Size size)
-{
-    int layer = 0;
-    while ((size.width >> layer) * (size.height >> layer) > maxCoarseArea)
-        ++layer;
-    return layer;
-}
-
 } // namespace
 
-void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const CornerSearch& search,
+void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities, int spacing,
                        SearchWindows& windows, std::vector<CornerMatch>& matches)
 {
     const Mat rightHas = windowsWithData(masks.right);
-    findCorners(left, windowsWithData(masks.left), search, matches);
+    findCorners(left, windowsWithData(masks.left), spacing, windows, matches);
     measureWindows(right, windows);
-    const std::vector<float> none; // correlations of a corner, by rows, then by columns
-    parallelFor((int)matches.size(), none, [&](int i, std::vector<float>& correlations) {
+    parallelFor((int)matches.size(), std::vector<float>(), [&](int i, std::vector<float>& correlations) {
         CornerMatch& match = matches[i];
-        findMatch(left, right, windows, search.disparities, correlations, match);
+        findMatch(left, right, windows, disparities, correlations, match);
         if (match.isValid && !rightHas.empty())
             match.isValid = rightHas.ptr((int)match.y)[(int)match.x] != 0;
     });
@@ -258,19 +247,21 @@ void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMat
 void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
                    const Range& disparities, CoarseMatches& coarse)
 {
+    const Size size = left[0].size();
+    int layer = 0;
+    while ((size.width >> layer) * (size.height >> layer) > maxCoarseArea)
+        ++layer;
+    coarse.layer = layer;
     coarse.matches.clear();
-    coarse.layer = coarseLayer(left[0].size());
-    buildPyramid(left, coarse.layer + 1, coarse.left);
-    buildPyramid(right, coarse.layer + 1, coarse.right);
-    const Mat &coarseLeft = coarse.left[coarse.layer], &coarseRight = coarse.right[coarse.layer];
+    buildPyramid(left, layer + 1, coarse.left);
+    buildPyramid(right, layer + 1, coarse.right);
+    const Mat &coarseLeft = coarse.left[layer], &coarseRight = coarse.right[layer];
     if (std::min(coarseLeft.rows, coarseLeft.cols) < 2 * (CornerMatching::searchSide + CornerMatching::searchRadius))
         return;
-    const CornerSearch search = { Range(disparities.start >> coarse.layer,
-                                        layerDisparities(disparities.end, coarse.layer, true)),
-                                  maxCorners, std::max(minSpacing >> coarse.layer, 1) };
-    findCornerMatches(coarseLeft, coarseRight,
-                      { dataOfLayer(masks.left, coarse.layer), dataOfLayer(masks.right, coarse.layer) }, search,
-                      coarse.windows, coarse.matches);
+    const Range ofLayer(disparities.start >> layer, layerDisparities(disparities.end, layer, true));
+    const PairMasks coarseMasks = { dataOfLayer(masks.left, layer), dataOfLayer(masks.right, layer) };
+    findCornerMatches(coarseLeft, coarseRight, coarseMasks, ofLayer, std::max(minSpacing >> layer, 1), coarse.windows,
+                      coarse.matches);
     trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
 }
 

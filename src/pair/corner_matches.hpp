@@ -39,6 +39,7 @@ struct CornerMatch
 struct SearchWindows
 {
     Mat sums, scales; // 1 / sqrt(variance times the square of the pixels), 0 without texture; both of levels less 512
+    Mat tensors;      // memory of the search for corners
 };
 
 //! Some of them
@@ -48,9 +49,10 @@ struct SearchArea
     const int* sums;
     const float* scales;
     size_t step, sumStep; // from a row to the next
-    int rows, columns;    // at least minColumns
+    int columns;          // at least minColumns
     enum
     {
+        rows = 2 * CornerMatching::searchRadius + 1,
         minColumns = 8
     };
 };
@@ -76,35 +78,22 @@ struct RightSums
     int r, rr, lr, xr, yr;
 };
 
-//! What findCornerMatches() looks for
-struct CornerSearch
-{
-    Range disparities; // of the layer
-    int maxCorners;    // one per cell of a grid
-    int spacing;       // side of a cell, at least
-};
-
 /** Matches the corners of a coarse layer over all disparities and some rows by normalised cross-correlation.
-@param left CV_16UC1, values up to 1023.
-@param right Of the same size and type.
+@param left,right CV_16UC1, values up to 1023, of the same size.
 @param masks Of this layer; what is matched has data.
-@param search What to look for.
+@param disparities Of the layer.
+@param spacing Side of the cells of a grid that have a corner each, at least.
 @param windows Memory to work in.
 @param matches Receives one match per corner, to whole pixels. */
-CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const CornerSearch& search,
-                                  SearchWindows& windows, std::vector<CornerMatch>& matches);
+CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities,
+                                  int spacing, SearchWindows& windows, std::vector<CornerMatch>& matches);
 
-/** Makes those matches invalid that are others from the right image to the left one, over its whole width.
-@param left See findCornerMatches().
-@param right The same.
-@param windows Memory to work in.
-@param matches Those of findCornerMatches(), tracked or not. */
+//! Makes those of findCornerMatches(), tracked or not, invalid that are others from right to left, over all columns.
 CV_EXPORTS void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows,
                                   std::vector<CornerMatch>& matches);
 
 /** Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.
-@param left CV_16UC1, values up to 1023.
-@param right Of the same size and type.
+@param left,right As of findCornerMatches().
 @param matches Where the points are by what is known so far. What is lost becomes invalid. */
 CV_EXPORTS void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMatch>& matches);
 
@@ -118,11 +107,9 @@ struct CoarseMatches
 };
 
 /** The matches that row and light alignment, and the search for the range of disparities, begin with.
-@param left The left pyramid, CV_16UC1, values up to 1023; its layers may end anywhere.
-@param right The right one.
+@param left,right Pyramids, CV_16UC1, values up to 1023; their layers may end anywhere.
 @param masks Of the images.
-@param disparities Of the images, that may be.
-@param coarse Receives the result. */
+@param disparities Of the images, that may be. */
 CV_EXPORTS void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
                               const Range& disparities, CoarseMatches& coarse);
 

@@ -12,44 +12,30 @@ namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** The structure tensors of the pixels of a row: sums over their windows of tensorSide x tensorSide pixels.
-@param first First pixel of the first window.
+@param first First pixel of the first of so many windows.
 @param step From a row to the next, in pixels.
-@param count Number of pixels.
 @param columns Memory for 3 * (count + tensorSide - 1) numbers.
-@param xx Receives the sums of X * X, where X and Y are the gradients over two pixels.
-@param xy
-@param yy */
-void structureTensors(const ushort* first, size_t step, int count, int* columns, int* xx, int* xy, int* yy);
+@param sums Receives the sums of X * X, where X and Y are gradients over two pixels, then those of X * Y and Y * Y. */
+void structureTensors(const ushort* first, size_t step, int count, int* columns, int* sums);
 
 /** What the correlations of the windows that begin in a row have in common.
-@param first First pixel of the first window.
-@param step From a row to the next, in pixels.
-@param count Number of windows.
+@param first,step As of structureTensors().
 @param columns Memory for 2 * (count + searchSide - 1) numbers.
-@param sums Receives theirs, see SearchWindows.
-@param scales The same. */
+@param sums,scales Receive theirs, see SearchWindows. */
 void windowSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales);
 
 /** The normalised cross-correlation of a window with those of an area.
 @param left First pixel of the window, in an image with the area's step.
-@param sum Of the window, see windowSums().
-@param scale The same.
-@param area The area.
+@param sum,scale Of the window, see windowSums().
 @param correlations Receives -1 to 1, row by row; 0 without texture. */
 void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations);
 
-/** The left window of trackCornerMatches().
-@param left First pixel of the window.
-@param step From a row to the next, in pixels.
-@param window Receives it. */
+//! The left window of trackCornerMatches(). left: its first pixel; step: from a row to the next, in pixels
 void cutWindow(const ushort* left, size_t step, TrackedWindow& window);
 
 /** One window of the right image for trackCornerMatches(): its sums with the left one.
 @param right The pixel above and left of the first one's place.
-@param step From a row to the next, in pixels.
-@param fx Fraction of the place, in 1 / 2^fractionBits of a pixel.
-@param fy
-@param window The left window. */
+@param fx,fy Fractions of the place, in 1 / 2^fractionBits of a pixel. */
 RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const TrackedWindow& window);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
@@ -60,37 +46,34 @@ const short middle = 512; // of levels up to 1023
 
 } // namespace
 
-void structureTensors(const ushort* first, size_t step, int count, int* columns, int* xx, int* xy, int* yy)
+void structureTensors(const ushort* first, size_t step, int count, int* columns, int* sums)
 {
-    const int side = CornerMatching::tensorSide, width = count + side - 1;
-    int *const columnXX = columns, *const columnXY = columnXX + width, *const columnYY = columnXY + width;
+    const int width = count + CornerMatching::tensorSide - 1;
     HDP_VECTORIZED for (int i = 0; i < width; ++i)
     {
-        int sumXX = 0, sumXY = 0, sumYY = 0;
+        int xx = 0, xy = 0, yy = 0;
         for (int y = 0; y < CornerMatching::tensorSide; ++y)
         {
             const ushort *const row = first + y * step, *const above = row - step, *const below = row + step;
             const short dx = (short)(row[i + 1] - row[i - 1]), dy = (short)(below[i] - above[i]);
-            sumXX += dx * dx;
-            sumXY += dx * dy;
-            sumYY += dy * dy;
+            xx += dx * dx;
+            xy += dx * dy;
+            yy += dy * dy;
         }
-        columnXX[i] = sumXX;
-        columnXY[i] = sumXY;
-        columnYY[i] = sumYY;
+        columns[i] = xx;
+        columns[width + i] = xy;
+        columns[2 * width + i] = yy;
     }
-    HDP_VECTORIZED for (int i = 0; i < count; ++i)
+    for (int k = 0; k < 3; ++k)
     {
-        int sumXX = 0, sumXY = 0, sumYY = 0;
-        for (int x = 0; x < CornerMatching::tensorSide; ++x)
+        const int* const column = columns + k * width;
+        HDP_VECTORIZED for (int i = 0; i < count; ++i)
         {
-            sumXX += columnXX[i + x];
-            sumXY += columnXY[i + x];
-            sumYY += columnYY[i + x];
+            int sum = 0;
+            for (int x = 0; x < CornerMatching::tensorSide; ++x)
+                sum += column[i + x];
+            sums[k * count + i] = sum;
         }
-        xx[i] = sumXX;
-        xy[i] = sumXY;
-        yy[i] = sumYY;
     }
 }
 
@@ -132,7 +115,7 @@ void correlate(const ushort* left, int sum, float scale, const SearchArea& area,
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x)
             window[y * side + x] = (short)(left[y * area.step + x] - middle);
-    for (int row = 0; row < area.rows; ++row, correlations += area.columns)
+    for (int row = 0; row < SearchArea::rows; ++row, correlations += area.columns)
     {
         const int* const sums = area.sums + row * area.sumStep;
         const float* const scales = area.scales + row * area.sumStep;

@@ -96,33 +96,26 @@ Point2d refine(const Mat& before, Point from, const Mat& now, Point match)
 
 } // namespace
 
-void bestPixelPerCell(Size grid, int cell, int step, double minScore, const RowScores& scoreRow,
-                      std::vector<Point>& best)
+std::vector<Point> bestPixels(Size grid, int cell, int step, double minScore,
+                              const std::function<double(const Point&)>& score)
 {
-    std::vector<int> columns;
-    for (int x = 0; x < grid.width * cell; ++x)
-        if (x % cell % step == 0)
-            columns.push_back(x);
-    best.assign(grid.area(), nowhere);
-    parallel_for_(Range(0, grid.height), [&](const Range& range) {
-        std::vector<double> scores(columns.size()), highest(grid.width);
-        for (int i = range.start; i < range.end; ++i)
-        {
-            std::fill(highest.begin(), highest.end(), minScore);
-            for (int y = i * cell; y < (i + 1) * cell; y += step)
+    std::vector<Point> best(grid.area(), nowhere);
+    parallelFor(grid.area(), [&](int i) {
+        const Point first(i % grid.width * cell, i / grid.width * cell);
+        double highest = minScore;
+        for (int y = 0; y < cell; y += step)
+            for (int x = 0; x < cell; x += step)
             {
-                scoreRow(y, columns, scores.data());
-                for (size_t k = 0; k < columns.size(); ++k)
-                {
-                    const int j = columns[k] / cell;
-                    if (scores[k] <= highest[j])
-                        continue;
-                    highest[j] = scores[k];
-                    best[i * grid.width + j] = Point(columns[k], y);
-                }
+                const Point pixel = first + Point(x, y);
+                const double own = score(pixel);
+                if (own <= highest)
+                    continue;
+                highest = own;
+                best[i] = pixel;
             }
-        }
     });
+    best.erase(std::remove(best.begin(), best.end(), nowhere), best.end());
+    return best;
 }
 
 int trackingLevels(Size size)
@@ -137,20 +130,13 @@ void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& poi
 {
     const int top = (int)before.size() - 1, cell = spacing << top, minSum = 4 * minTexture * halfSide * halfSide;
     const Size grid(before[top].cols / spacing, before[top].rows / spacing);
-    std::vector<Point> places;
-    const auto scoreRow = [&](int y, const std::vector<int>& columns, double* scores) {
-        for (int x : columns)
-        {
-            const Point place(x, y);
-            const bool isTracked = isInside(before[top], onLevel(place, top)) && isInside(before[0], place);
-            *scores++ = isTracked ? texture(before[0], place) : 0;
-        }
+    const auto score = [&](const Point& place) {
+        const bool isTracked = isInside(before[top], onLevel(place, top)) && isInside(before[0], place);
+        return isTracked ? texture(before[0], place) : 0;
     };
-    bestPixelPerCell(grid, cell, cell / 2, minSum - 1, scoreRow, places);
     points.clear();
-    for (const Point& place : places)
-        if (place != nowhere)
-            points.push_back({ place, place, 0 });
+    for (const Point& place : bestPixels(grid, cell, cell / 2, minSum - 1, score))
+        points.push_back({ place, place, 0 });
 }
 
 void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)

@@ -21,18 +21,14 @@ struct TrackedPoint
     double disparity; // in the frame before
 };
 
-//! Tells what some pixels of row y are worth.
-typedef std::function<void(int y, const std::vector<int>& columns, double* scores)> RowScores;
-
-/** Finds the best pixel of each cell of a grid, the first one of several.
+/** The best pixel of each cell of a grid, row by row; the first one of several.
 @param grid Number of cells.
 @param cell Side of a cell, in pixels.
 @param step From a candidate to the next, in pixels.
-@param minScore A pixel has to have more.
-@param scoreRow The score; called by several threads.
-@param best Receives a pixel of each cell, row by row, or nowhere. */
-void bestPixelPerCell(Size grid, int cell, int step, double minScore, const RowScores& scoreRow,
-                      std::vector<Point>& best);
+@param minScore A cell whose pixels have no more has none.
+@param score Of a pixel; called by several threads. */
+std::vector<Point> bestPixels(Size grid, int cell, int step, double minScore,
+                              const std::function<double(const Point&)>& score);
 
 //! Number of levels that trackPoints() needs if the finest one has this size; each has a pixel.
 CV_EXPORTS int trackingLevels(Size size);
@@ -44,16 +40,13 @@ CV_EXPORTS void choosePoints(const std::vector<Mat>& before, std::vector<Tracked
 
 /** Finds points again, from the coarsest level to the finest: where the sum of absolute differences over a square has
 its minimum, with the fraction of a parabola.
-@param before Pyramid of the frame before.
-@param now That of this frame, of the same sizes.
+@param before,now Pyramids of both frames, of the same sizes.
 @param points Receives TrackedPoint::now of each; those that leave the image stay where they were. */
 CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now,
                             std::vector<TrackedPoint>& points);
 
-/** Finds points again near the places where they are thought to be. See trackPoints().
-@param before Pyramid of the frame before.
-@param now That of this frame, of the same sizes.
-@param points TrackedPoint::now is a guess, or nowhere for a point that stays where it was; receives the place. */
+//! The same near the places where they are thought to be: TrackedPoint::now is a guess, or nowhere for a point that
+//! stays where it was.
 CV_EXPORTS void trackNearby(const std::vector<Mat>& before, const std::vector<Mat>& now,
                             std::vector<TrackedPoint>& points);
 
