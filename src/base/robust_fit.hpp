@@ -54,6 +54,14 @@ inline double medianOf(std::vector<double> values)
     return values[middle];
 }
 
+//! Of what value() has for each of them
+template <typename T, typename Value> double medianOf(const std::vector<T>& all, const Value& value)
+{
+    std::vector<double> values(all.size());
+    std::transform(all.begin(), all.end(), values.begin(), value);
+    return medianOf(values);
+}
+
 //! Distances of the samples from a model, in units of their deviations
 template <int terms>
 std::vector<double> fitResiduals(const std::vector<FitSample<terms>>& samples, const Vec<double, terms>& coefficients)

@@ -3,11 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "light_alignment.hpp"
-#include "light_alignment.simd.hpp"
-#include "pair/light_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "image_levels.hpp"
 #include "../base/robust_fit.hpp"
+#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -27,15 +26,6 @@ HDP_TUNABLE(double, rimDeviation, 1, "factor per fourth power of the width",
 
 typedef LightModel::Coefficients Coefficients;
 typedef FitSample<LightModel::terms> LevelPair; // a match: the basis of the right level, the left level
-
-HDP_DISPATCH(alignLightRow)
-
-Coefficients expectedDeviations()
-{
-    Coefficients deviations = Coefficients::all(deviation);
-    deviations[LightModel::rim] = rimDeviation;
-    return deviations;
-}
 
 double meanLevel(const Mat& image, Point centre)
 {
@@ -57,11 +47,8 @@ std::vector<LevelPair> toLevels(const CoarseMatches& coarse)
         if (!match.isValid || !inside.contains(match.left) || !inside.contains(matched))
             continue;
         const double x = (match.x + 0.5) / right.cols - 0.5, y = (match.y + 0.5) / right.rows - 0.5;
-        LevelPair pair;
-        pair.basis = LightModel::basis(meanLevel(right, matched), x, y);
-        pair.value = meanLevel(left, match.left);
-        pair.deviation = levelDeviation;
-        pairs.push_back(pair);
+        pairs.push_back(
+            { LightModel::basis(meanLevel(right, matched), x, y), meanLevel(left, match.left), levelDeviation });
     }
     return pairs;
 }
@@ -71,12 +58,11 @@ std::vector<LevelPair> toLevels(const CoarseMatches& coarse)
 bool estimateLight(const CoarseMatches& coarse, LightModel& model)
 {
     model = LightModel();
-    if (coarse.matches.empty())
-        return false;
     const std::vector<LevelPair> pairs = toLevels(coarse);
     if ((int)pairs.size() < CornerMatching::minMatches)
         return false;
-    const FitPrior<LightModel::terms> same = { LightModel::identity(), expectedDeviations() };
+    FitPrior<LightModel::terms> same = { LightModel::identity(), Coefficients::all(deviation) };
+    same.deviations[LightModel::rim] = rimDeviation;
     model.coefficients = fitRobustly(pairs, same, same.coefficients).coefficients;
     const double before = levelDeviation * medianOf(fitResiduals(pairs, same.coefficients));
     const double rest = levelDeviation * medianOf(fitResiduals(pairs, model.coefficients));
@@ -86,14 +72,22 @@ bool estimateLight(const CoarseMatches& coarse, LightModel& model)
 void alignLight(Mat& levels, const LightModel& model, const ImageFrame& frame)
 {
     const Coefficients& c = model.coefficients;
-    const float curve[3] = { (float)(c[7] * white), (float)(c[8] / white), (float)(c[9] / (white * white)) };
-    const float step = 1.f / frame.whole.width, first = 0.5f * step - 0.5f;
-    parallelFor(levels.rows, [&](int row) {
-        const double y = (row + frame.origin.y + 0.5) / frame.whole.height - 0.5, y2 = y * y;
-        const float gain[4] = { (float)(c[0] + c[2] * y + c[5] * y2 + c[6] * y2 * y2), (float)(c[1] + c[4] * y),
-                                (float)(c[3] + 2 * c[6] * y2), (float)c[6] };
-        dispatched::alignLightRow(levels.ptr<ushort>(row), frame.origin.x, levels.cols, first, step, gain, curve,
-                                  (float)white);
+    const float offset = (float)(c[7] * white), square = (float)(c[8] / white), cube = (float)(c[9] / (white * white));
+    const float step = 1.f / frame.whole.width, first = 0.5f * step - 0.5f, largest = (float)white;
+    const int origin = frame.origin.x, cols = levels.cols;
+    parallelFor(levels.rows, [=, &levels](int i) {
+        ushort* const row = levels.ptr<ushort>(i);
+        const double y = (i + frame.origin.y + 0.5) / frame.whole.height - 0.5, y2 = y * y;
+        const float g0 = (float)(c[0] + c[2] * y + c[5] * y2 + c[6] * y2 * y2), g1 = (float)(c[1] + c[4] * y),
+                    g2 = (float)(c[3] + 2 * c[6] * y2), g4 = (float)c[6]; // of powers of x
+        HDP_VECTORIZED for (int k = 0; k < cols; ++k)
+        {
+            const float x = first + step * (float)(origin + k), r = (float)row[k];
+            const float x2 = x * x, gain = g0 + g1 * x + x2 * (g2 + g4 * x2);
+            const float value = offset + r * (gain + r * (square + r * cube)) + 0.5f;
+            const float low = value < 0 ? 0.f : value;
+            row[k] = (ushort)(int)(low > largest ? largest : low);
+        }
     });
 }
 

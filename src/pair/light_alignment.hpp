@@ -41,16 +41,14 @@ struct LightModel
     }
 };
 
-/** Finds how the light of the right image differs from that of the left one, from the mean levels around matched
-corners.
-@param coarse What matchCoarsely() found.
+/** Finds how the light of the right image differs from that of the left one, from the mean levels around the matched
+corners of matchCoarsely().
 @param model Receives the model, the identity if the matches do not tell.
 @return Whether the model explains what differs, and this is enough to be applied. */
 CV_EXPORTS bool estimateLight(const CoarseMatches& coarse, LightModel& model);
 
 /** Gives the right image the light of the left one.
 @param levels CV_16UC1 of values up to 1020, changed in place.
-@param model
 @param frame What the model is about: the image, or a larger one that it is a tile of. */
 CV_EXPORTS void alignLight(Mat& levels, const LightModel& model, const ImageFrame& frame);
 

@@ -3,15 +3,15 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "row_alignment.hpp"
-#include "row_alignment.simd.hpp"
-#include "pair/row_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "corner_matches.hpp"
 #include "image_levels.hpp"
 #include "../base/robust_fit.hpp"
+#include "../base/vectorized.hpp"
 
 #include <cfloat>
 #include <cmath>
+#include <limits>
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -30,8 +30,6 @@ HDP_TUNABLE(double, noiseFall, 1.7, "factor from a layer to the next",
 
 typedef RowModel::Coefficients Coefficients;
 
-HDP_DISPATCH(mixRows)
-
 typedef FitSample<RowModel::terms> RowMove; // of a match, in pixels of the image
 typedef RobustFit<RowModel::terms> RowFit;
 
@@ -48,13 +46,9 @@ std::vector<RowMove> toMoves(const std::vector<CornerMatch>& matches, int layer,
     std::vector<RowMove> moves;
     for (const CornerMatch& match : matches)
         if (match.isValid)
-        {
-            RowMove move;
-            move.basis = RowModel::basis(fromCentre(match.x, match.left.y, layer, size));
-            move.value = (match.y - match.left.y) * scale;
-            move.deviation = std::sqrt(match.variance + ownDeviation * ownDeviation) * scale;
-            moves.push_back(move);
-        }
+            moves.push_back({ RowModel::basis(fromCentre(match.x, match.left.y, layer, size)),
+                              (match.y - match.left.y) * scale,
+                              std::sqrt(match.variance + ownDeviation * ownDeviation) * scale });
     return moves;
 }
 
@@ -63,10 +57,8 @@ RowFit fitRows(const std::vector<RowMove>& moves, Size size)
     const double curve = slopeChange / size.width;
     FitPrior<RowModel::terms> prior;
     prior.deviations = Coefficients(size.height, slopeDeviation, slopeDeviation, curve, curve);
-    std::vector<double> values;
-    for (const RowMove& move : moves)
-        values.push_back(move.value);
-    return fitRobustly(moves, prior, Coefficients(medianOf(values)));
+    const double offset = medianOf(moves, [](const RowMove& move) { return move.value; });
+    return fitRobustly(moves, prior, Coefficients(offset));
 }
 
 //! Standard deviation of the noise of a layer. White noise is assumed; half of it is left between pixels of the right
@@ -85,10 +77,7 @@ double noiseOf(const std::vector<CornerMatch>& matches)
 //! Standard deviation of the matches from the model, by the median, as some matches are wrong
 double deviationFrom(const Coefficients& model, const std::vector<RowMove>& moves)
 {
-    std::vector<double> distances;
-    for (const RowMove& move : moves)
-        distances.push_back(move.distanceFrom(model));
-    return deviationOfMedian * medianOf(distances);
+    return deviationOfMedian * medianOf(moves, [&](const RowMove& move) { return move.distanceFrom(model); });
 }
 
 //! Means over the image
@@ -153,7 +142,14 @@ template <typename T> void mixColumns(const Mat& right, int row, const int weigh
     const T* rows[4];
     for (int i = 0; i < 4; ++i)
         rows[i] = right.ptr<T>(clamped(row - 1 + i, 0, right.rows - 1));
-    dispatched::mixRows(rows, weights, columns.start * right.channels(), columns.end * right.channels(), aligned);
+    const T *const a = rows[0], *const b = rows[1], *const c = rows[2], *const d = rows[3];
+    const int wa = weights[0], wb = weights[1], wc = weights[2], wd = weights[3];
+    const int largest = std::numeric_limits<T>::max(), end = columns.end * right.channels();
+    HDP_VECTORIZED for (int x = columns.start * right.channels(); x < end; ++x)
+    {
+        const int sum = (wa * a[x] + wb * b[x] + wc * c[x] + wd * d[x] + 512) >> 10;
+        aligned[x] = (T)(sum < 0 ? 0 : sum > largest ? largest : sum);
+    }
 }
 
 //! aligned(x, y) for all x. A row of the model is a straight line: its columns come in runs from the same place, which
@@ -183,12 +179,9 @@ void alignRow(const Mat& right, const RowModel& model, const ImageFrame& frame, 
 
 double LayerNoise::ofLayer(int other) const
 {
-    const double fall = noiseFall;
     double noise = deviation;
-    for (int l = layer; l < other; ++l)
-        noise /= fall;
-    for (int l = layer; l > other; --l)
-        noise *= fall;
+    for (int l = layer; l != other; l += l < other ? 1 : -1)
+        noise = l < other ? noise / noiseFall : noise * noiseFall;
     return noise;
 }
 
@@ -210,8 +203,7 @@ void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
             break;
         const RowFit fit = fitRows(moves, size);
         const MeanSquares ofFit = meanSquares(fit, size);
-        RowModel fitted;
-        fitted.coefficients = fit.coefficients;
+        const RowModel fitted(fit.coefficients);
         findings.rowError = std::hypot(deviationFrom(fit.coefficients, moves), ownDeviation * (1 << layer));
         findings.noise.deviation = noiseOf(matches) / greyScale;
         findings.noise.layer = layer;

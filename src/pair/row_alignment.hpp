@@ -19,7 +19,9 @@ struct RowModel
     };
     typedef Vec<double, terms> Coefficients;
 
-    Coefficients coefficients; // zero
+    Coefficients coefficients;
+
+    explicit RowModel(const Coefficients& c = Coefficients()) : coefficients(c) {}
 
     //! 1, x, y, x y, y^2: of every row, a straight line
     static Coefficients basis(Point2d p) { return Coefficients(1, p.x, p.y, p.x * p.y, p.y * p.y); }
@@ -28,8 +30,7 @@ struct RowModel
     //! The same about a point that is x to the right of the centre
     RowModel about(double x) const
     {
-        RowModel model;
-        model.coefficients = coefficients;
+        RowModel model = *this;
         model.coefficients[0] += coefficients[1] * x;
         model.coefficients[2] += coefficients[3] * x;
         return model;
@@ -39,10 +40,8 @@ struct RowModel
     RowModel ofLayer(int layer) const
     {
         const double scale = 1 << layer;
-        RowModel model;
-        model.coefficients = Coefficients(coefficients[0] / scale, coefficients[1], coefficients[2],
-                                          coefficients[3] * scale, coefficients[4] * scale);
-        return model;
+        const Coefficients& c = coefficients;
+        return RowModel(Coefficients(c[0] / scale, c[1], c[2], c[3] * scale, c[4] * scale));
     }
 };
 
@@ -67,20 +66,16 @@ struct RowFindings
     LayerNoise noise = LayerNoise(); // what remains between windows of matches, in the tenth with the lowest one
 };
 
-/** Finds how the rows of the right image lie against those of the left one, from matches that are followed from the
-coarse layer to the finest one.
-@param coarse What matchCoarsely() found.
+/** Finds how the rows of the right image lie against those of the left one, from the matches of matchCoarsely(), which
+are followed to the finest layer.
 @param finestLayer The last layer that matches are followed to; one of 600000 pixels is fine enough.
-@param maxOffset Maximum difference of a pixel's rows that is believed, in pixels of the image.
-@param findings Receives the result. */
+@param maxOffset Maximum difference of a pixel's rows that is believed, in pixels of the image. */
 CV_EXPORTS void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowFindings& findings);
 
 /** Moves the rows of the right image to those of the left one: aligned(x, y) = right(x, y + model(x, y)), by cubic
 interpolation. Beyond the image are its first and last rows.
 @param right CV_8U or CV_16U, any number of channels.
-@param model
-@param frame What the model is about: the image, or a larger one that it is a tile of.
-@param aligned Of the same size and type. */
+@param frame What the model is about: the image, or a larger one that it is a tile of. */
 CV_EXPORTS void alignRows(const Mat& right, const RowModel& model, const ImageFrame& frame, Mat& aligned);
 
 }}} // namespace cv::stereo::hdp
