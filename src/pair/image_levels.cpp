@@ -48,96 +48,87 @@ std::vector<ushort> brightnessCurve(double brightness)
     return curve;
 }
 
-int shifted(int level, int times) { return times >= 0 ? level << times : level >> -times; }
-
-//! Calls convert(from, to, width) for each row.
-template <typename From, typename To, typename Convert>
-void convertRows(const Mat& image, Mat& converted, const Convert& convert)
+//! Pixels of a pair that are not below a level, in every row or every step-th one
+int64 countFrom(int level, const Mat& left, const Mat& right, int step)
 {
-    parallelFor(image.rows, [&](int y) { convert(image.ptr<From>(y), converted.ptr<To>(y), image.cols); });
+    const int width = left.cols;
+    int64 count = 0;
+    for (int y = 0; y < left.rows; y += step)
+    {
+        const ushort *l = left.ptr<ushort>(y), *r = right.ptr<ushort>(y);
+        int ofRow = 0;
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) ofRow += (l[x] >= level) + (r[x] >= level);
+        count += ofRow;
+    }
+    return count;
+}
+
+//! How often levels of so many bits are doubled to become those of 8 bits, brightened; negative: halved
+int timesDoubled(int bits, double brightness) { return minBits - bits + doublingsOf(brightness); }
+
+//! The grey levels of a row, see greyLevels(). times: see timesDoubled(), curve: see brightnessCurve()
+void greyRow(const Mat& image, int y, int times, const std::vector<ushort>& curve, ushort* levels)
+{
+    const int width = image.cols, up = std::max(times, 0), down = std::max(-times, 0), end = (int)curve.size();
+    const uchar* const bytes = image.ptr(y);
+    const ushort* const words = image.ptr<ushort>(y);
+    if (image.depth() == CV_16U)
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
+            (ushort)std::min(words[x] * greyScale << up >> down, end - 1);
+    else if (image.channels() > 1)
+        dispatched::greyRow(bytes, image.channels(), width, times, levels);
+    else
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (ushort)(bytes[x] * greyScale << up);
+    for (int x = 0; x < width && end > whiteEnd; ++x)
+        levels[x] = curve[levels[x]];
 }
 
 } // namespace
 
 int bitsInUse(const Mat& left, const Mat& right, double share)
 {
-    int bits = minBits;
-    if (left.depth() == CV_8U)
-        return bits;
-    Mat tooBright(left.rows, maxBits - minBits, CV_32S); // pixels of each row, for each number of bits
-    parallelFor(left.rows, [&](int y) {
-        const ushort *l = left.ptr<ushort>(y), *r = right.ptr<ushort>(y);
-        for (int i = 0; i < tooBright.cols; ++i)
-        {
-            const int limit = 1 << (minBits + i);
-            int count = 0;
-            HDP_VECTORIZED for (int x = 0; x < left.cols; ++x) count += (l[x] >= limit) + (r[x] >= limit);
-            tooBright.at<int>(y, i) = count;
-        }
-    });
-    while (bits < maxBits && sum(tooBright.col(bits - minBits))[0] > 2. * left.total() * share / pixelsPerBright)
-        ++bits;
+    int bits = left.depth() == CV_8U ? minBits : maxBits;
+    const double mayBeBright = 2. * left.total() * share / pixelsPerBright;
+    while (bits > minBits && countFrom(1 << (bits - 1), left, right, 1) <= mayBeBright)
+        --bits;
     return bits;
 }
 
 Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
 {
-    const int times = minBits - bits + doublingsOf(brightness);
+    const int times = timesDoubled(bits, brightness);
+    const std::vector<ushort> curve = brightnessCurve(brightness);
+    if (image.depth() == CV_16U)
+    {
+        buffer.create(image.size(), CV_8UC1);
+        parallelFor(image.rows, std::vector<ushort>(image.cols), [&](int y, std::vector<ushort>& levels) {
+            greyRow(image, y, times, curve, levels.data());
+            for (int x = 0; x < image.cols; ++x)
+                buffer.ptr(y)[x] = (uchar)(levels[x] / greyScale);
+        });
+        return buffer;
+    }
     Mat colors = image;
     if (image.channels() == 4)
     {
         cvtColor(image, buffer, COLOR_BGRA2BGR);
         colors = buffer;
     }
-    if (image.depth() == CV_8U && times == 0)
+    if (times == 0)
         return colors;
-    const std::vector<ushort> curve = brightnessCurve(brightness);
-    if (image.depth() == CV_8U)
-    {
-        Mat bytes(1, 256, CV_8U);
-        for (int level = 0; level < 256; ++level)
-            bytes.at<uchar>(level) = (uchar)(curve[level * greyScale << times] / greyScale);
-        LUT(colors, bytes, buffer);
-        return buffer;
-    }
-    buffer.create(image.size(), CV_8UC1);
-    convertRows<ushort, uchar>(image, buffer, [&](const ushort* pixels, uchar* levels, int width) {
-        for (int x = 0; x < width; ++x)
-            levels[x] =
-                (uchar)(curve[std::min(shifted(pixels[x] * greyScale, times), (int)curve.size() - 1)] / greyScale);
-    });
+    Mat bytes(1, 256, CV_8U);
+    for (int level = 0; level < 256; ++level)
+        bytes.at<uchar>(level) = (uchar)(curve[level * greyScale << times] / greyScale);
+    LUT(colors, bytes, buffer);
     return buffer;
 }
 
 void greyLevels(const Mat& image, int bits, Mat& grey, double brightness)
 {
-    const int times = minBits - bits + doublingsOf(brightness), channels = image.channels();
-    const int largest = (whiteEnd << doublingsOf(brightness)) - 1;
-    const std::vector<ushort> curve = brightness > 1 ? brightnessCurve(brightness) : std::vector<ushort>();
-    const auto bend = [&](ushort* levels, int width) {
-        for (int x = 0; x < width && !curve.empty(); ++x)
-            levels[x] = curve[levels[x]];
-    };
+    const int times = timesDoubled(bits, brightness);
+    const std::vector<ushort> curve = brightnessCurve(brightness);
     grey.create(image.size(), CV_16U);
-    if (image.depth() == CV_16U)
-    {
-        return convertRows<ushort, ushort>(image, grey, [&](const ushort* pixels, ushort* levels, int width) {
-            if (times > 0)
-                HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
-                    (ushort)std::min(pixels[x] * greyScale << times, largest);
-            else
-                HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
-                    (ushort)std::min(pixels[x] * greyScale >> -times, largest);
-            bend(levels, width);
-        });
-    }
-    convertRows<uchar, ushort>(image, grey, [&](const uchar* pixels, ushort* levels, int width) {
-        if (channels > 1)
-            dispatched::greyRow(pixels, channels, width, times, levels);
-        else
-            HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (ushort)(pixels[x] * greyScale << times);
-        bend(levels, width);
-    });
+    parallelFor(image.rows, [&](int y) { greyRow(image, y, times, curve, grey.ptr<ushort>(y)); });
 }
 
 double findBrightness(const Mat& left, const Mat& right, double share)
@@ -145,25 +136,15 @@ double findBrightness(const Mat& left, const Mat& right, double share)
     if (share == 0) // nothing to be seen
         return 1;
     const int step = std::max(left.rows / rowsThatTell, 1), white = 255 * greyScale;
+    const int64 all = 2 * left.cols * ((left.rows + step - 1) / step);
     double doublings = 0;
     for (int i = 1; i <= maxDoublings; ++i)
     {
-        const int limit = whiteEnd >> i;
-        int64 dark = 0, lost = 0, all = 0;
-        for (int y = 0; y < left.rows; y += step, all += 2 * left.cols)
-        {
-            const ushort *l = left.ptr<ushort>(y), *r = right.ptr<ushort>(y);
-            int below = 0, belowWhite = 0;
-            HDP_VECTORIZED for (int x = 0; x < left.cols; ++x)
-            {
-                below += (l[x] < limit) + (r[x] < limit);
-                belowWhite += (l[x] < white) + (r[x] < white);
-            }
-            dark += below;
-            lost += belowWhite - below;
-        }
+        const int64 bright = countFrom(whiteEnd >> i, left, right, step),
+                    areWhite = countFrom(white, left, right, step);
+        const int64 dark = all - bright, lost = bright - areWhite;
         // Of a pair that is mostly white, what is faint there is all that there is. What has no data is black.
-        const double areWhite = (double)(all - dark - lost), stays = dark - all * (1 - share);
+        const double stays = dark - all * (1 - share);
         const double ofThem = (lost + std::max(areWhite - stays, 0.)) / (all * share);
         doublings += clamped((sceneShare - ofThem) / (sceneShare - lampShare), 0., 1.);
     }

@@ -14,8 +14,6 @@ namespace cv { namespace stereo { namespace hdp {
 /** Number of bits in use in a pair: 8 for images of 8 bits. For CV_16UC1, the minimum from 8 to 16 that is enough for
 all pixels of both images but one in 1024; what is brighter is white. Images of 8 bits times 2^k are then these images
 again, if more than one pixel in 1024 has a level of 128 or more.
-@param left The images.
-@param right
 @param share Of the pixels that count; the others are black. */
 CV_EXPORTS int bitsInUse(const Mat& left, const Mat& right, double share = 1);
 
@@ -31,23 +29,19 @@ CV_EXPORTS Mat byteLevels(const Mat& image, int bits, Mat& buffer, double bright
 more than 8. Means of many pixels tell faint texture apart that 8 bits lose: the census cost of the coarse layers lives
 on it.
 
-A brightness of 2 or 4 doubles levels once or twice; what is brighter then is white. One between doubles, the last time,
-dark levels alone: below the knee, which is the share b - 1 of white for b < 2 and b / 2 - 1 for b > 2. Those above it
-are on the line from there to white. So the levels depend on the brightness without a jump.
+A brightness is 1 to 4: 2 or 4 doubles levels once or twice; what is brighter then is white. One between doubles, the
+last time, dark levels alone: below the knee, which is the share b - 1 of white for b < 2 and b / 2 - 1 for b > 2. Those
+above it are on the line from there to white. So the levels depend on the brightness without a jump.
 @param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
 @param bits See bitsInUse().
-@param grey Receives CV_16UC1.
-@param brightness 1 to 4. */
+@param grey Receives CV_16UC1. */
 CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey, double brightness = 1);
 
 /** What a dark pair is brightened by, see greyLevels(). Its levels are doubled, once or twice, if not more than one
-pixel in 128 becomes white by that: as few are lamps and what they shine on. If more than one in 16 would, they are a
-part of the scene, and it is left out. Between the two, the more would become white, the less a pair is brightened.
-What is white already has nothing to lose, and does not count as far as it is no more than what stays dark. More than
-two doublings would make noise look like texture.
-@param left,right See greyLevels().
-@param share See bitsInUse().
-@return 1 to 4. */
+pixel in 128 becomes white by that, and not if more than one in 16 would. Between the two, the more would become white,
+the less a pair is brightened. What is white already has nothing to lose, and does not count as far as it is no more
+than what stays dark.
+@param share See bitsInUse(). */
 CV_EXPORTS double findBrightness(const Mat& left, const Mat& right, double share = 1);
 
 /** The power of two that is about a brightness, for what is found in a brightened pair and told in levels of the

@@ -14,24 +14,14 @@ void greyRow(const uchar* pixels, int channels, int width, int times, ushort* le
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-namespace {
-
-template <int channels> void greyRow(const uchar* pixels, int width, int times, ushort* levels)
+void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels)
 {
     const int shift = 14 - times, half = 1 << (shift - 1);
     static_assert(65536 / greyScale == 1 << 14, "greyOf() is in 1 / 65536.");
-    HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
-        (ushort)((greyOf(pixels + channels * x) + half) >> shift);
-}
-
-} // namespace
-
-void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels)
-{
-    if (channels == 3)
-        greyRow<3>(pixels, width, times, levels);
+    if (channels == 3) // known to the compiler
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (ushort)((greyOf(pixels + 3 * x) + half) >> shift);
     else
-        greyRow<4>(pixels, width, times, levels);
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (ushort)((greyOf(pixels + 4 * x) + half) >> shift);
 }
 
 #endif
