@@ -12,26 +12,7 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-void smooth(LayerImages& images, LayerImages& smoothed)
-{
-    smoothNoise(images.left, smoothed.left);
-    smoothNoise(images.right, smoothed.right);
-    images.left = smoothed.left;
-    images.right = smoothed.right;
-}
-
 bool isGrey(const std::vector<LayerImages>& images) { return images[0].right.depth() == CV_16U; } // see greyLevels()
-
-//! The right masks from the finest layer on; levels that are mixed from both have data if half of them does.
-void alignMask(const RowModel& model, const ImageFrame& frame, int finestLayer, std::vector<LayerImages>& images)
-{
-    Mat aligned;
-    alignRows(images[finestLayer].masks.right, model, frame, aligned);
-    std::vector<Mat> masks;
-    buildPyramid({ aligned }, images.size() - finestLayer, masks);
-    for (size_t i = 0; i < masks.size(); ++i)
-        images[finestLayer + i].masks.right = masks[i];
-}
 
 void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const std::vector<LayerImages>& images,
                    PairFindings& findings)
@@ -67,25 +48,35 @@ void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector
     findings.hasLight &= isGrey(images);
     const ImageFrame frame = (given ? given->frame : ImageFrame(images[0].guide.size())).ofLayer(plan.finestLayer);
 
-    Mat& finest = images[plan.finestLayer].right;
+    Mat &finest = images[plan.finestLayer].right, &mask = images[plan.finestLayer].masks.right;
     if (findings.hasRows)
     {
-        alignRows(finest, findings.rows.ofLayer(plan.finestLayer), frame, buffers.right);
+        const RowModel rows = findings.rows.ofLayer(plan.finestLayer);
+        alignRows(finest, rows, frame, buffers.right);
         finest = buffers.right;
-        if (!images[0].masks.isEmpty())
-            alignMask(findings.rows.ofLayer(plan.finestLayer), frame, plan.finestLayer, images);
+        alignRows(mask, rows, frame, buffers.mask); // levels that are mixed from both have data if half of them does
+        mask = buffers.mask;
     }
     if (findings.hasLight)
         alignLight(finest, findings.light, frame);
     if (findings.hasRows || findings.hasLight)
-        for (size_t layer = plan.finestLayer + 1; layer < images.size(); ++layer)
-            halveImage(images[layer - 1].right, images[layer].right); // into the memory of the pyramid
+        for (size_t layer = plan.finestLayer + 1; layer < images.size(); ++layer) // into the memory of the pyramids
+        {
+            halveImage(images[layer - 1].right, images[layer].right);
+            halveImage(images[layer - 1].masks.right, images[layer].masks.right);
+        }
 
     if (!isGrey(images) || !plan.isNoisy(findings.noise))
         return;
     buffers.smoothed.resize(images.size());
     for (size_t layer = plan.finestLayer; layer < images.size(); ++layer)
-        smooth(images[layer], buffers.smoothed[layer]);
+    {
+        LayerImages& smoothed = buffers.smoothed[layer];
+        smoothNoise(images[layer].left, smoothed.left);
+        smoothNoise(images[layer].right, smoothed.right);
+        images[layer].left = smoothed.left;
+        images[layer].right = smoothed.right;
+    }
 }
 
 }}} // namespace cv::stereo::hdp

@@ -46,14 +46,12 @@ struct GivenAlignment
 struct AlignmentBuffers
 {
     CoarseMatches coarse;
-    Mat leftLevels, rightLevels, right;
+    Mat leftLevels, rightLevels, right, mask;
     std::vector<LayerImages> smoothed;
 };
 
 /** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it, and
 smooths the grey levels of noisy pairs. The guides stay.
-@param plan What is looked for.
-@param buffers Memory to work in.
 @param images Those of buildPairPyramids(); they may change.
 @param findings Receives what was found.
 @param given What is known already: nothing is looked for then. */

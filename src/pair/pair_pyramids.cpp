@@ -41,29 +41,22 @@ Mat blackened(const Mat& image, const Mat& mask)
     return blackened;
 }
 
-double shareWithData(const PairMasks& masks)
+//! An image that is moved as shiftColumns() does: itself if it stays where it is
+Mat moved(const Mat& image, int minDisparity, int extension, Mat& memory)
 {
-    return masks.isEmpty() ? 1
-                           : (countNonZero(masks.left) + (double)countNonZero(masks.right)) / (2. * masks.left.total());
+    if (image.empty() || (minDisparity == 0 && extension == 0))
+        return image;
+    shiftColumns(image, minDisparity, extension, memory);
+    return memory;
 }
 
-//! Those of images that are extended and moved as the plan says
-void buildMasks(const PairMasks& masks, const PyramidPlan& plan, PairPyramids& pyramids)
-{
-    Mat extended, shifted;
-    shiftColumns(masks.right, plan.minDisparity, plan.extension, shifted);
-    shiftColumns(masks.left, 0, plan.extension, extended);
-    buildPyramid({ extended }, plan.layers, pyramids.leftMask);
-    buildPyramid({ shifted }, plan.layers, pyramids.rightMask);
-}
-
-//! Grey levels of an extended pair with its masks, brightened if it is dark, and without the blocks of compression.
-//! share: with data
-void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, double share, const PyramidPlan& plan,
-                bool isKnown, PairPyramids& pyramids)
+//! Grey levels of a pair that is moved, with its masks, brightened if it is dark, and without the blocks of
+//! compression. share: with data
+void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, double share, bool isKnown,
+                bool smoothsBlocks, PairPyramids& pyramids)
 {
     LevelFindings& found = pyramids.levels;
-    Mat &leftLevels = pyramids.leftLevels, &rightLevels = pyramids.rightLevels;
+    Mat &leftLevels = pyramids.left.levels, &rightLevels = pyramids.right.levels;
     const auto convert = [&] {
         greyLevels(left, found.bits, leftLevels, found.brightness);
         greyLevels(right, found.bits, rightLevels, found.brightness);
@@ -76,7 +69,7 @@ void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, doubl
         if (found.brightness > 1)
             convert();
     }
-    if (!plan.smoothsBlocks)
+    if (!smoothsBlocks)
         return;
     if (!isKnown)
     {
@@ -92,45 +85,34 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
                        PairPyramids& pyramids, std::vector<LayerImages>& images, const LevelFindings* given)
 {
     const int minDisparity = plan.minDisparity, extension = plan.extension, layers = plan.layers;
-    Mat extended = left, shifted = right;
-    if (minDisparity != 0)
-    {
-        shiftColumns(right, minDisparity, extension, pyramids.shiftedRight);
-        shifted = pyramids.shiftedRight;
-    }
-    if (extension > 0)
-    {
-        shiftColumns(left, 0, extension, pyramids.extendedLeft);
-        extended = pyramids.extendedLeft;
-    }
-    if (!masks.isEmpty())
-        buildMasks(masks, plan, pyramids);
-    const double share = shareWithData(masks);
+    ImagePyramids &l = pyramids.left, &r = pyramids.right;
+    const Mat movedLeft = moved(left, 0, extension, l.moved),
+              movedRight = moved(right, minDisparity, extension, r.moved);
+    Mat leftMask, rightMask;
+    const PairMasks movedMasks = { moved(masks.left, 0, extension, leftMask),
+                                   moved(masks.right, minDisparity, extension, rightMask) };
+    const double all = 2. * left.total(); // pixels
+    const double share = masks.isEmpty() ? 1 : ((double)countNonZero(masks.left) + countNonZero(masks.right)) / all;
     LevelFindings& levels = pyramids.levels;
     levels = given ? *given : LevelFindings();
     if (!given)
         levels.bits = bitsInUse(blackened(left, masks.left), blackened(right, masks.right), share);
     if (plan.isCensus)
-    {
-        const PairMasks moved = masks.isEmpty() ? masks : PairMasks({ pyramids.leftMask[0], pyramids.rightMask[0] });
-        makeLevels(extended, shifted, moved, share, plan, given != nullptr, pyramids);
-        buildPyramid({ pyramids.leftLevels }, layers, pyramids.leftGrey);
-        buildPyramid({ pyramids.rightLevels }, layers, pyramids.right);
-    }
+        makeLevels(movedLeft, movedRight, movedMasks, share, given != nullptr, plan.smoothsBlocks, pyramids);
+    const Mat leftBytes = byteLevels(movedLeft, levels.bits, l.bytes, levels.brightness);
+    buildPyramid({ leftBytes }, layers, l.guide);
+    if (plan.isCensus)
+        buildPyramid({ l.levels }, layers, l.matched);
     else
-        buildPyramid({ byteLevels(shifted, levels.bits, pyramids.rightBytes) }, layers, pyramids.right);
-    buildPyramid({ byteLevels(extended, levels.bits, pyramids.leftBytes, levels.brightness) }, layers, pyramids.left);
+        l.matched = l.guide;
+    buildPyramid({ plan.isCensus ? r.levels : byteLevels(movedRight, levels.bits, r.bytes) }, layers, r.matched);
+    buildPyramid({ movedMasks.left }, layers, l.mask);
+    buildPyramid({ movedMasks.right }, layers, r.mask);
     images.resize(layers);
     for (int layer = 0; layer < layers; ++layer)
-    {
-        images[layer].guide = pyramids.left[layer];
-        images[layer].left = plan.isCensus ? pyramids.leftGrey[layer] : pyramids.left[layer];
-        images[layer].right = pyramids.right[layer];
-        images[layer].masks =
-            masks.isEmpty() ? masks : PairMasks({ pyramids.leftMask[layer], pyramids.rightMask[layer] });
-    }
-    pyramids.left[0].release(); // may be the caller's
-    pyramids.right[0].release();
+        images[layer] = { l.guide[layer], l.matched[layer], r.matched[layer], { l.mask[layer], r.mask[layer] } };
+    for (std::vector<Mat>* pyramid : { &l.guide, &l.matched, &r.matched, &l.mask, &r.mask })
+        pyramid->front().release(); // may be the caller's
 }
 
 void shiftColumns(const Mat& image, int minDisparity, int extension, Mat& shifted)

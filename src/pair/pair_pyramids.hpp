@@ -33,11 +33,17 @@ struct LevelFindings
     BlockGrid leftBlocks, rightBlocks; // of JPEG compression
 };
 
-//! Memory of the pyramids, kept from pair to pair
+//! Memory of the pyramids of an image
+struct ImagePyramids
+{
+    Mat moved, bytes, levels;
+    std::vector<Mat> guide, matched, mask; // no guide of the right image
+};
+
+//! Memory of the pyramids of a pair, kept from pair to pair
 struct PairPyramids
 {
-    std::vector<Mat> left, leftGrey, right, leftMask, rightMask;
-    Mat extendedLeft, shiftedRight, leftBytes, rightBytes, leftLevels, rightLevels;
+    ImagePyramids left, right;
     LevelFindings levels; // found, or given
 };
 
@@ -55,12 +61,10 @@ struct PyramidPlan
 /** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,
 see findBrightness(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well
 exposed.
-@param left CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
-@param right Of the same size and type.
+@param left,right CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param masks Theirs; what has no data does not count where levels are.
-@param plan What to build.
 @param pyramids Memory to work in; receives what was found.
-@param images Receives the images of each layer.
+@param images Receives those of each layer.
 @param given What is known already: nothing is looked for then. */
 CV_EXPORTS void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks, const PyramidPlan& plan,
                                   PairPyramids& pyramids, std::vector<LayerImages>& images,
