@@ -88,7 +88,7 @@ public:
         clock_.run("output", [&] {
             outputDisparity(finest, pairPlan.output, output_, disparity, pair_.masks.left, known_.ranges);
         });
-        pair_.forgetImages();
+        pair_.left = pair_.right = Mat(); // which may be the caller's
         result_.isMatched = true;
         result_.model = pairPlan.given.isGiven ? pairModel_
                                                : toPairModel(pairPlan.pyramids, left.size(), left.depth(),

@@ -62,57 +62,43 @@ void smoothSteps(const BlockGrid& grid, Mat& grey)
     });
 }
 
-/** Some rows of an image, or some columns as rows. They begin in all places of a block: blocks of compression are where
-they are in all of them, but slanted contours are not. */
-Mat someLines(const Mat& grey, bool areColumns)
+/** The one in eight of the steps between columns, or between rows, that are larger than the others, by their mean. The
+lines across them that tell begin in all places of a block: blocks of compression are where they are in all of them, but
+slanted contours are not.
+@param ratio Receives that of the mean to the mean of the others. */
+BlockGrid findSteps(const Mat& grey, bool isDown, double& ratio)
 {
-    const int all = areColumns ? grey.cols : grey.rows, count = std::min<int>(all, linesThatTell);
-    Mat lines(count, areColumns ? grey.rows : grey.cols, CV_16U);
+    const double leastStep = 1. / 64; // of the others, if they are as good as none
+    const int all = isDown ? grey.cols : grey.rows, length = isDown ? grey.rows : grey.cols;
+    const int count = std::min<int>(all, linesThatTell);
+    std::vector<ushort> steps(length), counts(length);
     for (int i = 0; i < count; ++i)
     {
         const int line = std::min((2 * i + 1) * all / (2 * count) / side * side + i % side, all - 1);
-        if (areColumns)
-            Mat(grey.col(line).t()).copyTo(lines.row(i));
-        else
-            grey.row(line).copyTo(lines.row(i));
+        const Mat pixels = isDown ? Mat(grey.col(line).t()) : grey.row(line);
+        addSteps(pixels.ptr<ushort>(), length, steps.data(), counts.data());
     }
-    return lines;
-}
-
-//! One in eight, which are larger than the others
-struct Steps
-{
-    int begin = 0;
-    double mean = 0, ratio = 0; // of the mean of the others
-};
-
-Steps findSteps(const Mat& lines)
-{
-    const double leastStep = 1. / 64; // of the others, if they are as good as none
-    std::vector<ushort> steps(lines.cols), counts(lines.cols);
-    for (int i = 0; i < lines.rows; ++i)
-        addSteps(lines.ptr<ushort>(i), lines.cols, steps.data(), counts.data());
 
     int sums[side] = {}, numbers[side] = {}, sum = 0, number = 0;
-    for (int x = 0; x < lines.cols; ++x)
+    for (int x = 0; x < length; ++x)
     {
         sums[x % side] += steps[x];
         numbers[x % side] += counts[x];
         sum += steps[x];
         number += counts[x];
     }
-    Steps found;
+    BlockGrid found;
+    ratio = 0;
     for (int i = 0; i < side; ++i)
     {
         const double mean = sums[i] / (double)std::max(numbers[i], 1),
                      others = (sum - sums[i]) / (double)std::max(number - numbers[i], 1),
-                     ratio = mean / std::max(others, leastStep);
-        if (numbers[i] >= minSteps && ratio > found.ratio)
-        {
-            found.begin = i;
-            found.mean = mean;
-            found.ratio = ratio;
-        }
+                     own = mean / std::max(others, leastStep);
+        if (numbers[i] < minSteps || own <= ratio)
+            continue;
+        found.begin = i;
+        found.step = mean;
+        ratio = own;
     }
     return found;
 }
@@ -121,11 +107,10 @@ Steps findSteps(const Mat& lines)
 
 BlockGrid findBlocks(const Mat& grey)
 {
-    const Steps across = findSteps(someLines(grey, false)), down = findSteps(someLines(grey, true));
-    const double share = clamped((std::min(across.ratio, down.ratio) - minRatio) / (sureRatio - minRatio), 0., 1.);
-    BlockGrid grid;
-    grid.begin = across.begin;
-    grid.step = share * across.mean;
+    double across, down;
+    BlockGrid grid = findSteps(grey, false, across);
+    findSteps(grey, true, down);
+    grid.step *= clamped((std::min(across, down) - minRatio) / (sureRatio - minRatio), 0., 1.);
     return grid;
 }
 

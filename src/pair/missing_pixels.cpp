@@ -28,53 +28,40 @@ Mat maskOf(const Mat& image, const Mat& given)
     return mask;
 }
 
-//! Of a row that has data. pixel: bytes
-void fillRow(const uchar* image, const uchar* mask, int width, size_t pixel, uchar* filled)
+//! The nearest place with data for each one, the first of two; -1 if there is none
+std::vector<int> nearestWithData(const uchar* has, int count)
 {
-    const auto repeat = [&](int from, int begin, int end) {
-        for (int x = begin; x < end; ++x)
-            std::memcpy(filled + x * pixel, image + from * pixel, pixel);
-    };
-    int last = -1; // with data
-    for (int x = 0; x <= width; ++x)
+    std::vector<int> nearest(count);
+    for (int i = 0, last = -1; i < count; ++i)
+        nearest[i] = last = has[i] ? i : last;
+    for (int i = count - 1, next = -1; i >= 0; --i)
     {
-        if (x < width && !mask[x])
-            continue;
-        const int first = last + 1, middle = last < 0 ? first : x == width ? width : (first + x + 1) / 2;
-        if (last >= 0)
-            repeat(last, first, middle);
-        if (x == width)
-            break;
-        repeat(x, middle, x + 1);
-        last = x;
+        next = has[i] ? i : next;
+        if (next >= 0 && (nearest[i] < 0 || next - i < i - nearest[i]))
+            nearest[i] = next;
     }
+    return nearest;
 }
 
 } // namespace
 
 void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
 {
-    const int rows = image.rows;
+    const size_t pixel = image.elemSize();
     filled.create(image.size(), image.type());
-    std::vector<uchar> has(rows);
-    parallelFor(rows, [&](int y) {
-        has[y] = std::memchr(mask.ptr(y), 255, (size_t)mask.cols) != nullptr;
-        if (has[y])
-            fillRow(image.ptr(y), mask.ptr(y), image.cols, image.elemSize(), filled.ptr(y));
+    std::vector<uchar> has(image.rows);
+    parallelFor(image.rows, [&](int y) {
+        const std::vector<int> columns = nearestWithData(mask.ptr(y), image.cols);
+        has[y] = columns[0] >= 0;
+        for (int x = 0; x < image.cols && has[y]; ++x)
+            std::memcpy(filled.ptr(y) + x * pixel, image.ptr(y) + columns[x] * pixel, pixel);
     });
-    std::vector<int> above(rows), below(rows); // the nearest rows with data, or far away
-    for (int y = 0, last = -2 * rows; y < rows; ++y)
-        above[y] = last = has[y] ? y : last;
-    for (int y = rows - 1, last = 3 * rows; y >= 0; --y)
-        below[y] = last = has[y] ? y : last;
-    for (int y = 0; y < rows; ++y)
-    {
-        const int nearest = y - above[y] <= below[y] - y ? above[y] : below[y];
-        if (nearest < 0 || nearest >= rows)
+    const std::vector<int> rows = nearestWithData(has.data(), image.rows);
+    for (int y = 0; y < image.rows; ++y)
+        if (rows[y] < 0)
             filled.row(y).setTo(Scalar::all(0));
-        else if (nearest != y)
-            filled.row(nearest).copyTo(filled.row(y));
-    }
+        else if (rows[y] != y)
+            filled.row(rows[y]).copyTo(filled.row(y));
 }
 
 FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks)

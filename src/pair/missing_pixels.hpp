@@ -21,40 +21,32 @@ struct CompletePair
     PairMasks masks;
     FloatLevels floats; // if it was of floats
     Mat filled[2];      // memory, kept from pair to pair
-
-    //! Which may be the caller's
-    void forgetImages() { left = right = Mat(); }
 };
 
 /** Gives the pixels without data levels that depend on the others alone, and images of type CV_32FC1 16 bits.
-@param left As checkPair() accepts it.
-@param right Of the same size and type.
-@param leftMask CV_8UC1 of the same size, 0 where there is no data; empty: there is everywhere.
-@param rightMask The same of the right image.
+@param left,right As checkPair() accepts them.
+@param leftMask,rightMask CV_8UC1 of the same size, 0 where there is no data; empty: there is everywhere.
 @param given What floats are matched as; none: that of this pair.
 @param complete Receives the pair: the images themselves if nothing is to be done. */
 CV_EXPORTS void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
                              const FloatLevels* given, CompletePair& complete);
 
 /** One scale for both images of a pair: the darkest pixel becomes black and the brightest white, but for one pixel in
-1024 at each end, as defects and highlights are.
-@param left CV_32FC1.
-@param right The same.
+1024 at each end.
+@param left,right CV_32FC1.
 @param masks Which pixels count; those that are not finite must not be among them. */
 CV_EXPORTS FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks);
 
 /** Levels in CV_16UC1.
 @param image CV_32FC1.
 @param mask Which pixels have data; the others become 0.
-@param floats What is black and white; all is black if these are the same.
-@param levels Receives the image. */
+@param floats What is black and white; all is black if these are the same. */
 CV_EXPORTS void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, Mat& levels);
 
 /** Fills the pixels without data. A run of them in a row gets the levels at its ends, each half of it the nearer one's.
 A row without any gets what the nearest row has that has some, the upper one of two; black if there is none.
 @param image Of 8 or 16 bits, any number of channels.
-@param mask CV_8UC1, 255 where there is data, else 0.
-@param filled Receives the image. */
+@param mask CV_8UC1, 255 where there is data, else 0. */
 CV_EXPORTS void fillMissing(const Mat& image, const Mat& mask, Mat& filled);
 
 }}} // namespace cv::stereo::hdp

@@ -12,7 +12,7 @@ namespace cv { namespace stereo { namespace hdp {
 of, 27 / 256 are a pixel's neighbour on either side; the sum is rounded once. cv::GaussianBlur() does the same to
 numbers of 16 bits in several times as long.
 @param image CV_16UC1, values up to 1023; its border is repeated.
-@param smoothed Receives the result, another image. */
+@param smoothed Receives another image. */
 CV_EXPORTS void smoothNoise(const Mat& image, Mat& smoothed);
 
 }}} // namespace cv::stereo::hdp
