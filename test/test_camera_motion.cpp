@@ -6,8 +6,7 @@
 #include "synthetic_video.hpp"
 #include "../src/video/camera_motion.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace cv::stereo::hdp;
 
@@ -107,8 +106,8 @@ TEST(HDPStereo_CameraMotion, backward)
         const Point2f place = backward.place(x, y, (float)now);
         EXPECT_NEAR(before[0], place.x, 1e-2);
         EXPECT_NEAR(before[1], place.y, 1e-2);
-        const DisparityChange& change = backward.change();
-        EXPECT_NEAR(now, change.now((float)(before[2] - minDisparity), change.ofX * x + change.ofRow(y)), 1e-3);
+        const DisparityChange& change = backward.change;
+        EXPECT_NEAR(now, change.now((float)(before[2] - minDisparity), x, y), 1e-3);
     }
 }
 
@@ -119,7 +118,7 @@ TEST(HDPStereo_CameraMotion, corrected)
     const double minDisparity = -3, factor = 1.008, offset = -0.3;
     CameraMotion motion;
     motion.forward = rigidMotion(Vec3d(.01, .02, -.01), Vec3d(.05, -.02, .1), 500, 0.4);
-    const DisparityChange before = BackwardMotion(motion, minDisparity, 100).change();
+    const DisparityChange before = BackwardMotion(motion, minDisparity, 100).change;
     std::vector<float> predicted, measured;
     for (int i = 0; i < 600; ++i)
     {
@@ -132,12 +131,12 @@ TEST(HDPStereo_CameraMotion, corrected)
     {
         const int x = rng.uniform(0, 600), y = rng.uniform(0, 400);
         const float d = rng.uniform(8.f, 50.f);
-        const double uncorrected = before.now(d, before.ofX * x + before.ofRow(y)) + minDisparity;
-        EXPECT_NEAR(factor * uncorrected + offset - minDisparity, change.now(d, change.ofX * x + change.ofRow(y)), 0.1);
+        const double uncorrected = before.now(d, x, y) + minDisparity;
+        EXPECT_NEAR(factor * uncorrected + offset - minDisparity, change.now(d, x, y), 0.1);
     }
 
     const DisparityChange same = correctedChange(before, std::vector<float>(), std::vector<float>());
-    EXPECT_EQ(before.now(20, 0.9f), same.now(20, 0.9f));
+    EXPECT_EQ(before.now(20, 300, 200), same.now(20, 300, 200));
 }
 
 TEST(HDPStereo_CameraMotion, scaled)
@@ -206,5 +205,4 @@ TEST(HDPStereo_CameraMotion, tracks_nothing_without_texture)
     EXPECT_TRUE(points.empty());
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

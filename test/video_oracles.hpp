@@ -15,7 +15,7 @@ namespace opencv_test { namespace oracle {
 //! What a disparity of the last frame, in pixels, is now at this pixel
 inline float changed(const hdp::DisparityChange& change, float before, int x, int y)
 {
-    return change.now(before, change.ofX * x + change.ofRow(y));
+    return change.now(before, (float)x, (float)y);
 }
 
 //! How far a block's pixels have to go to be where they were, see hdp::findWarp(); false if that is not known.
@@ -35,7 +35,7 @@ inline bool blockShift(const hdp::BackwardMotion& motion, const Mat& disparity, 
         if (step > 0 && lastStep == 0)
             break;
         at = next;
-        now = changed(motion.change(), disparity.at<ushort>(at) / 16.f, centre.x, centre.y);
+        now = changed(motion.change, disparity.at<ushort>(at) / 16.f, centre.x, centre.y);
     }
     shift = at - centre;
     return lastStep <= 2;
@@ -172,7 +172,7 @@ private:
 
     hdp::DisparityChange measuredChange() const
     {
-        const hdp::DisparityChange& change = prediction_->backward.change();
+        const hdp::DisparityChange& change = prediction_->backward.change;
         std::vector<float> predicted, now;
         for (int i = 0; i < prediction_->sources.rows; i += 12)
             for (int j = 0; j < prediction_->sources.cols; j += 12)

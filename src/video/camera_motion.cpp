@@ -68,9 +68,20 @@ void addEquations(const TrackedPoint& point, double weight, NormalMatrix& a, Ter
     }
 }
 
+Vec4d moved(const Matx44d& forward, const TrackedPoint& point)
+{
+    return forward * Vec4d(point.before.x, point.before.y, point.disparity, 1);
+}
+
+//! x and y become scale times as large and get an offset.
+Matx44d enlarging(double scale, double offsetX, double offsetY, double disparityScale)
+{
+    return Matx44d(scale, 0, 0, offsetX, 0, scale, 0, offsetY, 0, 0, disparityScale, 0, 0, 0, 0, 1);
+}
+
 double squaredError(const Matx44d& forward, const TrackedPoint& point)
 {
-    const Vec4d p = forward * Vec4d(point.before.x, point.before.y, point.disparity, 1);
+    const Vec4d p = moved(forward, point);
     if (p[3] <= 0)
         return DBL_MAX;
     const double dx = p[0] / p[3] - point.now.x, dy = p[1] / p[3] - point.now.y;
@@ -122,10 +133,7 @@ std::vector<double> guessMotion(const std::vector<TrackedPoint>& points, double 
 
 double medianSquaredError(const Matx44d& forward, const std::vector<TrackedPoint>& points)
 {
-    std::vector<double> errors;
-    for (const TrackedPoint& point : points)
-        errors.push_back(squaredError(forward, point));
-    return medianOf(errors);
+    return medianOf(points, [&](const TrackedPoint& point) { return squaredError(forward, point); });
 }
 
 } // namespace
@@ -134,7 +142,7 @@ void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>
 {
     for (TrackedPoint& point : points)
     {
-        const Vec4d p = motion.forward * Vec4d(point.before.x, point.before.y, point.disparity, 1);
+        const Vec4d p = moved(motion.forward, point);
         const bool isInside = p[0] >= 0 && p[1] >= 0 && p[0] < p[3] * size.width && p[1] < p[3] * size.height;
         point.now = isInside ? Point2d(p[0] / p[3], p[1] / p[3]) : Point2d(nowhere);
     }
@@ -171,10 +179,8 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, doubl
     if (!(still > motionFactor * moved))
         return motion;
     motion.error = moved;
-    const Matx44d toNormed(1 / unit, 0, 0, -centre.x / unit, 0, 1 / unit, 0, -centre.y / unit, 0, 0, 1 / disparityUnit,
-                           0, 0, 0, 0, 1);
-    const Matx44d toPixels(unit, 0, 0, centre.x, 0, unit, 0, centre.y, 0, 0, disparityUnit, 0, 0, 0, 0, 1);
-    motion.forward = toPixels * forward * toNormed;
+    const Matx44d toNormed = enlarging(1 / unit, -centre.x / unit, -centre.y / unit, 1 / disparityUnit);
+    motion.forward = enlarging(unit, centre.x, centre.y, disparityUnit) * forward * toNormed;
     motion.isStill = false;
     return motion;
 }
@@ -182,14 +188,12 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, doubl
 CameraMotion scaled(const CameraMotion& motion, double scale)
 {
     // The centre of the first pixel is 0: that of a larger one is (scale - 1) / 2 beside it.
-    const double shift = (scale - 1) / 2;
-    const Matx44d up(scale, 0, 0, shift, 0, scale, 0, shift, 0, 0, scale, 0, 0, 0, 0, 1);
-    const double back = 1 / scale;
-    const Matx44d down(back, 0, 0, -shift * back, 0, back, 0, -shift * back, 0, 0, back, 0, 0, 0, 0, 1);
+    const double shift = (scale - 1) / 2, back = 1 / scale;
     CameraMotion result = motion;
     result.error *= scale;
     if (!motion.isStill)
-        result.forward = up * motion.forward * down;
+        result.forward = enlarging(scale, shift, shift, scale) * motion.forward *
+                         enlarging(back, -shift * back, -shift * back, back);
     return result;
 }
 
@@ -199,9 +203,7 @@ DisparityChange correctedChange(const DisparityChange& change, const std::vector
     const FitPrior<2> none = { Vec2d(), Vec2d(1, factorDeviation) }; // cameras shake by a pixel
     std::vector<FitSample<2>> samples(predicted.size());
     for (size_t i = 0; i < samples.size(); ++i)
-    {
         samples[i] = { Vec2d(1, predicted[i] + change.minDisparity), measured[i] - predicted[i], measuredDeviation };
-    }
     if (samples.empty())
         return change;
     const Vec2d fit = fitRobustly(samples, none, Vec2d()).coefficients;
@@ -220,12 +222,12 @@ BackwardMotion::BackwardMotion(const CameraMotion& motion, double minDisparity, 
     const Matx44d ofMap = inverse * Matx44d(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, minDisparity, 0, 0, 0, 1);
     for (int i = 0; i < 4; ++i)
     {
-        x_[i] = (float)ofMap(0, i);
-        y_[i] = (float)ofMap(1, i);
-        w_[i] = (float)ofMap(3, i);
+        x[i] = (float)ofMap(0, i);
+        y[i] = (float)ofMap(1, i);
+        w[i] = (float)ofMap(3, i);
     }
-    change_ = { (float)inverse(3, 0), (float)inverse(3, 1), (float)inverse(3, 2), (float)inverse(3, 3), 0.f,
-                (float)minDisparity,  (float)maxDisparity };
+    change = { (float)inverse(3, 0), (float)inverse(3, 1), (float)inverse(3, 2), (float)inverse(3, 3), 0.f,
+               (float)minDisparity,  (float)maxDisparity };
 }
 
 }}} // namespace cv::stereo::hdp

@@ -24,17 +24,13 @@ struct CameraMotion
     double error = 0;    // median distance of the points from where it takes them, in pixels
 };
 
-/** Moves points to where a motion takes them.
-@param motion In pixels of the points, disparities as well.
-@param size The image's; points that leave it are nowhere.
-@param points Receives TrackedPoint::now of each. */
+//! Moves points to where a motion in their pixels takes them; those that leave the image are nowhere.
 CV_EXPORTS void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>& points);
 
 /** Fits a motion to most of the points. Those that do not fit, as on things that move by themselves, lose their weight.
-@param points The points.
 @param size That of the image that their positions are in.
 @param tolerance How far from a first guess they may be, in pixels.
-@return The motion; none if most of the points are where they were, or if there are less than minPoints. */
+@return None if most of the points are where they were, or if there are less than minPoints. */
 CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance);
 
 //! The motion in pixels of an image that is scale times as large
@@ -47,11 +43,9 @@ struct DisparityChange
     float ofX, ofY, ofDisparity, constant, offset;
     float minDisparity, maxDisparity; // of a map, which counts from the first one, as the next two disparities do
 
-    CV_ALWAYS_INLINE float ofRow(int y) const { return ofY * y + constant; }
-    //! place: ofX x + ofRow(y)
-    CV_ALWAYS_INLINE float now(float before, float place) const
+    CV_ALWAYS_INLINE float now(float before, float x, float y) const
     {
-        const float old = before + minDisparity, w = 1 - ofDisparity * old;
+        const float place = ofX * x + (ofY * y + constant), old = before + minDisparity, w = 1 - ofDisparity * old;
         const float minW = 0.1f; // what gets ten times as near in a frame is at the camera or behind it
         const float positive = w > minW ? w : minW;
         const float disparity = old * place / positive + offset - minDisparity;
@@ -62,36 +56,31 @@ struct DisparityChange
 
 /** A change as it was measured: cameras shake against each other, and the motion is an estimate. The disparities become
 factor d + offset, both fitted robustly.
-@param change The change by the motion; its offset is 0.
+@param change By the motion; its offset is 0.
 @param predicted Disparities that its now() gave for pixels.
-@param measured Those of the same pixels now.
-@return The corrected change. */
+@param measured Those of the same pixels now. */
 CV_EXPORTS DisparityChange correctedChange(const DisparityChange& change, const std::vector<float>& predicted,
                                            const std::vector<float>& measured);
 
 //! From a pixel of this frame to where it was; disparities count from minDisparity, up to maxDisparity, in pixels.
-class CV_EXPORTS BackwardMotion
+struct CV_EXPORTS BackwardMotion
 {
-public:
+    Vec4f x, y, w; // of (x, y, disparity, 1)
+    DisparityChange change;
+
     BackwardMotion() {}
     BackwardMotion(const CameraMotion& motion, double minDisparity, double maxDisparity);
 
     //! Where a pixel was if this is its disparity now; at negative coordinates if it is behind the camera
-    CV_ALWAYS_INLINE Point2f place(int x, int y, float disparity) const
+    CV_ALWAYS_INLINE Point2f place(int atX, int atY, float disparity) const
     {
         const float minW = 0.001f; // no pixel of a camera that looks ahead: less divides by 0
-        const float w = w_[0] * x + w_[1] * y + w_[2] * disparity + w_[3];
-        const float factor = 1 / (w > minW ? w : minW);
-        const float placeX = (x_[0] * x + x_[1] * y + x_[2] * disparity + x_[3]) * factor;
-        const float placeY = (y_[0] * x + y_[1] * y + y_[2] * disparity + y_[3]) * factor;
-        return Point2f(w > minW ? placeX : -1, w > minW ? placeY : -1);
+        const float ownW = w[0] * atX + w[1] * atY + w[2] * disparity + w[3];
+        const float factor = 1 / (ownW > minW ? ownW : minW);
+        const float placeX = (x[0] * atX + x[1] * atY + x[2] * disparity + x[3]) * factor;
+        const float placeY = (y[0] * atX + y[1] * atY + y[2] * disparity + y[3]) * factor;
+        return Point2f(ownW > minW ? placeX : -1, ownW > minW ? placeY : -1);
     }
-
-    const DisparityChange& change() const { return change_; }
-
-private:
-    Vec4f x_, y_, w_;
-    DisparityChange change_;
 };
 
 }}} // namespace cv::stereo::hdp

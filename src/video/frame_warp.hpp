@@ -51,29 +51,9 @@ struct FrameWarp
 
 /** Follows blocks back. Where one was depends on its disparity, and that on where it was: from the disparity that the
 last frame has at the same place, some steps lead to both.
-@param motion The camera's.
 @param disparity The map of the last frame.
 @param warp Receives where all blocks were: known are those whose centre stays in the image and comes to rest. */
 CV_EXPORTS void findWarp(const BackwardMotion& motion, const Mat& disparity, FrameWarp& warp);
-
-//! A row of blocks that findWarp() follows to where they were
-struct BlockRow
-{
-    enum State
-    {
-        MOVING,
-        ARRIVED,
-        OUTSIDE // of the last frame
-    };
-    int y, width, count;               // of the blocks' centres, of the layer, number of blocks
-    float* disparity;                  // of the centres now, if they were at (atX, atY)
-    int *atX, *atY, *lastStep, *state; // lastStep: sum of both coordinates' changes
-
-    CV_ALWAYS_INLINE int centre(int j) const
-    {
-        return std::min(j * FrameWarp::block + FrameWarp::block / 2, width - 1);
-    }
-};
 
 }}} // namespace cv::stereo::hdp
 

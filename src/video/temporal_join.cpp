@@ -40,10 +40,8 @@ HDP_TUNABLE(int, stripeHeight, 32, "rows of cells", "for a thread: fewer compute
 
 const int cell = FrameMemory::cell;
 
-HDP_DISPATCH(unpackRow)
 HDP_DISPATCH(changeDisparities)
 HDP_DISPATCH(compareDisparities)
-HDP_DISPATCH(shareCells)
 HDP_DISPATCH(compareCells)
 HDP_DISPATCH(chooseCells)
 HDP_DISPATCH(addEvidence)
@@ -103,13 +101,18 @@ DisparityChange measuredChange(const LastFrame& frame, const Mat& measured)
     return correctedChange(frame.change, predicted, now);
 }
 
-ChoiceShares choiceShares(const LastFrame& frame)
+ChoiceRule choiceRule(const LastFrame& frame)
 {
-    const int distance = std::max(nearDistance * subpixelScale / frame.prediction.key.scale, 1);
-    if (frame.isStill())
-        return { stillShare | ChoiceShares::KEEPS, stillShare | ChoiceShares::KEEPS, 0, maxCount, INT_MAX };
+    const int unit = frame.prediction.key.scale; // of a disparity in pixels of the image
+    ChoiceRule rule;
+    rule.same = sameDistance * subpixelScale;
+    rule.maxDistance = maxSourceDistance * subpixelScale / unit;
+    rule.near = frame.isStill() ? INT_MAX : std::max(nearDistance * subpixelScale / unit, 1);
+    rule.nearShare = frame.isStill() ? stillShare | ChoiceRule::KEEPS : +nearShare;
     // No pair has agreed with a disparity of one frame: nothing that contradicts is taken.
-    return { std::min(+nearShare, +wrongShare), nearShare, apartShare, maxCount, distance };
+    rule.firstShare = frame.isStill() ? rule.nearShare : std::min(+nearShare, +wrongShare);
+    rule.apartShare = frame.isStill() ? 0 : +apartShare;
+    return rule;
 }
 
 //! Compares costs in each cell whose first pixel has another disparity in the last frame.
@@ -117,49 +120,35 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
 {
     const Size cells = frame.cells();
     const int offset = costOffset * cost.comparisons() / 24;
-    const int same = sameDistance * subpixelScale;
-    const int maxDistance = maxSourceDistance * subpixelScale / frame.prediction.key.scale;
-    const ChoiceShares shares = choiceShares(frame);
+    const ChoiceRule rule = choiceRule(frame);
     scratch.sources.create(cells, CV_8U);
     scratch.shares.create(cells, CV_8UC2);
     scratch.evidence.create(cells, CV_16SC(EVIDENCE_CHANNELS));
-    parallel_for_(Range(0, cells.height), [&](const Range& rows) {
-        TemporalRow row(measured.cols);
-        std::vector<int> compared(cells.width);
-        std::vector<uchar> different(cells.width);
-        for (int i = rows.start; i < rows.end; ++i)
+    parallelFor(cells.height, TemporalRow(measured.cols), [&](int i, TemporalRow& row) {
+        const int y = i * cell;
+        if (!frame.isStill())
+            takeMovedCells(frame, y, row);
+        dispatched::compareDisparities(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y),
+                                       frame.memory.detail.ptr(y), row, cells.width, rule,
+                                       frame.prediction.sources.ptr(i), scratch.sources.ptr(i), row.different.data(),
+                                       scratch.shares.ptr(i));
+        int count = 0; // of those that are different
+        for (int j = 0; j < cells.width; ++j)
         {
-            const int y = i * cell;
-            if (!frame.isStill())
-                takeMovedCells(frame, y, row);
-            dispatched::compareDisparities(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y),
-                                           row.moved.data(), cells.width, same, maxDistance,
-                                           frame.prediction.sources.ptr(i), scratch.sources.ptr(i), different.data());
-            dispatched::shareCells(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y),
-                                   frame.memory.detail.ptr(y), row.moved.data(), row.detail.data(), cells.width, shares,
-                                   scratch.shares.ptr(i));
-            int count = 0;
-            for (int j = 0; j < cells.width; ++j)
-            {
-                compared[count] = j;
-                count += different[j] != 0;
-            }
-            short* const evidence = scratch.evidence.ptr<short>(i);
-            std::fill(evidence, evidence + cells.width * EVIDENCE_CHANNELS, (short)0);
-            ComparedRow ofCells[cell];
-            for (int k = 0; k < cell; ++k)
-            {
-                ofCells[k] = { cost.leftPixels(y + k),
-                               cost.rightPlane(0, y + k) + measured.cols - 1,
-                               cost.planeStride(),
-                               cost.planes(),
-                               cost.comparisons() / 2,
-                               measured.ptr<ushort>(y + k),
-                               frame.memory.disparity.ptr<ushort>(y + k) };
-            }
-            dispatched::compareCells(ofCells, row.moved.data(), different.data(), compared.data(), count, offset,
-                                     evidence);
+            row.compared[count] = j;
+            count += row.different[j] != 0;
         }
+        ComparedRow ofCells[cell];
+        for (int k = 0; k < cell; ++k)
+            ofCells[k] = { cost.leftPixels(y + k),
+                           cost.rightPlane(0, y + k) + measured.cols - 1,
+                           cost.planeStride(),
+                           cost.planes(),
+                           cost.comparisons() / 2,
+                           measured.ptr<ushort>(y + k),
+                           frame.memory.disparity.ptr<ushort>(y + k) };
+        scratch.evidence.row(i).setTo(Scalar::all(0));
+        dispatched::compareCells(ofCells, row, count, offset, scratch.evidence.ptr<short>(i));
     });
 }
 
@@ -170,7 +159,7 @@ bool chooseSources(const LastFrame& frame, VideoScratch& scratch)
     const Size cells = frame.cells();
     const int radius = T::window / 2, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
     const int wrong = frame.isStill() ? +stillShare : +wrongShare;
-    std::vector<int> sourceCounts(cells.height), contradicted(cells.height);
+    std::vector<int> contradicted(cells.height);
     scratch.choices.create(cells, CV_8U);
     parallel_for_(Range(0, stripes), [&](const Range& range) {
         const Range rows(range.start * stripeHeight, std::min(range.end * stripeHeight, cells.height));
@@ -187,14 +176,12 @@ bool chooseSources(const LastFrame& frame, VideoScratch& scratch)
         {
             add(y + radius, 1);
             dispatched::sumWindow(columns.data(), length, sums.data());
-            const uchar* sources = scratch.sources.ptr(y);
-            sourceCounts[y] = (int)(cells.width - std::count(sources, sources + cells.width, 0));
-            contradicted[y] = dispatched::chooseCells(sums.data(), sources, scratch.shares.ptr(y), cells.width,
-                                                      frame.isStill(), wrong, scratch.choices.ptr(y));
+            contradicted[y] = dispatched::chooseCells(sums.data(), scratch.sources.ptr(y), scratch.shares.ptr(y),
+                                                      cells.width, frame.isStill(), wrong, scratch.choices.ptr(y));
             add(y - radius, -1);
         }
     });
-    const int64 all = std::accumulate(sourceCounts.begin(), sourceCounts.end(), (int64)0);
+    const int64 all = countNonZero(scratch.sources);
     return 100 * std::accumulate(contradicted.begin(), contradicted.end(), (int64)0) > contradictedShare * all;
 }
 
@@ -206,32 +193,25 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
     uchar* const ofPixels = row.choices.data();
     HDP_VECTORIZED for (int j = 0; j < cells; ++j) ofPixels[2 * j] = ofPixels[2 * j + 1] = choices[j];
     std::fill(row.choices.begin() + cells * cell, row.choices.end(), choices[cells - 1]);
-    dispatched::unpackRow(frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), width, row.unmoved.data(),
-                          row.unmovedCounts.data());
     if (!frame.isStill())
     {
         takeMoved(frame, y, row);
-        dispatched::unpackRow(row.disparity.data(), row.detail.data(), width, row.moved.data(), row.movedCounts.data());
-        dispatched::changeDisparities(frame.change, y, 1, width, row.moved.data());
+        int* const moved = row.moved.data();
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) moved[x] = FrameMemory::finer(row.disparity[x], row.detail[x]);
+        dispatched::changeDisparities(frame.change, y, 1, width, moved);
     }
     const int maxDistance = std::max(tolerance / frame.prediction.key.scale, 1) * FrameMemory::scale;
     // The motion is an estimate: what it moves counts for one frame.
     const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale, frame.isStill() ? +T::maxWeight : 1, maxCount };
-    dispatched::joinRow(measured.ptr<ushort>(y), row, width, rule, next.disparity.ptr<ushort>(y), next.detail.ptr(y));
-}
-
-void begin(const Mat& measured, FrameMemory& next)
-{
-    measured.copyTo(next.disparity);
-    next.detail.create(measured.size(), CV_8U);
-    next.detail.setTo(Scalar(1 << (2 * FrameMemory::detailBits - 1) | 1)); // no rest, one frame
+    dispatched::joinRow(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), row,
+                        width, rule, next.disparity.ptr<ushort>(y), next.detail.ptr(y));
 }
 
 //! Returns whether the pair does not contradict the last frame.
 bool join(const CensusCost& cost, const FrameMemory& last, const FramePrediction& prediction, VideoScratch& scratch,
           FrameMemory& next, Mat& disparity)
 {
-    LastFrame frame = { last, prediction, prediction.backward.change() };
+    LastFrame frame = { last, prediction, prediction.backward.change };
     if (!frame.isStill())
         frame.change = measuredChange(frame, disparity);
     compareCosts(cost, disparity, frame, scratch);
@@ -255,7 +235,11 @@ Verdict joinLastFrame(const CensusCost& cost, const FrameMemory& last, const Fra
     if (std::min(disparity.cols, disparity.rows) < cell)
         return FIRST;
     if (prediction.verdict == FIRST)
-        begin(disparity, next);
+    {
+        disparity.copyTo(next.disparity);
+        next.detail.create(disparity.size(), CV_8U);
+        next.detail.setTo(Scalar(1 << (2 * FrameMemory::detailBits - 1) | 1)); // no rest, one frame
+    }
     else if (!join(cost, last, prediction, scratch, next, disparity))
         return CONTRADICTED;
     next.frames = prediction.verdict == FIRST ? 1 : last.frames + 1;

@@ -51,34 +51,38 @@ struct ComparedRow
     const ushort *measured, *unmoved; // disparities, the second those of the frame before
 };
 
-//! What each pixel of a row takes, and what the frame before has for it
+//! What each pixel of a row takes, and what the camera's motion takes to it
 struct TemporalRow
 {
     explicit TemporalRow(int width)
-        : unmoved(width), moved(width), unmovedCounts(width), movedCounts(width), choices(width),
-          agrees(width + 2 * TemporalJoin::fringe), disparity(width), detail(width)
+        : disparity(width), detail(width), moved(width), different(width), compared(width), choices(width),
+          agrees(width + 2 * TemporalJoin::fringe)
     {
     }
-    std::vector<int> unmoved, moved; // disparities
-    std::vector<uchar> unmovedCounts, movedCounts, choices;
-    std::vector<uchar> agrees;     // memory; on both sides of the row are TemporalJoin::fringe elements of 0
-    std::vector<ushort> disparity; // of FrameMemory, where the motion comes from
-    std::vector<uchar> detail;
+    std::vector<ushort> disparity; // of FrameMemory, as they were
+    std::vector<uchar> detail;     // the same
+    std::vector<int> moved;        // disparities now, of the pixels or cells
+    std::vector<uchar> different;  // which sources of the cells have another disparity than the measured one
+    std::vector<int> compared;     // cells that have such sources
+    std::vector<uchar> choices;
+    std::vector<uchar> agrees; // memory; on both sides of the row are TemporalJoin::fringe elements of 0
 };
 
-//! Percent of the measured disparity's scale that another one may cost more, see TemporalEvidence
-struct ChoiceShares
+//! Which disparities of the frame before count as others, and what they may cost more: percent of the measured
+//! disparity's scale, see TemporalEvidence. Distances are in units of a map.
+struct ChoiceRule
 {
     enum
     {
         KEEPS = 128, // in a share: what is taken is KEPT
         PERCENT = 127
     };
-    int first;    // if the two disparities are near each other, and the one before is of a single frame,
-    int near;     // or of more frames
-    int apart;    // if not, per frame that has agreed with the one before; it is KEPT then
-    int maxCount; // frames that it may count for
-    int distance; // up to which they are near, in units of a map
+    int same;        // distance of disparities that are the same
+    int maxDistance; // maxSourceDistance
+    int near;        // distance from the measured one, up to which they are near
+    int firstShare;  // of one that is near, and of a single frame,
+    int nearShare;   // or of more frames
+    int apartShare;  // of one that is not, per frame that has agreed with it; it is KEPT then
 };
 
 //! How disparities are joined, in FrameMemory's units
@@ -95,10 +99,7 @@ the camera takes there, if the image looks the same where it comes from. One of 
 measured one has lower costs in the window around, clearly lower ones if the two are near each other. It moves towards
 the measured one if both agree, by less the more frames it stands for; if not, it stands for fewer frames, in the end
 for none, and the measured one is taken. If that is so for many of the pixels, the pair contradicts the last frame.
-@param cost The layer's census cost.
-@param last The last frame.
 @param prediction What predictFrame() found.
-@param scratch Memory to work in.
 @param next Receives what this frame leaves to the next one; nothing if the image is smaller than a cell, or the pair
 contradicts the last frame.
 @param disparity CV_16UC1, a disparity map; changed if the frame continues.

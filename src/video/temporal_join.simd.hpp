@@ -10,20 +10,8 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** A row of the frame before as joinRow() takes it.
-@param disparity FrameMemory's.
-@param detail FrameMemory's.
-@param width Number of pixels.
-@param finer Receives the disparities in 1 / FrameMemory::scale pixel.
-@param counts Receives how many frames each stands for. */
-void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts);
-
-/** Disparities of the frame before become those of this one.
-@param change The camera's motion.
-@param y The row.
-@param step From a pixel to the next; the first one is 0.
-@param count Number of pixels.
-@param finer As of unpackRow(), changed. */
+/** Disparities of the frame before, in 1 / FrameMemory::scale pixel, become those of this one.
+@param step From a pixel of row y to the next; the first one is 0. */
 void changeDisparities(const DisparityChange& change, int y, int step, int count, int* finer);
 
 //! Adds a row times sign to columns.
@@ -31,52 +19,30 @@ void addEvidence(const short* row, int sign, int length, short* columns);
 
 /** Sums over TemporalJoin::window cells of a row.
 @param columns The first of the cells that the first sum is over.
-@param length Number of sums, EVIDENCE_CHANNELS per cell.
-@param sums Receives the sums. */
+@param length Number of sums, EVIDENCE_CHANNELS per cell. */
 void sumWindow(const short* columns, int length, short* sums);
 
-/** Compares the disparities of a row's cells. Two that are about the same count as one, the moved one; so do two that
-are far apart.
-@param measured Disparities of the pixels of the row.
-@param unmoved Those of the frame before at the same places.
-@param moved Those where the motion leads, of each cell, as of changeDisparities().
-@param count Number of cells.
-@param same Distance of disparities that are the same, in units of a map.
-@param maxDistance maxSourceDistance, in units of a map.
+/** Compares the disparities of the first pixels of a row's cells. Two of the frame before that are about the same count
+as one, the moved one; so do two that are far apart.
+@param measured,unmoved,unmovedDetail Of the pixels of the row; the last two are FrameMemory's.
+@param row Where the motion leads; moved: of each cell.
 @param sources What each cell may take.
 @param used Receives those of them that count.
-@param different Receives which of the sources have another disparity than the measured one. */
-void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int same,
-                        int maxDistance, const uchar* sources, uchar* used, uchar* different);
-
-/** Finds how much more the disparities of the frame before may cost than the measured ones.
-@param measured As of compareDisparities().
-@param unmoved As well.
-@param unmovedDetail FrameMemory's, of the same pixels.
-@param moved As of compareDisparities().
-@param movedDetail The same where the motion leads.
-@param count Number of cells.
-@param rule What they may.
-@param shares Receives two numbers per cell: percent of the unmoved one, and of the moved one. */
-void shareCells(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail, const int* moved,
-                const uchar* movedDetail, int count, const ChoiceShares& rule, uchar* shares);
+@param different Receives which of these have another disparity than the measured one.
+@param shares Receives how much more they may cost: percent of the unmoved one and of the moved one. */
+void compareDisparities(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail,
+                        const TemporalRow& row, int count, const ChoiceRule& rule, const uchar* sources, uchar* used,
+                        uchar* different, uchar* shares);
 
 /** Adds up what the pixels on the diagonals of cells tell, see TemporalEvidence.
-@param rows The rows of the cells.
-@param moved As of compareDisparities().
-@param different As well.
-@param cells The cells to compare.
-@param count Their number.
+@param row What moves there, and so many cells to compare: the others tell nothing.
 @param offset What a scale has beside the measured cost, per pixel.
 @param evidence Receives EVIDENCE_CHANNELS numbers per cell; those of other cells stay. */
-void compareCells(const ComparedRow* rows, const int* moved, const uchar* different, const int* cells, int count,
-                  int offset, short* evidence);
+void compareCells(const ComparedRow* rows, const TemporalRow& row, int count, int offset, short* evidence);
 
 /** Chooses for the cells of a row.
 @param sums Sums of the evidence over the window of each.
-@param sources What each may take.
-@param count Number of cells.
-@param shares What its disparities may cost more, of shareCells().
+@param sources,shares Those of compareDisparities() that are used.
 @param isStill Whether the camera is at rest.
 @param wrongShare What a disparity costs more that contradicts the frame before, in percent.
 @param choices Receives a TemporalChoice of each.
@@ -85,14 +51,11 @@ int chooseCells(const short* sums, const uchar* sources, const uchar* shares, in
                 uchar* choices);
 
 /** Joins a row of measured disparities with those of the frame before.
-@param measured The measured ones.
-@param rows What the frame before has.
-@param width Number of pixels.
-@param rule How to join them.
-@param disparity Receives FrameMemory::disparity.
-@param detail Receives FrameMemory::detail. */
-void joinRow(const ushort* measured, TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
-             uchar* detail);
+@param unmoved,unmovedDetail FrameMemory's of the frame before, of the same pixels.
+@param row The choices, and where the motion leads.
+@param disparity,detail Receive FrameMemory's of this frame. */
+void joinRow(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail, TemporalRow& row, int width,
+             const JoinRule& rule, ushort* disparity, uchar* detail);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -116,11 +79,19 @@ template <int planes> inline int costOf(const ComparedRow& row, int x, int dispa
     return countBits(censusDifference<planes>(row.left + 4 * x, row.right - x + candidate, row.planeStride));
 }
 
+//! What a disparity at a distance from the measured one may cost more, and whether it is KEPT then
+CV_ALWAYS_INLINE int shareOf(const ChoiceRule& rule, int distance, int detail)
+{
+    const int agreed = std::max((detail & FrameMemory::countMask) - 1, 0); // joinRow() limits it
+    const int ofNear = choose(agreed > 0, rule.nearShare, rule.firstShare);
+    return choose(distance <= rule.near, ofNear, rule.apartShare * agreed | ChoiceRule::KEEPS);
+}
+
 //! What a cell takes, of its sums over the window. isStill: 0 or 1
 inline int choiceOf(const short* sums, int sources, int isStill, int shareOfUnmoved, int shareOfMoved)
 {
-    const int unmovedShare = shareOfUnmoved & ChoiceShares::PERCENT, movedShare = shareOfMoved & ChoiceShares::PERCENT;
-    const int unmovedKept = shareOfUnmoved & ChoiceShares::KEEPS, movedKept = shareOfMoved & ChoiceShares::KEEPS;
+    const int unmovedShare = shareOfUnmoved & ChoiceRule::PERCENT, movedShare = shareOfMoved & ChoiceRule::PERCENT;
+    const int unmovedKept = shareOfUnmoved & ChoiceRule::KEEPS, movedKept = shareOfMoved & ChoiceRule::KEEPS;
     const int unmoved = sums[COST_UNMOVED], moved = sums[COST_MOVED];
     const int scaleUnmoved = sums[SCALE_UNMOVED], scaleMoved = sums[SCALE_MOVED];
     const int hasUnmoved = sources & 1, hasMoved = (sources >> 1) & (isStill ^ 1);
@@ -128,17 +99,16 @@ inline int choiceOf(const short* sums, int sources, int isStill, int shareOfUnmo
     const int scale = choose(isStill, scaleUnmoved, std::max(scaleUnmoved, scaleMoved));
     const int takesUnmoved = hasUnmoved & (100 * (unmoved - best) <= unmovedShare * scale);
     const int takesMoved = hasMoved & (100 * moved <= movedShare * scaleMoved);
-    static_assert(ChoiceShares::KEEPS == KEPT << 5, "One bit becomes the other.");
+    static_assert(ChoiceRule::KEEPS == KEPT << 5, "One bit becomes the other.");
     return choose(takesUnmoved, UNMOVED | unmovedKept >> 5, takesMoved * (MOVED | movedKept >> 5));
 }
 
 template <int planes>
-void compareCellsOf(const ComparedRow* rows, const int* moved, const uchar* different, const int* cells, int count,
-                    int offset, short* evidence)
+void compareCellsOf(const ComparedRow* rows, const TemporalRow& row, int count, int offset, short* evidence)
 {
     for (int k = 0; k < count; ++k)
     {
-        const int j = cells[k], sources = different[j], movedHere = moved[j] >> FrameMemory::detailBits;
+        const int j = row.compared[k], sources = row.different[j], movedHere = row.moved[j] >> FrameMemory::detailBits;
         int unmovedCost = 0, movedCost = 0, scale = 0;
         for (int i = 0; i < FrameMemory::cell; ++i)
         {
@@ -159,21 +129,12 @@ void compareCellsOf(const ComparedRow* rows, const int* moved, const uchar* diff
 
 } // namespace
 
-void unpackRow(const ushort* disparity, const uchar* detail, int width, int* finer, uchar* counts)
-{
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
-    {
-        finer[x] = FrameMemory::finer(disparity[x], detail[x]);
-        counts[x] = (uchar)(detail[x] & FrameMemory::countMask);
-    }
-}
-
 void changeDisparities(const DisparityChange& change, int y, int step, int count, int* finer)
 {
     const DisparityChange c = change;
-    const float rowFactor = c.ofRow(y), columnFactor = c.ofX * step, unit = 1.f / FrameMemory::scale;
+    const float unit = 1.f / FrameMemory::scale, stepX = (float)step;
     HDP_VECTORIZED for (int i = 0; i < count; ++i) finer[i] =
-        (int)(c.now(finer[i] * unit, i * columnFactor + rowFactor) * FrameMemory::scale);
+        (int)(c.now(finer[i] * unit, i * stepX, (float)y) * FrameMemory::scale);
 }
 
 void addEvidence(const short* row, int sign, int length, short* columns)
@@ -190,47 +151,34 @@ void sumWindow(const short* columns, int length, short* sums)
                 columns[i + 5 * c] + columns[i + 6 * c]);
 }
 
-void compareDisparities(const ushort* measured, const ushort* unmoved, const int* moved, int count, int same,
-                        int maxDistance, const uchar* sources, uchar* used, uchar* different)
+void compareDisparities(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail,
+                        const TemporalRow& row, int count, const ChoiceRule& rule, const uchar* sources, uchar* used,
+                        uchar* different, uchar* shares)
 {
+    const ChoiceRule r = rule; // as stores may alias it
+    const int* const moved = row.moved.data();
+    const uchar* const movedDetail = row.detail.data();
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
-        const int here = measured[j * FrameMemory::cell], there = unmoved[j * FrameMemory::cell];
-        const int where = moved[j] >> FrameMemory::detailBits, distance = std::abs(there - where);
-        const int hasMoved = sources[j] & MOVED_PLACE, isOther = (distance > same) & (distance <= maxDistance);
+        const int first = j * FrameMemory::cell;
+        const int here = measured[first], there = unmoved[first], where = moved[j] >> FrameMemory::detailBits;
+        const int hasMoved = sources[j] & MOVED_PLACE, distance = std::abs(there - where);
+        const int isOther = (distance > r.same) & (distance <= r.maxDistance);
         const int hasUnmoved = sources[j] & choose(hasMoved == 0, SAME_PLACE, isOther);
+        const int ofUnmoved = std::abs(there - here), ofMoved = std::abs(where - here);
         used[j] = (uchar)(hasUnmoved | hasMoved);
-        different[j] =
-            (uchar)((hasUnmoved & -(std::abs(there - here) > same)) | (hasMoved & -(std::abs(where - here) > same)));
+        different[j] = (uchar)((hasUnmoved & -(ofUnmoved > r.same)) | (hasMoved & -(ofMoved > r.same)));
+        shares[2 * j] = (uchar)shareOf(r, ofUnmoved, unmovedDetail[first]);
+        shares[2 * j + 1] = (uchar)shareOf(r, ofMoved, movedDetail[first]);
     }
 }
 
-void compareCells(const ComparedRow* rows, const int* moved, const uchar* different, const int* cells, int count,
-                  int offset, short* evidence)
+void compareCells(const ComparedRow* rows, const TemporalRow& row, int count, int offset, short* evidence)
 {
     const auto compare = rows[0].planes == 3   ? &compareCellsOf<3>
                          : rows[0].planes == 2 ? &compareCellsOf<2>
                                                : &compareCellsOf<1>;
-    compare(rows, moved, different, cells, count, offset, evidence);
-}
-
-void shareCells(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail, const int* moved,
-                const uchar* movedDetail, int count, const ChoiceShares& rule, uchar* shares)
-{
-    const int first = rule.first, near = rule.near, apart = rule.apart, keeps = ChoiceShares::KEEPS;
-    const int maxCount = rule.maxCount, maxDistance = rule.distance;
-    HDP_VECTORIZED for (int j = 0; j < count; ++j)
-    {
-        const int here = measured[j * FrameMemory::cell], there = unmoved[j * FrameMemory::cell];
-        const int where = moved[j] >> FrameMemory::detailBits;
-        const int unmovedCount = std::min(unmovedDetail[j * FrameMemory::cell] & FrameMemory::countMask, maxCount);
-        const int movedCount = std::min(movedDetail[j * FrameMemory::cell] & FrameMemory::countMask, maxCount);
-        const int unmovedAgreed = std::max(unmovedCount - 1, 0), movedAgreed = std::max(movedCount - 1, 0);
-        shares[2 * j] = (uchar)choose(std::abs(there - here) <= maxDistance, choose(unmovedAgreed > 0, near, first),
-                                      apart * unmovedAgreed | keeps);
-        shares[2 * j + 1] = (uchar)choose(std::abs(where - here) <= maxDistance, choose(movedAgreed > 0, near, first),
-                                          apart * movedAgreed | keeps);
-    }
+    compare(rows, row, count, offset, evidence);
 }
 
 int chooseCells(const short* sums, const uchar* sources, const uchar* shares, int count, bool isStill, int wrongShare,
@@ -248,15 +196,14 @@ int chooseCells(const short* sums, const uchar* sources, const uchar* shares, in
     return contradicting;
 }
 
-void joinRow(const ushort* measured, TemporalRow& row, int width, const JoinRule& rule, ushort* disparity,
-             uchar* detail)
+void joinRow(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail, TemporalRow& row, int width,
+             const JoinRule& rule, ushort* disparity, uchar* detail)
 {
     const int tolerance = rule.tolerance, maxStep = rule.maxStep;
     const int maxWeight = rule.maxWeight, maxCount = rule.maxCount;
     const int half = 1 << (FrameMemory::detailBits - 1);
-    const int *unmoved = row.unmoved.data(), *moved = row.moved.data();
-    const uchar *unmovedCounts = row.unmovedCounts.data(), *movedCounts = row.movedCounts.data();
-    const uchar* choices = row.choices.data();
+    const int* const moved = row.moved.data();
+    const uchar *const movedDetail = row.detail.data(), *const choices = row.choices.data();
     uchar* const agreesMoved = row.agrees.data() + TemporalJoin::fringe;
     static_assert(TemporalJoin::fringe == 2, "There are as many terms on each side.");
     static_assert(TemporalJoin::maxWeight == 4, "There are as many shares.");
@@ -271,8 +218,10 @@ void joinRow(const ushort* measured, TemporalRow& row, int width, const JoinRule
         const int place = choices[x] & PLACES, isFringe = (place == MOVED) & isBeside & (agreesMoved[x] ^ 1);
         const int here = measured[x] << FrameMemory::detailBits, choice = choose(isFringe, MEASURED, place),
                   isMoved = choice == MOVED;
-        const int there = choose(isMoved, moved[x], unmoved[x]), difference = here - there;
-        const int count = choose(isMoved, movedCounts[x], unmovedCounts[x]) & -(choice != MEASURED);
+        const int there = choose(isMoved, moved[x], FrameMemory::finer(unmoved[x], unmovedDetail[x]));
+        const int count =
+            choose(isMoved, movedDetail[x], unmovedDetail[x]) & FrameMemory::countMask & -(choice != MEASURED);
+        const int difference = here - there;
         const int limited = std::max(std::min(difference, maxStep), -maxStep);
         const int weight = std::min(count, maxWeight);
         // 2^16 / (weight + 1)

@@ -41,18 +41,14 @@ frame is the first one if nothing is remembered, at another size, with dispariti
 another scene.
 @param left The left image of the finest layer that is matched, see greyLevels().
 @param key What this layer's disparities will stand for.
-@param last What the last frame left.
-@param scratch Memory to work in.
-@param prediction Receives all that is known. */
+@param last What the last frame left. */
 CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
                              FramePrediction& prediction);
 
 /** Finds what each cell may take from the last frame: what looks different where the motion leads, by more than noise
 and by about the contrast, is something else. Changes and contrasts are means over the squares around a cell.
-@param before FrameMemory::grey[0] of the last frame.
-@param now That of this frame.
+@param before,now FrameMemory::grey[0] of the last frame and of this one.
 @param warp Where its pixels were; none if the camera stands still: what looks the same is at the same place then.
-@param scratch Memory to work in.
 @param sources CV_8UC1, receives TemporalSource of each cell. */
 CV_EXPORTS void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch,
                             Mat& sources);

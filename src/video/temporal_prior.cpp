@@ -4,8 +4,6 @@
 #include "../precomp.hpp"
 #include "temporal_prior.hpp"
 
-#include <numeric>
-
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
@@ -18,20 +16,18 @@ HDP_TUNABLE(int, maxPenalty, 6, "bits",
 //! Whether more than one pair has had a disparity
 bool isConfirmed(const FrameMemory& last, int x, int y) { return (last.detail.ptr(y)[x] & FrameMemory::countMask) > 1; }
 
-//! The disparity that the last frame predicts for a pixel, in pixels; false if there is none.
-bool predict(const FrameMemory& last, const FramePrediction& p, int x, int y, float& disparity)
+//! The disparity that the last frame predicts for a pixel, in pixels; negative if there is none
+float predict(const FrameMemory& last, const FramePrediction& p, int x, int y)
 {
-    const float unit = 1.f / subpixelScale, unmoved = last.disparity.ptr<ushort>(y)[x] * unit;
+    const float unit = 1.f / subpixelScale, unmoved = last.disparity.at<ushort>(y, x) * unit, none = -1;
     const int cell = FrameMemory::cell, i = std::min(y / cell, p.sources.rows - 1);
     const int sources = p.sources.ptr(i)[std::min(x / cell, p.sources.cols - 1)];
-    disparity = unmoved;
     if (!(sources & MOVED_PLACE))
-        return sources != 0 && isConfirmed(last, x, y);
-    const DisparityChange& change = p.backward.change();
+        return sources != 0 && isConfirmed(last, x, y) ? unmoved : none;
     const Point from = p.warp(x, y);
-    disparity = change.now(last.disparity.ptr<ushort>(from.y)[from.x] * unit, change.ofX * x + change.ofRow(y));
-    const bool isClear = !(sources & SAME_PLACE) || p.key.scale * std::abs(disparity - unmoved) <= maxSourceDistance;
-    return isClear && isConfirmed(last, from.x, from.y);
+    const float moved = p.backward.change.now(last.disparity.at<ushort>(from) * unit, (float)x, (float)y);
+    const bool isClear = !(sources & SAME_PLACE) || p.key.scale * std::abs(moved - unmoved) <= maxSourceDistance;
+    return isClear && isConfirmed(last, from.x, from.y) ? moved : none;
 }
 
 //! The first candidate of those of the lowest cost
@@ -58,31 +54,24 @@ void predictDisparities(const FrameMemory& last, const FramePrediction& predicti
         float* const row = predicted.ptr<float>(y);
         for (int x = 0; x < size.width; ++x)
         {
-            float disparity;
             const int centreX = std::min(x * side + side / 2, last.disparity.cols - 1);
-            row[x] = predict(last, prediction, centreX, centreY, disparity) ? disparity / side : -1;
+            const float disparity = predict(last, prediction, centreX, centreY);
+            row[x] = disparity < 0 ? -1 : disparity / side;
         }
     });
 }
 
 bool refusesLastFrame(const CostVolume& volume, Mat& predicted)
 {
-    std::vector<int> known(volume.size.height), refused(volume.size.height);
+    const int64 known = countNonZero(predicted >= 0);
     parallelFor(volume.size.height, [&](int y) {
         float* const row = predicted.ptr<float>(y);
         for (int x = 0; x < volume.size.width; ++x)
-        {
-            if (row[x] < 0)
-                continue;
-            ++known[y];
-            if (!CostPreference::isContradicted(y * volume.size.width + x, row[x], volume))
-                continue;
-            ++refused[y];
-            row[x] = -1;
-        }
+            if (row[x] >= 0 && CostPreference::isContradicted(y * volume.size.width + x, row[x], volume))
+                row[x] = -1;
     });
-    const int64 all = std::accumulate(known.begin(), known.end(), (int64)0);
-    return 100 * std::accumulate(refused.begin(), refused.end(), (int64)0) > maxRefused * all;
+    const int64 refused = known - countNonZero(predicted >= 0);
+    return 100 * refused > maxRefused * known;
 }
 
 void preferPredicted(const Mat& predicted, CostVolume& volume)

@@ -16,7 +16,6 @@ CV_EXPORTS bool hasPrior(const FrameMemory& last, const FramePrediction& predict
 /** The disparities that the last frame predicts for the pixels of a volume: those that more than one pair has had, as a
 single pair is wrong as often as this one. Where the image stands still and looks moved as well, with different
 disparities, it predicts none.
-@param last The last frame.
 @param prediction What predictFrame() found; the frame continues.
 @param side That of the volume's pixels, in pixels of the layer that the prediction is of.
 @param size That of the volume.
@@ -30,15 +29,12 @@ another one is much better.
 @param predicted The disparities; those of such pixels are taken away. */
 CV_EXPORTS bool refusesLastFrame(const CostVolume& volume, Mat& predicted);
 
-/** P(D_t | D_(t-1)): raises the costs of disparities other than the predicted one, see CostPreference.
-@param predicted The disparities; see hasPrior().
-@param volume The costs, changed. */
+//! P(D_t | D_(t-1)): raises the costs of disparities other than the predicted one, see CostPreference and hasPrior().
 CV_EXPORTS void preferPredicted(const Mat& predicted, CostVolume& volume);
 
 /** What the winners will be, without scanlines: the predicted disparities, and the lowest costs beside them.
-@param predicted The disparities.
-@param volume The costs; each pixel has candidates.
-@param winners CV_16UC1, receives a disparity map. */
+@param volume Its pixels have candidates.
+@param winners Receives a disparity map. */
 CV_EXPORTS void predictWinners(const Mat& predicted, const CostVolume& volume, Mat& winners);
 
 }}} // namespace cv::stereo::hdp
