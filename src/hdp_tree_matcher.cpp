@@ -10,7 +10,6 @@
 #include "pair/image_levels.hpp"
 #include "pair/missing_pixels.hpp"
 #include "range_search.hpp"
-#include "video/temporal_confidence.hpp"
 #include "video/temporal_prior.hpp"
 
 #include <limits>

@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "synthetic_video.hpp"
-#include "../src/video/temporal_confidence.hpp"
+#include "../src/video/temporal_join.hpp"
 
 namespace opencv_test { namespace {
 

@@ -11,7 +11,7 @@
 #include "../scanlines/range_scanlines.hpp"
 #include "../scanlines/scanline_aggregation.hpp"
 #include "../scanlines/volume_scanlines.hpp"
-#include "../video/verdict.hpp"
+#include "../video/frame_memory.hpp"
 #include "matcher_parameters.hpp"
 #include "pair_inputs.hpp"
 #include "pair_model.hpp"

@@ -6,9 +6,23 @@
 
 #include "../base/units.hpp"
 #include "camera_motion.hpp"
-#include "verdict.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
+
+//! What a frame is to the one before
+enum Verdict
+{
+    FIRST,       // a video begins: no last frame is known, or it shows another scene
+    CONTINUED,   // it shows the scene of the last frame
+    CONTRADICTED // its disparities contradict those of the last frame: one of the two pairs was a wrong one
+};
+
+//! What of a video the matching of a frame depends on
+struct VideoFindings
+{
+    Verdict verdict;
+    bool hasPrior; // the last frame predicts disparities, see hasPrior()
+};
 
 //! What the disparities of a map stand for; only maps of the same key are compared.
 struct FrameKey

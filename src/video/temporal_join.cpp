@@ -6,6 +6,7 @@
 #include "temporal_join.simd.hpp"
 #include "video/temporal_join.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -249,6 +250,24 @@ Verdict joinLastFrame(const CensusCost& cost, const FrameMemory& last, const Fra
     for (size_t level = 0; level < next.grey.size(); ++level)
         prediction.grey[level].copyTo(next.grey[level]);
     return prediction.verdict;
+}
+
+void trustStable(const FrameMemory& frame, Mat& confidence)
+{
+    if (frame.detail.size() != confidence.size()) // of a layer that is smaller than a cell nothing is left
+        return;
+    double most;
+    const Mat counts = frame.detail & Scalar(FrameMemory::countMask);
+    minMaxLoc(counts, nullptr, &most);
+    float factors[FrameMemory::countMask + 1];
+    for (int count = 0; count <= FrameMemory::countMask; ++count)
+        factors[count] = std::sqrt((float)(count + 1) / (float)(most + 1));
+    parallelFor(confidence.rows, [&](int y) {
+        const uchar* const ofRow = counts.ptr(y);
+        uchar* const row = confidence.ptr(y);
+        for (int x = 0; x < confidence.cols; ++x)
+            row[x] = (uchar)((float)row[x] * factors[ofRow[x]] + 0.5f);
+    });
 }
 
 }}} // namespace cv::stereo::hdp

@@ -107,6 +107,12 @@ contradicts the last frame.
 CV_EXPORTS Verdict joinLastFrame(const CensusCost& cost, const FrameMemory& last, const FramePrediction& prediction,
                                  VideoScratch& scratch, FrameMemory& next, Mat& disparity);
 
+/** Trusts what a video has seen for long: confidence v sqrt((n + 1) / (m + 1)), rounded, where n is the number of
+frames that a disparity stands for and m the largest one of all pixels. A first frame keeps its confidence.
+@param frame What the frame leaves to the next one.
+@param confidence CV_8UC1 of its disparities, changed. */
+CV_EXPORTS void trustStable(const FrameMemory& frame, Mat& confidence);
+
 }}} // namespace cv::stereo::hdp
 
 #endif
