@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "raw_pair.hpp"
 
-#include "../src/rig/rectification.hpp"
 #include "calibration_texts.hpp"
 #include "helpers.hpp"
 
@@ -133,11 +132,8 @@ TEST(HDPStereo_StereoRig, masksWhatNoRawPixelReaches)
 //! A lens whose polynomial turns back at r = sqrt(1 / 0.9): it would show the picture's middle again.
 TEST(HDPStereo_StereoRig, masksWhereTheDistortionFoldsBack)
 {
-    const Mat lens = (Mat_<double>(1, 4) << -0.3, 0, 0, 0);
-    EXPECT_NEAR(std::atan(std::sqrt(1 / 0.9)), hdp::maxUnfoldedAngle(lens, false), 0.002);
-    EXPECT_NEAR(89.9 * CV_PI / 180, hdp::maxUnfoldedAngle(Mat::zeros(1, 4, CV_64F), true), 1e-9);
     StereoCalibration c = makeCalibration(4);
-    c.distCoeffs1 = c.distCoeffs2 = lens;
+    c.distCoeffs1 = c.distCoeffs2 = (Mat_<double>(1, 4) << -0.3, 0, 0, 0);
     Mat left, right, R1, R2, P1, P2, Q;
     const Ptr<StereoRig> rig = StereoRig::create(c, 160, Size(800, 600));
     rig->getMasks(left, right);
@@ -147,9 +143,23 @@ TEST(HDPStereo_StereoRig, masksWhereTheDistortionFoldsBack)
         for (int x = 0; x < left.cols; x += 7)
         {
             const Vec3d ray = toCamera * Vec3d(x, y, 1);
-            const bool isBeyond = ray[0] * ray[0] + ray[1] * ray[1] > 1.15 * ray[2] * ray[2] || ray[2] < 0;
-            EXPECT_FALSE(isBeyond && left.at<uchar>(y, x)) << x << ", " << y;
+            const double u = ray[0] / ray[2], v = ray[1] / ray[2], square = u * u + v * v;
+            const Vec3d raw = Matx33d(c.cameraMatrix1) * Vec3d(u * (1 - 0.3 * square), v * (1 - 0.3 * square), 1);
+            const bool isInside = Rect(1, 1, 478, 358).contains(Point(cvRound(raw[0]), cvRound(raw[1])));
+            EXPECT_FALSE((square > 1.12 || ray[2] < 0) && left.at<uchar>(y, x)) << x << ", " << y;
+            EXPECT_FALSE(square < 1.1 && ray[2] > 0 && isInside && !left.at<uchar>(y, x)) << x << ", " << y;
         }
+}
+
+TEST(HDPStereo_StereoRig, showsAllOfALensThatDoesNotFoldBack)
+{
+    StereoCalibration c = makeCalibration(4, true);
+    c.cameraMatrix1 = c.cameraMatrix2 = (Mat_<double>(3, 3) << 150, 0, 240, 0, 150, 180, 0, 0, 1);
+    c.distCoeffs1 = c.distCoeffs2 = Mat::zeros(1, 4, CV_64F);
+    Mat left, right;
+    StereoRig::create(c, 170, Size(800, 100))->getMasks(left, right); // the raw image is of 180 degrees
+    EXPECT_EQ(left.total(), (size_t)cv::countNonZero(left));
+    EXPECT_EQ(right.total(), (size_t)cv::countNonZero(right));
 }
 
 TEST(HDPStereo_StereoRig, rectifiesAllTypesOfImages)

@@ -5,13 +5,43 @@
 #include "opencv2/hdpstereo/stereo_rig.hpp"
 
 #include "calibration_check.hpp"
-#include "rectification.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace cv { namespace stereo {
 
 namespace {
+
+const int zeroDisparity = 0x400; // CALIB_ZERO_DISPARITY, which OpenCV 5 calls STEREO_ZERO_DISPARITY
+
+//! Of a point at this angle from the optical axis; k: coefficients of the distortion, 0 where there are less than 8
+double radialDistance(const double* k, bool isFisheye, double angle)
+{
+    const double r = isFisheye ? angle : std::tan(angle), s = r * r;
+    if (isFisheye)
+        return r * (1 + s * (k[0] + s * (k[1] + s * (k[2] + s * k[3]))));
+    const double above = 1 + s * (k[0] + s * (k[1] + s * k[4])), below = 1 + s * (k[5] + s * (k[6] + s * k[7]));
+    return below > 0 ? r * above / below : -1;
+}
+
+//! The largest angle from the optical axis up to which the distortion keeps the order of points: beyond it a polynomial
+//! folds back, and shows what is not there. In radians, not above 89.9 degrees.
+double maxUnfoldedAngle(const Mat& distortion, bool isFisheye)
+{
+    double k[14] = { 0 };
+    std::copy(distortion.begin<double>(), distortion.end<double>(), k);
+    const double step = 0.1 * CV_PI / 180;
+    double before = 0;
+    for (int i = 1; i <= 899; ++i)
+    {
+        const double distance = radialDistance(k, isFisheye, i * step);
+        if (!(distance > before))
+            return (i - 1) * step;
+        before = distance;
+    }
+    return 899 * step;
+}
 
 //! Of each disparity in pixels, CV_32FC1; 0 if there is none
 Mat depthOf(const Mat& disparity, double focalTimesBaseline, double smallest)
@@ -30,11 +60,13 @@ Mat depthOf(const Mat& disparity, double focalTimesBaseline, double smallest)
 class StereoRigImpl CV_FINAL : public StereoRig
 {
 public:
+    //! The calibration is a checked one.
     StereoRigImpl(const StereoCalibration& calibration, double fieldOfView, Size size)
-        : calibration_(calibration), rectification_(hdp::planRectification(calibration, fieldOfView, size))
+        : calibration_(calibration), size_(size), baseline_(norm(calibration.T))
     {
+        chooseCameras(fieldOfView);
         for (int camera = 0; camera < 2; ++camera)
-            hdp::makeMaps(calibration_, rectification_, camera, maps_[camera]);
+            makeMaps(camera);
     }
 
     void rectify(InputArray left, InputArray right, OutputArray rectifiedLeft,
@@ -48,16 +80,16 @@ public:
             CV_Error(Error::StsUnmatchedFormats, "left and right must be of one type");
         Mat rectified[2];
         for (int camera = 0; camera < 2; ++camera)
-            remap(raw[camera], rectified[camera], maps_[camera].positions, maps_[camera].fractions, INTER_LINEAR,
-                  BORDER_CONSTANT, Scalar());
+            remap(raw[camera], rectified[camera], positions_[camera], fractions_[camera], INTER_LINEAR, BORDER_CONSTANT,
+                  Scalar());
         rectified[0].copyTo(rectifiedLeft);
         rectified[1].copyTo(rectifiedRight);
     }
 
     void getMasks(OutputArray left, OutputArray right) const CV_OVERRIDE
     {
-        maps_[0].mask.copyTo(left);
-        maps_[1].mask.copyTo(right);
+        masks_[0].copyTo(left);
+        masks_[1].copyTo(right);
     }
 
     void computeDepth(InputArray disparityArray, OutputArray depth, int depthType, int minDisparity) const CV_OVERRIDE
@@ -68,28 +100,23 @@ public:
             CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1");
         if (depthType != CV_32F && depthType != CV_16U)
             CV_Error(Error::StsBadArg, "depthType must be CV_32F or CV_16U");
-        const double product = rectification_.focalLength * rectification_.baseline;
         Mat pixels;
         disparity.convertTo(pixels, CV_32F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
-        const Mat metres = depthOf(pixels, product, minDisparity);
-        Mat result = metres;
+        const Mat metres = depthOf(pixels, focalLength_ * baseline_, minDisparity);
+        metres.convertTo(depth, depthType, depthType == CV_16U ? 1000 : 1);
         if (depthType == CV_16U)
-        {
-            metres.convertTo(result, CV_16U, 1000);
-            result.setTo(0, metres > 65.535);
-        }
+            depth.setTo(Scalar(0), metres > 65.535);
         else
-            result.setTo(std::numeric_limits<float>::quiet_NaN(), metres == 0);
-        result.copyTo(depth);
+            depth.setTo(Scalar(std::numeric_limits<float>::quiet_NaN()), metres == 0);
     }
 
     void getRectification(OutputArray R1, OutputArray R2, OutputArray P1, OutputArray P2,
                           OutputArray Q) const CV_OVERRIDE
     {
-        const double f = rectification_.focalLength, B = rectification_.baseline;
-        const Point2d c = rectification_.center;
-        Mat(rectification_.R[0]).copyTo(R1);
-        Mat(rectification_.R[1]).copyTo(R2);
+        const double f = focalLength_, B = baseline_;
+        const Point2d c = center_;
+        Mat(R_[0]).copyTo(R1);
+        Mat(R_[1]).copyTo(R2);
         Mat(Matx34d(f, 0, c.x, 0, 0, f, c.y, 0, 0, 0, 1, 0)).copyTo(P1);
         Mat(Matx34d(f, 0, c.x, -f * B, 0, f, c.y, 0, 0, 0, 1, 0)).copyTo(P2);
         Mat(Matx44d(1, 0, 0, -c.x, 0, 1, 0, -c.y, 0, 0, 0, f, 0, 0, 1 / B, 0)).copyTo(Q);
@@ -104,11 +131,72 @@ public:
         return copy;
     }
 
-    Size getSize() const CV_OVERRIDE { return rectification_.size; }
-    double getBaseline() const CV_OVERRIDE { return rectification_.baseline; }
-    double getFocalLength() const CV_OVERRIDE { return rectification_.focalLength; }
+    Size getSize() const CV_OVERRIDE { return size_; }
+    double getBaseline() const CV_OVERRIDE { return baseline_; }
+    double getFocalLength() const CV_OVERRIDE { return focalLength_; }
 
 private:
+    //! The rectified cameras: both have one focal length and one principal point.
+    void chooseCameras(double fieldOfView)
+    {
+        const StereoCalibration& c = calibration_;
+        Mat R1, R2, P1, P2, Q;
+        // Rotations depend on no distortion; the focal length by which all pixels are filled does.
+        const Mat straight = Mat::zeros(1, 4, CV_64F);
+        const bool fills = fieldOfView == 0 && !c.isFisheye;
+        stereoRectify(c.cameraMatrix1, fills ? c.distCoeffs1 : straight, c.cameraMatrix2,
+                      fills ? c.distCoeffs2 : straight, c.imageSize, c.R, c.T, R1, R2, P1, P2, Q, zeroDisparity,
+                      fills ? 0 : -1, size_);
+        R_[0] = R1;
+        R_[1] = R2;
+        center_ = Point2d(0.5 * (size_.width - 1), 0.5 * (size_.height - 1));
+        if (fills)
+        {
+            focalLength_ = P1.at<double>(0, 0);
+            center_ = Point2d(P1.at<double>(0, 2), P1.at<double>(1, 2));
+        }
+        else if (fieldOfView > 0)
+            focalLength_ = 0.5 * size_.width / std::tan(0.5 * fieldOfView * CV_PI / 180);
+        else
+            focalLength_ = 0.5 * (c.cameraMatrix1.at<double>(0, 0) + c.cameraMatrix2.at<double>(0, 0)) * size_.width /
+                           c.imageSize.width;
+        const double most = 1e6;
+        if (!(focalLength_ > 1 && focalLength_ < most && std::abs(center_.x) < most && std::abs(center_.y) < most))
+            CV_Error(Error::StsBadArg,
+                     "fieldOfView must be given: with this distortion nothing else tells the size of what "
+                     "both cameras see. Is the calibration right?");
+    }
+
+    //! Where the pixels of a rectified image are in the raw one
+    void makeMaps(int camera)
+    {
+        const StereoCalibration& c = calibration_;
+        const Mat &K = camera ? c.cameraMatrix2 : c.cameraMatrix1, &D = camera ? c.distCoeffs2 : c.distCoeffs1;
+        const Matx33d rectified(focalLength_, 0, center_.x, 0, focalLength_, center_.y, 0, 0, 1);
+        Mat x, y;
+        if (c.isFisheye)
+            fisheye::initUndistortRectifyMap(K, D, R_[camera], rectified, size_, CV_32FC1, x, y);
+        else
+            initUndistortRectifyMap(K, D, R_[camera], rectified, size_, CV_32FC1, x, y);
+
+        const double minCosine = std::cos(maxUnfoldedAngle(D, c.isFisheye));
+        const Matx33d toCamera = R_[camera].t() * rectified.inv();
+        Mat& mask = masks_[camera];
+        mask.create(size_, CV_8U);
+        for (int i = 0; i < size_.height; ++i)
+            for (int j = 0; j < size_.width; ++j)
+            {
+                const Vec3d ray = toCamera * Vec3d(j, i, 1);
+                float &u = x.at<float>(i, j), &v = y.at<float>(i, j);
+                const bool isReached = ray[2] > minCosine * norm(ray) && u >= 0 && u <= c.imageSize.width - 1 &&
+                                       v >= 0 && v <= c.imageSize.height - 1;
+                mask.at<uchar>(i, j) = isReached ? 255 : 0;
+                if (!isReached)
+                    u = v = -2; // outside: cv::remap leaves 0 there
+            }
+        convertMaps(x, y, positions_[camera], fractions_[camera], CV_16SC2);
+    }
+
     void checkImage(const Mat& image, const char* name) const
     {
         const Size size = calibration_.imageSize;
@@ -123,19 +211,15 @@ private:
     }
 
     const StereoCalibration calibration_;
-    const hdp::Rectification rectification_;
-    hdp::RectificationMaps maps_[2];
+    // Of the rectified cameras; the left one is the first of two
+    const Size size_;
+    const double baseline_; // metres
+    Matx33d R_[2];
+    double focalLength_;
+    Point2d center_;                  // principal point
+    Mat positions_[2], fractions_[2]; // for cv::remap: CV_16SC2, CV_16UC1
+    Mat masks_[2];                    // CV_8UC1: 255 where there is a raw pixel
 };
-
-hdp::CalibrationNames memberNames()
-{
-    const std::string c = "calibration: ";
-    return { c + "imageSize",
-             { { c + "cameraMatrix1", c + "cameraMatrix1", c + "distCoeffs1" },
-               { c + "cameraMatrix2", c + "cameraMatrix2", c + "distCoeffs2" } },
-             c + "R",
-             c + "T" };
-}
 
 } // namespace
 
@@ -143,7 +227,13 @@ Ptr<StereoRig> StereoRig::create(const StereoCalibration& calibration, double fi
 {
     CV_TRACE_FUNCTION();
     StereoCalibration checked = calibration;
-    hdp::checkCalibration(memberNames(), checked);
+    const std::string c = "calibration: ";
+    hdp::checkCalibration({ c + "imageSize",
+                            { { c + "cameraMatrix1", c + "cameraMatrix1", c + "distCoeffs1" },
+                              { c + "cameraMatrix2", c + "cameraMatrix2", c + "distCoeffs2" } },
+                            c + "R",
+                            c + "T" },
+                          checked);
     if (!(fieldOfView == 0 || (fieldOfView >= 1 && fieldOfView <= 170)))
         CV_Error(Error::StsOutOfRange, "fieldOfView must be 0, or from 1 to 170 degrees");
     if (size == Size())
