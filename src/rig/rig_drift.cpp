@@ -48,12 +48,22 @@ public:
     RigDriftImpl(const Matx33d& cameraMatrix, Size size, int memory)
         : K_(cameraMatrix), size_(size), memory_(memory), frames_(0), contradictions_(0)
     {
-        Matx<double, terms, terms> information;
-        for (const Point2d& place : places())
+        for (int i = 0; i < samples * samples; ++i)
+            places_.push_back(Point2d(((i % samples + 0.5) / samples - 0.5) * size.width,
+                                      ((i / samples + 0.5) / samples - 0.5) * size.height));
+        slopes_.resize(places_.size());
+        const double step = 1e-5; // a small turn
+        for (int term = 0; term < terms; ++term)
         {
-            slopes_.push_back(slopesAt(place));
-            information += slopes_.back() * slopes_.back().t();
+            Terms turn;
+            turn[term] = step;
+            const std::vector<double> after = rowsAt(turn), before = rowsAt(-turn);
+            for (size_t i = 0; i < places_.size(); ++i)
+                slopes_[i][term] = (after[i] - before[i]) / (2 * step);
         }
+        Matx<double, terms, terms> information;
+        for (const Terms& slopes : slopes_)
+            information += slopes * slopes.t();
         inverse_ = information.inv(DECOMP_SVD);
         for (int i = 0; i < terms; ++i)
             unit_[i] = std::sqrt(inverse_(i, i) * samples * samples);
@@ -73,12 +83,7 @@ public:
             frames_ = 0;
         }
         contradictions_ = 0;
-        if (++frames_ == 1)
-        {
-            mean_ = found;
-            variance_ = Terms();
-        }
-        const double count = std::min(frames_, memory_);
+        const double count = std::min(++frames_, memory_); // 1: this frame is all that counts
         for (int i = 0; i < terms; ++i)
         {
             const double difference = found[i] - mean_[i];
@@ -93,13 +98,12 @@ public:
     void getEstimate(std::vector<double>& values, std::vector<double>& deviations) const CV_OVERRIDE
     {
         const double degrees = 180 / CV_PI, units[] = { degrees, degrees, degrees, 100 };
-        const Terms deviation = standardDeviations();
         values.resize(terms);
         deviations.resize(terms);
         for (int i = 0; i < terms; ++i)
         {
             values[i] = mean_[i] * units[i];
-            deviations[i] = deviation[i] * units[i];
+            deviations[i] = standardDeviation(i) * units[i];
         }
     }
 
@@ -125,84 +129,59 @@ public:
     }
 
 private:
-    //! From the image's centre
-    std::vector<Point2d> places() const
+    //! By how much lower points appear than they would without the turn. Places: the columns where they are, and the
+    //! rows where they would be, as Findings::rows has them
+    std::vector<double> rowsAt(const Terms& turn) const
     {
-        std::vector<Point2d> result;
-        for (int i = 0; i < samples; ++i)
-            for (int j = 0; j < samples; ++j)
-                result.push_back(
-                    Point2d(((j + 0.5) / samples - 0.5) * size_.width, ((i + 0.5) / samples - 0.5) * size_.height));
-        return result;
-    }
-
-    //! By how much lower a point appears than it would without the turn. place: the column where it is, and the row
-    //! where it would be, as Findings::rows has it
-    double rowAt(const Matx33d& backward, double growth, Point2d place) const
-    {
-        const double x = place.x + 0.5 * (size_.width - 1), y = place.y + 0.5 * (size_.height - 1);
-        double seen = y;
-        for (int step = 0; step < 4; ++step)
+        const Matx33d backward = rotationOf(turn).t();
+        const double growth = 1 + turn[GROWTH];
+        std::vector<double> rows;
+        for (const Point2d& place : places_)
         {
-            const Vec3d ray((x - K_(0, 2)) / K_(0, 0) / (1 + growth), (seen - K_(1, 2)) / K_(1, 1) / (1 + growth), 1);
-            const Vec3d before = backward * ray;
-            seen += y - (K_(1, 1) * before[1] / before[2] + K_(1, 2));
+            const double x = place.x + 0.5 * (size_.width - 1), y = place.y + 0.5 * (size_.height - 1);
+            double seen = y;
+            for (int step = 0; step < 4; ++step)
+            {
+                const Vec3d ray((x - K_(0, 2)) / K_(0, 0) / growth, (seen - K_(1, 2)) / K_(1, 1) / growth, 1);
+                const Vec3d before = backward * ray;
+                seen += y - (K_(1, 1) * before[1] / before[2] + K_(1, 2));
+            }
+            rows.push_back(seen - y);
         }
-        return seen - y;
-    }
-
-    //! Of small turns
-    Terms slopesAt(Point2d place) const
-    {
-        const double step = 1e-5;
-        Terms slopes;
-        for (int i = 0; i < terms; ++i)
-        {
-            Terms turn;
-            turn[i] = step;
-            slopes[i] = (rowAt(rotationOf(turn).t(), turn[GROWTH], place) -
-                         rowAt(rotationOf(-turn).t(), -turn[GROWTH], place)) /
-                        (2 * step);
-        }
-        return slopes;
+        return rows;
     }
 
     //! Least squares over the image
     Terms fit(const std::vector<double>& rows) const
     {
-        const std::vector<Point2d> all = places();
         Terms turn;
         for (int step = 0; step < 5; ++step) // a turn of a degree is nearly linear
         {
-            const Matx33d backward = rotationOf(turn).t();
+            const std::vector<double> explained = rowsAt(turn);
             Terms sum;
-            for (size_t i = 0; i < all.size(); ++i)
+            for (size_t i = 0; i < places_.size(); ++i)
             {
-                const double u = all[i].x, v = all[i].y;
+                const double u = places_[i].x, v = places_[i].y;
                 const double row = rows[0] + rows[1] * u + rows[2] * v + rows[3] * u * v + rows[4] * v * v;
-                sum += slopes_[i] * (row - rowAt(backward, turn[GROWTH], all[i]));
+                sum += slopes_[i] * (row - explained[i]);
             }
             turn += inverse_ * sum;
         }
         return turn;
     }
 
-    //! Of a term, from frame to frame. The first guess counts as a frame.
-    double frameVariance(int term) const
+    //! Of a term in the mean of so many frames. The first guess of how it varies counts as a frame.
+    double deviationOf(int term, double frames) const
     {
-        const double count = std::min(frames_, memory_), guess = unit_[term] * frameDeviation;
-        return variance_[term] + guess * guess / count;
+        const double guess = unit_[term] * frameDeviation, model = unit_[term] * modelDeviation;
+        const double frameVariance = variance_[term] + guess * guess / std::min(frames_, memory_);
+        return std::sqrt(frameVariance / frames + model * model);
     }
 
-    double modelVariance(int term) const { return std::pow(unit_[term] * modelDeviation, 2); }
-
-    Terms standardDeviations() const
+    //! Of the mean of those that count
+    double standardDeviation(int term) const
     {
-        Terms result;
-        for (int i = 0; i < terms; ++i)
-            result[i] = frames_ ? std::sqrt(frameVariance(i) / std::min(frames_, memory_) + modelVariance(i))
-                                : std::numeric_limits<double>::infinity();
-        return result;
+        return frames_ ? deviationOf(term, std::min(frames_, memory_)) : std::numeric_limits<double>::infinity();
     }
 
     bool contradicts(const Terms& found) const
@@ -210,7 +189,7 @@ private:
         if (frames_ < firstFrames)
             return false;
         for (int i = 0; i < terms; ++i)
-            if (std::abs(found[i] - mean_[i]) > contradiction * std::sqrt(frameVariance(i) + modelVariance(i)))
+            if (std::abs(found[i] - mean_[i]) > contradiction * deviationOf(i, 1))
                 return true;
         return false;
     }
@@ -219,9 +198,8 @@ private:
     Terms certainTerms() const
     {
         Terms turn = mean_;
-        const Terms deviation = standardDeviations();
         for (const int i : { YAW, GROWTH })
-            if (std::abs(turn[i]) < certainty * deviation[i])
+            if (std::abs(turn[i]) < certainty * standardDeviation(i))
                 turn[i] = 0;
         return turn;
     }
@@ -229,7 +207,8 @@ private:
     const Matx33d K_; // of the rectified camera
     const Size size_;
     const int memory_;
-    std::vector<Terms> slopes_; // of the places
+    std::vector<Point2d> places_; // from the image's centre
+    std::vector<Terms> slopes_;   // of the places
     Matx<double, terms, terms> inverse_;
     Terms unit_; // standard deviation of a term, if rows have one of 1 pixel
     int frames_, contradictions_;
