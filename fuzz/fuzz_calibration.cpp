@@ -9,7 +9,7 @@
 // - the same files give another rig.
 #include "opencv2/hdpstereo.hpp"
 
-#include "../src/rig/calibration_files.hpp"
+#include "../src/rig/calibration_text.hpp"
 #include "input.hpp"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "calibration_texts.hpp"
 
-#include "../src/rig/calibration_files.hpp"
+#include "../src/rig/calibration_text.hpp"
 #include "helpers.hpp"
 
 #include <fstream>

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
-#include "calibration_files.hpp"
 #include "calibration_check.hpp"
+#include "calibration_text.hpp"
 
 #include <cmath>
 
@@ -20,12 +20,6 @@ struct Camera
     std::vector<double> distortion;
     bool isFisheye;
     CameraNames names;
-};
-
-struct NamedCalibration
-{
-    StereoCalibration calibration;
-    CalibrationNames names;
 };
 
 std::string nameOf(const CalibrationText& text, const std::string& path) { return "'" + text.file() + "': " + path; }
@@ -46,9 +40,9 @@ Size sizeOf(const CalibrationText& text, double width, double height, const std:
     return size;
 }
 
-//! text: that exceptions name
-NamedCalibration join(const CalibrationText& text, const Camera& left, const Camera& right, const Matx33d& R,
-                      const Vec3d& T, const std::string& rotation, const std::string& translation)
+//! text, rotation, translation: what exceptions name
+StereoCalibration join(const CalibrationText& text, const Camera& left, const Camera& right, const Matx33d& R,
+                       const Vec3d& T, const std::string& rotation, const std::string& translation)
 {
     if (left.size != right.size)
         CV_Error(Error::StsParseError,
@@ -56,9 +50,7 @@ NamedCalibration join(const CalibrationText& text, const Camera& left, const Cam
                         text.file().c_str(), right.size.width, right.size.height, left.size.width, left.size.height));
     if (left.isFisheye != right.isFisheye)
         CV_Error(Error::StsParseError, "'" + text.file() + "': one camera is a fisheye, the other one is not");
-    NamedCalibration result;
-    result.names = { "imageSize", { left.names, right.names }, rotation, translation };
-    StereoCalibration& calibration = result.calibration;
+    StereoCalibration calibration;
     calibration.imageSize = left.size;
     calibration.cameraMatrix1 = Mat(left.matrix, true);
     calibration.distCoeffs1 = Mat(left.distortion, true);
@@ -67,7 +59,8 @@ NamedCalibration join(const CalibrationText& text, const Camera& left, const Cam
     calibration.R = Mat(R, true);
     calibration.T = Mat(T, true);
     calibration.isFisheye = left.isFisheye;
-    return result;
+    checkCalibration({ "imageSize", { left.names, right.names }, rotation, translation }, calibration);
+    return calibration;
 }
 
 //! A pose as a matrix of 4 x 4
@@ -116,7 +109,7 @@ Camera readPinhole(const CalibrationText& text, const std::string& camera, const
     return result;
 }
 
-NamedCalibration readKalibr(const CalibrationText& text)
+StereoCalibration readKalibr(const CalibrationText& text)
 {
     const Camera left = readPinhole(text, "cam0/", "distortion_coeffs");
     const Camera right = readPinhole(text, "cam1/", "distortion_coeffs");
@@ -127,7 +120,7 @@ NamedCalibration readKalibr(const CalibrationText& text)
     return join(text, left, right, R, T, nameOf(text, path), nameOf(text, path));
 }
 
-NamedCalibration readEuroc(const Texts& texts)
+StereoCalibration readEuroc(const Texts& texts)
 {
     Camera cameras[2];
     Matx33d R[2]; // from the camera to the body
@@ -143,7 +136,7 @@ NamedCalibration readEuroc(const Texts& texts)
                 nameOf(texts, path));
 }
 
-NamedCalibration readRos(const Texts& texts)
+StereoCalibration readRos(const Texts& texts)
 {
     Camera cameras[2];
     Matx33d R[2]; // rectification
@@ -178,41 +171,32 @@ const CalibrationText& textWith(const Texts& texts, const std::string& name)
                                                                                                              : texts[0];
 }
 
-std::vector<double> readMatrix(const Texts& texts, const std::string& name, size_t count)
+StereoCalibration readOpenCV(const Texts& texts, Size imageSize, double unit)
 {
-    return textWith(texts, name).numbers(name + "/data", count);
-}
-
-NamedCalibration readOpenCV(const Texts& texts, Size imageSize, double unit)
-{
+    if (imageSize.empty())
+        CV_Error(Error::StsBadArg, "imageSize must be given: '" + texts[0].file() + "' does not have it");
     Camera cameras[2];
     for (int i = 0; i < 2; ++i)
     {
-        cameras[i].size = imageSize;
-        const std::string K = i ? "M2" : "M1", D = i ? "D2" : "D1";
-        cameras[i].matrix = Matx33d(readMatrix(texts, K, 9).data());
-        cameras[i].distortion = readMatrix(texts, D, 0);
-        const std::string name = nameOf(textWith(texts, K), K + "/data");
-        cameras[i].names = { name, name, nameOf(textWith(texts, D), D + "/data") };
-        const std::string model = "fisheye_model";
-        const CalibrationText& text = textWith(texts, model);
-        cameras[i].isFisheye = text.has(model) && text.number(model) != 0;
-    }
-    if (imageSize.empty())
-        CV_Error(Error::StsBadArg, "imageSize must be given: '" + texts[0].file() + "' does not have it");
-    for (int i = 0; i < 2; ++i)
-    {
-        const Matx33d& K = cameras[i].matrix;
-        const Point2d offset(K(0, 2) / imageSize.width - 0.5, K(1, 2) / imageSize.height - 0.5);
+        const std::string K = i ? "M2" : "M1", D = i ? "D2" : "D1", model = "fisheye_model";
+        const CalibrationText &textOfK = textWith(texts, K), &textOfD = textWith(texts, D),
+                              &textOfModel = textWith(texts, model);
+        Camera& camera = cameras[i];
+        camera.size = imageSize;
+        camera.matrix = Matx33d(textOfK.numbers(K + "/data", 9).data());
+        camera.distortion = textOfD.numbers(D + "/data", 0);
+        camera.isFisheye = textOfModel.has(model) && textOfModel.number(model) != 0;
+        const std::string name = nameOf(textOfK, K + "/data");
+        camera.names = { name, name, nameOf(textOfD, D + "/data") };
+        const Point2d offset(camera.matrix(0, 2) / imageSize.width - 0.5, camera.matrix(1, 2) / imageSize.height - 0.5);
         if (std::max(std::abs(offset.x), std::abs(offset.y)) > 0.25)
-            textWith(texts, i ? "M2" : "M1")
-                .fail(i ? "M2" : "M1",
-                      format("of a principal point near the middle: is it for images of %d x %d pixels?",
-                             imageSize.width, imageSize.height));
+            textOfK.fail(K, format("of a principal point near the middle: is it for images of %d x %d pixels?",
+                                   imageSize.width, imageSize.height));
     }
-    const std::vector<double> T = readMatrix(texts, "T", 3);
-    return join(texts[0], cameras[0], cameras[1], Matx33d(readMatrix(texts, "R", 9).data()), Vec3d(T.data()) * unit,
-                nameOf(textWith(texts, "R"), "R/data"), nameOf(textWith(texts, "T"), "T/data"));
+    const CalibrationText &textOfR = textWith(texts, "R"), &textOfT = textWith(texts, "T");
+    const Vec3d T = unit * Vec3d(textOfT.numbers("T/data", 3).data());
+    return join(texts[0], cameras[0], cameras[1], Matx33d(textOfR.numbers("R/data", 9).data()), T,
+                nameOf(textOfR, "R/data"), nameOf(textOfT, "T/data"));
 }
 
 //! Sections of the ZED's files, by the size of the images
@@ -235,14 +219,14 @@ bool haveSameAspect(Size a, Size b)
 //! The mode of this size; otherwise the first one of the aspect that the file has
 const ZedMode& zedModeOf(const CalibrationText& text, Size imageSize)
 {
+    const auto has = [&](const ZedMode& mode) { return text.has(std::string("LEFT_CAM_") + mode.name + "/FX"); };
     for (const bool isScaled : { false, true })
         for (const ZedMode& mode : zedModes)
-            if ((isScaled ? haveSameAspect(imageSize, mode.size) : imageSize == mode.size) &&
-                text.has(std::string("LEFT_CAM_") + mode.name + "/FX"))
+            if ((isScaled ? haveSameAspect(imageSize, mode.size) : imageSize == mode.size) && has(mode))
                 return mode;
     std::string names;
     for (const ZedMode& mode : zedModes)
-        if (text.has(std::string("LEFT_CAM_") + mode.name + "/FX"))
+        if (has(mode))
             names += format("%s%d x %d", names.empty() ? "" : ", ", mode.size.width, mode.size.height);
     if (names.empty())
         text.fail("LEFT_CAM_HD/FX", "the focal length of the left camera");
@@ -275,7 +259,7 @@ Camera readZedCamera(const CalibrationText& text, const std::string& side, const
 }
 
 //! As the vendor's open drivers give them to cv::stereoRectify, which knows the sign of the translation by itself
-NamedCalibration readZed(const CalibrationText& text, Size imageSize)
+StereoCalibration readZed(const CalibrationText& text, Size imageSize)
 {
     if (imageSize.empty())
         CV_Error(Error::StsBadArg, "imageSize must be given: '" + text.file() + "' is for cameras of several sizes");
@@ -307,7 +291,7 @@ bool areOf(const char* kind, size_t files, const Texts& texts, const std::vector
     return hasAny;
 }
 
-NamedCalibration readKind(const Texts& texts, Size imageSize, double unit)
+StereoCalibration readKind(const Texts& texts, Size imageSize, double unit)
 {
     if (areOf("the ZED", 1, texts, { "LEFT_CAM_", "RIGHT_CAM_", "STEREO/" }))
         return readZed(texts[0], imageSize);
@@ -323,29 +307,23 @@ NamedCalibration readKind(const Texts& texts, Size imageSize, double unit)
              "'" + texts[0].file() + "' is no calibration of OpenCV, ROS, Kalibr, EuRoC or the ZED that is known");
 }
 
-//! Camera matrices for images of another size
-void scale(const std::string& source, Size size, StereoCalibration& calibration)
+} // namespace
+
+StereoCalibration toCalibration(const Texts& texts, Size size, double unit)
 {
+    StereoCalibration calibration = readKind(texts, size, unit);
+    if (size.empty())
+        return calibration;
     const Size old = calibration.imageSize;
     if (!haveSameAspect(size, old))
-        CV_Error(Error::StsBadArg, format("%s is for images of %d x %d pixels: those of %d x %d have another aspect",
-                                          source.c_str(), old.width, old.height, size.width, size.height));
+        CV_Error(Error::StsBadArg, format("'%s' is for images of %d x %d pixels: those of %d x %d have another aspect",
+                                          texts[0].file().c_str(), old.width, old.height, size.width, size.height));
     const double x = (double)size.width / old.width, y = (double)size.height / old.height;
     const Matx33d scaling(x, 0, 0.5 * x - 0.5, 0, y, 0.5 * y - 0.5, 0, 0, 1); // pixels are around whole numbers
     for (Mat* matrix : { &calibration.cameraMatrix1, &calibration.cameraMatrix2 })
         *matrix = Mat(scaling * Matx33d(*matrix), true);
     calibration.imageSize = size;
-}
-
-} // namespace
-
-StereoCalibration toCalibration(const Texts& texts, Size imageSize, double unit)
-{
-    NamedCalibration result = readKind(texts, imageSize, unit);
-    checkCalibration(result.names, result.calibration);
-    if (!imageSize.empty())
-        scale("'" + texts[0].file() + "'", imageSize, result.calibration);
-    return result.calibration;
+    return calibration;
 }
 
 }}} // namespace cv::stereo::hdp

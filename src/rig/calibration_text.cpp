@@ -47,11 +47,6 @@ std::string withoutComment(const std::string& line, const char* marks)
     return line;
 }
 
-void failAt(const std::string& file, int line, const std::string& what)
-{
-    CV_Error(Error::StsParseError, format("'%s': line %d %s", file.c_str(), line, what.c_str()));
-}
-
 std::string inUpperCase(std::string text)
 {
     for (char& c : text)
@@ -59,39 +54,40 @@ std::string inUpperCase(std::string text)
     return text;
 }
 
-} // namespace
-
-void CalibrationText::readIni(std::istream& lines)
-{
-    std::string line, section;
-    for (int number = 1; std::getline(lines, line); ++number)
-    {
-        line = trimmed(withoutComment(line, "#;"));
-        const size_t equals = line.find('=');
-        if (line.empty())
-            continue;
-        if (line[0] == '[' && line.back() == ']')
-            section = inUpperCase(trimmed(line.substr(1, line.size() - 2)));
-        else if (equals == std::string::npos || equals == 0)
-            failAt(file_, number, "is neither [SECTION] nor KEY=VALUE");
-        else
-            addField(section + "/" + inUpperCase(trimmed(line.substr(0, equals))),
-                     { withoutQuotes(trimmed(line.substr(equals + 1))) }, number);
-    }
-}
-
-//! Line by line; a list in brackets may go over some of them.
-class YamlReader
+//! Reads fields line by line.
+class FieldReader
 {
 public:
-    static void read(std::istream& lines, CalibrationText& text)
+    FieldReader(const std::string& file, CalibrationText::Fields& fields) : file_(file), fields_(fields) {}
+
+    void readIni(std::istream& lines)
     {
-        YamlReader reader(text);
+        std::string line, section;
+        for (line_ = 1; std::getline(lines, line); ++line_)
+        {
+            line = trimmed(withoutComment(line, "#;"));
+            const size_t equals = line.find('=');
+            if (line.empty())
+                continue;
+            if (line[0] == '[' && line.back() == ']')
+                section = inUpperCase(trimmed(line.substr(1, line.size() - 2)));
+            else if (equals == std::string::npos || equals == 0)
+                fail("is neither [SECTION] nor KEY=VALUE");
+            else
+                addField(section + "/" + inUpperCase(trimmed(line.substr(0, equals))),
+                         { withoutQuotes(trimmed(line.substr(equals + 1))) });
+        }
+    }
+
+    //! A list in brackets may go over several lines.
+    void readYaml(std::istream& lines)
+    {
         std::string line;
-        for (reader.line_ = 1; std::getline(lines, line); ++reader.line_)
-            reader.readLine(line);
-        if (reader.depth_ > 0)
-            failAt(text.file_, reader.line_ - 1, "is the last one, and a list has no closing bracket");
+        for (line_ = 1; std::getline(lines, line); ++line_)
+            readLine(line);
+        --line_;
+        if (depth_ > 0)
+            fail("is the last one, and a list has no closing bracket");
     }
 
 private:
@@ -102,12 +98,21 @@ private:
         std::string path;
     };
 
-    explicit YamlReader(CalibrationText& text) : text_(text), line_(0), depth_(0) {}
+    [[noreturn]] void fail(const std::string& what) const
+    {
+        CV_Error(Error::StsParseError, format("'%s': line %d %s", file_.c_str(), line_, what.c_str()));
+    }
+
+    void addField(const std::string& path, const std::vector<std::string>& words)
+    {
+        if (!fields_.insert(std::make_pair(path, words)).second)
+            fail("has '" + path + "' for the second time");
+    }
 
     void readLine(const std::string& line)
     {
         if (line.find('\0') != std::string::npos)
-            failAt(text_.file_, line_, "has a byte 0: this is no text");
+            fail("has a byte 0: this is no text");
         const std::string content = trimmed(withoutComment(line, "#"));
         if (content.empty() || content == "---" || content == "..." || line[0] == '%')
             return;
@@ -115,31 +120,22 @@ private:
             return readList(content);
         const size_t indentation = line.find_first_not_of(' ');
         if (line[indentation] == '\t')
-            failAt(text_.file_, line_, "is indented by a tab: YAML wants blanks");
+            fail("is indented by a tab: YAML wants blanks");
         if (isItem(content))
             return readItem(indentation, content);
 
-        const size_t colon = findColon(content);
+        const size_t colon = std::min((content + " ").find(": "), content.find(":\t"));
         if (colon == std::string::npos || colon == 0)
-            failAt(text_.file_, line_, "is neither 'key: value' nor an item of a list");
+            fail("is neither 'key: value' nor an item of a list");
         while (!parents_.empty() && parents_.back().indentation >= indentation)
             parents_.pop_back();
         path_ = (parents_.empty() ? "" : parents_.back().path + "/") + withoutQuotes(trimmed(content.substr(0, colon)));
-        text_.addField(path_, {}, line_);
+        addField(path_, {});
         parents_.push_back({ indentation, path_ });
         readValue(trimmed(content.substr(colon + 1)));
     }
 
     static bool isItem(const std::string& content) { return content == "-" || content.compare(0, 2, "- ") == 0; }
-
-    static size_t findColon(const std::string& content)
-    {
-        size_t colon = content.find(':');
-        while (colon != std::string::npos && colon + 1 < content.size() && content[colon + 1] != ' ' &&
-               content[colon + 1] != '\t')
-            colon = content.find(':', colon + 1);
-        return colon;
-    }
 
     //! It may be indented as its key is.
     void readItem(size_t indentation, std::string content)
@@ -147,7 +143,7 @@ private:
         while (!parents_.empty() && parents_.back().indentation > indentation)
             parents_.pop_back();
         if (parents_.empty())
-            failAt(text_.file_, line_, "is an item of a list without a name");
+            fail("is an item of a list without a name");
         path_ = parents_.back().path;
         while (isItem(content))
             content = trimmed(content.substr(1));
@@ -162,10 +158,10 @@ private:
         if (value.empty())
             return;
         if (value[0] == '|' || value[0] == '>')
-            failAt(text_.file_, line_, "begins a text of several lines, which is not read");
+            fail("begins a text of several lines, which is not read");
         if (value[0] == '[' || value[0] == '{')
             return readList(value);
-        text_.fields_[path_].push_back(withoutQuotes(value));
+        fields_[path_].push_back(withoutQuotes(value));
     }
 
     //! What is between brackets and commas
@@ -182,21 +178,25 @@ private:
             }
             word = trimmed(word);
             if (!word.empty() && depth_ == 0)
-                failAt(text_.file_, line_, "goes on after the closing bracket");
+                fail("goes on after the closing bracket");
             if (!word.empty())
-                text_.fields_[path_].push_back(withoutQuotes(word));
+                fields_[path_].push_back(withoutQuotes(word));
             word.clear();
             depth_ += opens ? 1 : closes ? -1 : 0;
             if (depth_ < 0)
-                failAt(text_.file_, line_, "closes a bracket that was not opened");
+                fail("closes a bracket that was not opened");
         }
     }
 
-    CalibrationText& text_;
-    int line_, depth_; // brackets that are open
+    const std::string& file_;
+    CalibrationText::Fields& fields_;
+    int line_ = 0;
+    int depth_ = 0;    // brackets that are open
     std::string path_; // of the value that is being read
     std::vector<Parent> parents_;
 };
+
+} // namespace
 
 CalibrationText::CalibrationText(const std::string& file, const std::string& text) : file_(file)
 {
@@ -207,16 +207,11 @@ CalibrationText::CalibrationText(const std::string& file, const std::string& tex
         line = trimmed(withoutComment(line, "#;"));
     lines.clear();
     lines.seekg(0);
+    FieldReader reader(file, fields_);
     if (line.compare(0, 1, "[") == 0)
-        readIni(lines);
+        reader.readIni(lines);
     else
-        YamlReader::read(lines, *this);
-}
-
-void CalibrationText::addField(const std::string& path, const std::vector<std::string>& words, int line)
-{
-    if (!fields_.insert(std::make_pair(path, words)).second)
-        failAt(file_, line, "has '" + path + "' for the second time");
+        reader.readYaml(lines);
 }
 
 bool CalibrationText::hasBelow(const std::string& prefix) const
@@ -257,8 +252,6 @@ std::vector<double> CalibrationText::numbers(const std::string& path, size_t cou
     }
     return values;
 }
-
-double CalibrationText::number(const std::string& path) const { return numbers(path, 1)[0]; }
 
 CalibrationText readCalibrationText(const std::string& file)
 {

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_CALIBRATION_TEXT_HPP
 #define OPENCV_HDPSTEREO_CALIBRATION_TEXT_HPP
 
-#include "opencv2/core.hpp"
+#include "opencv2/hdpstereo/stereo_rig.hpp"
 
 #include <map>
 #include <string>
@@ -17,6 +17,8 @@ in a list in one row. It is what calibrations are made of, and what is common to
 class CV_EXPORTS CalibrationText
 {
 public:
+    typedef std::map<std::string, std::vector<std::string>> Fields;
+
     /** Of text: YAML, or INI if it begins with a section. Of YAML, it reads maps in blocks, lists in blocks and in
     brackets, and words with and without quotes; tags are left out. cv::FileStorage reads none without its own header.
     @throws cv::Exception with the file and the line. */
@@ -33,7 +35,7 @@ public:
     //! One word
     std::string word(const std::string& path) const;
     //! One finite number
-    double number(const std::string& path) const;
+    double number(const std::string& path) const { return numbers(path, 1)[0]; }
     //! Finite numbers, of this count unless it is 0
     std::vector<double> numbers(const std::string& path, size_t count) const;
 
@@ -41,19 +43,16 @@ public:
     void fail(const std::string& path, const std::string& expected) const;
 
 private:
-    friend class YamlReader;
-
-    void readIni(std::istream& lines);
-    //! Throws if it is there already.
-    void addField(const std::string& path, const std::vector<std::string>& words, int line);
-
     std::string file_;
-    std::map<std::string, std::vector<std::string>> fields_;
+    Fields fields_;
 };
 
 /** Reads a file.
 @throws cv::Exception if it cannot be read, or is too large for a calibration. */
 CalibrationText readCalibrationText(const std::string& file);
+
+//! readStereoCalibration() of one or two texts; size: of the raw images
+CV_EXPORTS StereoCalibration toCalibration(const std::vector<CalibrationText>& texts, Size size, double unit);
 
 }}} // namespace cv::stereo::hdp
 
