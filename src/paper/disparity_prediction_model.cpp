@@ -12,9 +12,11 @@ using namespace hdp;
 
 namespace {
 
-GaussianMixture checkedMixture(const std::vector<double>& means, const std::vector<double>& sigmas,
-                               const std::vector<double>& weights)
+const int fileVersion = 1, maxLayers = 64, maxFileComponents = 1024;
+
+const GaussianMixture& checked(const GaussianMixture& mixture)
 {
+    const std::vector<double>&means = mixture.means, &sigmas = mixture.sigmas, &weights = mixture.weights;
     if (means.empty())
         CV_Error(Error::StsBadArg, "means must not be empty");
     if (sigmas.size() != means.size() || weights.size() != means.size())
@@ -32,7 +34,7 @@ GaussianMixture checkedMixture(const std::vector<double>& means, const std::vect
     }
     if (std::abs(sum - 1) > 0.001)
         CV_Error(Error::StsOutOfRange, "the sum of weights must be 1");
-    return { means, sigmas, weights };
+    return mixture;
 }
 
 class DisparityPredictionModelImpl CV_FINAL : public DisparityPredictionModel
@@ -43,7 +45,7 @@ public:
     void addLayer(const std::vector<double>& means, const std::vector<double>& sigmas,
                   const std::vector<double>& weights) CV_OVERRIDE
     {
-        layers_.push_back(checkedMixture(means, sigmas, weights));
+        layers_.push_back(checked({ means, sigmas, weights }));
     }
 
     void getLayer(int layer, std::vector<double>& means, std::vector<double>& sigmas,
@@ -70,7 +72,7 @@ public:
         upperDisparities.getMatVector(uppers);
         GaussianMixture mixture;
         const double likelihood = trainMixture(maps, uppers, maxComponents, seed, mixture);
-        layers_.push_back(checkedMixture(mixture.means, mixture.sigmas, mixture.weights));
+        layers_.push_back(checked(mixture));
         return likelihood;
     }
 
@@ -94,35 +96,28 @@ public:
         if (!name.isString() || (String)name != getDefaultName())
             CV_Error(Error::StsParseError, "name must be " + getDefaultName());
         if (!version.isInt() || (int)version != fileVersion)
-            CV_Error(Error::StsParseError, format("version must be %d", (int)fileVersion));
-        if (!layers.isSeq() || layers.size() > maxLayers)
-            CV_Error(Error::StsParseError, format("layers must be a sequence of at most %d mixtures", (int)maxLayers));
+            CV_Error(Error::StsParseError, format("version must be %d", fileVersion));
+        if (!layers.isSeq() || (int)layers.size() > maxLayers)
+            CV_Error(Error::StsParseError, format("layers must be a sequence of at most %d mixtures", maxLayers));
         // A file that ends between two layers is well-formed.
         if (!fn["layerCount"].isInt() || (int)fn["layerCount"] != (int)layers.size())
             CV_Error(Error::StsParseError, "layerCount must be the number of layers");
         std::vector<GaussianMixture> read;
         for (const FileNode layer : layers)
-            read.push_back(checkedMixture(readNumbers(layer, "means"), readNumbers(layer, "sigmas"),
-                                          readNumbers(layer, "weights")));
+            read.push_back(
+                checked({ readNumbers(layer, "means"), readNumbers(layer, "sigmas"), readNumbers(layer, "weights") }));
         layers_.swap(read);
     }
 
 private:
-    enum
-    {
-        fileVersion = 1,
-        maxLayers = 64,
-        maxFileComponents = 1024
-    };
-
     static std::vector<double> readNumbers(const FileNode& layer, const char* key)
     {
         const FileNode node = layer.isMap() ? layer[key] : FileNode();
         if (node.isInt() || node.isReal()) // a sequence of one number in XML
             return std::vector<double>(1, (double)node);
-        if (!node.isSeq() || node.size() > maxFileComponents)
+        if (!node.isSeq() || (int)node.size() > maxFileComponents)
             CV_Error(Error::StsParseError,
-                     format("%s must be a sequence of at most %d numbers", key, (int)maxFileComponents));
+                     format("%s must be a sequence of at most %d numbers", key, maxFileComponents));
         std::vector<double> numbers;
         for (const FileNode number : node)
         {
@@ -144,22 +139,6 @@ private:
 };
 
 } // namespace
-
-void DisparityPredictionModel::countOffsets(InputArrayOfArrays disparities, InputArrayOfArrays upperDisparities,
-                                            std::vector<int>& offsets, std::vector<double>& counts)
-{
-    std::vector<Mat> maps, uppers;
-    disparities.getMatVector(maps);
-    upperDisparities.getMatVector(uppers);
-    const OffsetHistogram histogram = offsetHistogram(maps, uppers);
-    offsets.clear();
-    counts.clear();
-    for (const OffsetHistogram::value_type& bin : histogram)
-    {
-        offsets.push_back(bin.first);
-        counts.push_back(bin.second);
-    }
-}
 
 Ptr<DisparityPredictionModel> DisparityPredictionModel::create() { return makePtr<DisparityPredictionModelImpl>(); }
 

@@ -10,20 +10,17 @@
 #endif
 
 #include <cmath>
-#include <numeric>
+#include <map>
+#include <set>
 
-namespace cv { namespace stereo { namespace hdp {
+namespace cv { namespace stereo {
+namespace hdp {
 
 namespace {
 
-typedef OffsetHistogram Histogram;
+typedef std::map<int, double> OffsetHistogram; // number of pixels by offset
 
-void add(const Histogram& from, Histogram& to)
-{
-    for (const Histogram::value_type& bin : from)
-        to[bin.first] += bin.second;
-}
-
+//! Throws if the maps are not as DisparityPredictionModel wants them.
 void checkMaps(const std::vector<Mat>& maps, const std::vector<Mat>& uppers)
 {
     if (maps.empty())
@@ -54,10 +51,9 @@ bool isKnown(float disparity)
     return true;
 }
 
-//! Offsets of the pixels in some rows of a map that are known in both layers
-Histogram histogramOf(const Mat& map, const Mat& upper, const Range& rows)
+//! Counts the offsets of the pixels in some rows of a map that are known in both layers.
+void addOffsets(const Mat& map, const Mat& upper, const Range& rows, OffsetHistogram& histogram)
 {
-    Histogram histogram;
     for (int y = rows.start; y < rows.end; ++y)
         for (int x = 0; x < map.cols; ++x)
         {
@@ -66,17 +62,16 @@ Histogram histogramOf(const Mat& map, const Mat& upper, const Range& rows)
             if (isKnown(disparity) && isKnown(above))
                 ++histogram[cvRound(above) - (int)disparity / 2];
         }
-    return histogram;
 }
 
 #ifdef HAVE_OPENCV_ML
 
 const int minTrainingPixels = 100; // in each half
 
-double countPixels(const Histogram& histogram)
+double countPixels(const OffsetHistogram& histogram)
 {
     double sum = 0;
-    for (const Histogram::value_type& bin : histogram)
+    for (const auto& bin : histogram)
         sum += bin.second;
     return sum;
 }
@@ -84,39 +79,30 @@ double countPixels(const Histogram& histogram)
 //! Whether no two known values differ.
 bool areConstant(const std::vector<Mat>& maps)
 {
-    double smallest = DBL_MAX, largest = -1;
+    std::set<float> values;
     for (const Mat& map : maps)
-    {
-        const Mat known = (map >= 0) & (map < std::numeric_limits<float>::infinity());
-        double low = 0, high = 0;
-        if (countNonZero(known) == 0)
-            continue;
-        minMaxLoc(map, &low, &high, 0, 0, known);
-        smallest = std::min(smallest, low);
-        largest = std::max(largest, high);
-    }
-    return smallest >= largest;
+        for (const float disparity : Mat_<float>(map))
+            if (values.size() < 2 && isKnown(disparity))
+                values.insert(disparity);
+    return values.size() < 2;
 }
 
 //! Histograms of one half of the maps, chosen by seed, and of the other; of a single map, of every other band of rows.
-void histogramsOfHalves(const std::vector<Mat>& maps, const std::vector<Mat>& uppers, int seed, Histogram& first,
-                        Histogram& second)
+void histogramsOfHalves(const std::vector<Mat>& maps, const std::vector<Mat>& uppers, int seed, OffsetHistogram& first,
+                        OffsetHistogram& second)
 {
-    std::vector<Histogram> parts;
-    const int band = 16;
-    if (maps.size() > 1)
-        for (size_t i = 0; i < maps.size(); ++i)
-            parts.push_back(histogramOf(maps[i], uppers[i], Range(0, maps[i].rows)));
-    else
-        for (int y = 0; y < maps[0].rows; y += band)
-            parts.push_back(histogramOf(maps[0], uppers[0], Range(y, std::min(y + band, maps[0].rows))));
-    std::vector<int> order(parts.size());
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<std::pair<size_t, Range>> parts; // maps, and rows of them
+    for (size_t i = 0; i < maps.size(); ++i)
+    {
+        const int rows = maps[i].rows, band = maps.size() > 1 ? rows : 16;
+        for (int y = 0; y < rows; y += band)
+            parts.push_back(std::make_pair(i, Range(y, std::min(y + band, rows))));
+    }
     RNG rng((uint64)seed + 1); // 0 is no seed
-    for (size_t i = order.size() - 1; i > 0 && maps.size() > 1; --i)
-        std::swap(order[i], order[rng.uniform(0, (int)i + 1)]);
-    for (size_t i = 0; i < order.size(); ++i)
-        add(parts[order[i]], i % 2 == 0 ? first : second);
+    for (size_t i = maps.size() - 1; i > 0; --i)
+        std::swap(parts[i], parts[rng.uniform(0, (int)i + 1)]);
+    for (size_t i = 0; i < parts.size(); ++i)
+        addOffsets(maps[parts[i].first], uppers[parts[i].first], parts[i].second, i % 2 == 0 ? first : second);
 
     if (countPixels(first) < minTrainingPixels || countPixels(second) < minTrainingPixels)
         CV_Error(Error::StsBadArg, format("disparities and upperDisparities must know at least %d pixels in each half "
@@ -128,10 +114,10 @@ void histogramsOfHalves(const std::vector<Mat>& maps, const std::vector<Mat>& up
         CV_Error(Error::StsBadArg, "upperDisparities must not all have the same offset from half of disparities");
 }
 
-double meanLogLikelihood(const GaussianMixture& mixture, const Histogram& histogram)
+double meanLogLikelihood(const GaussianMixture& mixture, const OffsetHistogram& histogram)
 {
     double sum = 0;
-    for (const Histogram::value_type& bin : histogram)
+    for (const auto& bin : histogram)
         sum += bin.second * std::log(std::max(densityOf(mixture, bin.first), DBL_MIN));
     return sum / countPixels(histogram);
 }
@@ -146,13 +132,13 @@ const double minSigma = 0.5;
 const double minRelativeSigma = 0.25; // of the mean
 
 //! Quantiles of the histogram, each offset spread evenly over the pixel around it: no two samples are the same.
-Mat_<double> quantiles(const Histogram& histogram)
+Mat_<double> quantiles(const OffsetHistogram& histogram)
 {
     Mat_<double> samples(trainingSamples, 1);
     const double step = countPixels(histogram) / trainingSamples;
     double before = 0; // pixels of smaller offsets
     int i = 0;
-    for (const Histogram::value_type& bin : histogram)
+    for (const auto& bin : histogram)
     {
         for (; i < trainingSamples && (i + 0.5) * step < before + bin.second; ++i)
             samples(i) = bin.first - 0.5 + ((i + 0.5) * step - before) / bin.second;
@@ -233,7 +219,7 @@ bool runEM(const Mat_<double>& samples, int components, bool nested, RNG& rng, G
 }
 
 //! The most likely of several runs
-GaussianMixture fitMixture(const Histogram& histogram, int components, int seed)
+GaussianMixture fitMixture(const OffsetHistogram& histogram, int components, int seed)
 {
     const Mat_<double> samples = quantiles(histogram);
     RNG rng((uint64)seed + 1); // 0 is no seed
@@ -271,21 +257,12 @@ double densityOf(const GaussianMixture& mixture, double offset)
     return sum;
 }
 
-OffsetHistogram offsetHistogram(const std::vector<Mat>& maps, const std::vector<Mat>& uppers)
-{
-    checkMaps(maps, uppers);
-    Histogram histogram;
-    for (size_t i = 0; i < maps.size(); ++i)
-        add(histogramOf(maps[i], uppers[i], Range(0, maps[i].rows)), histogram);
-    return histogram;
-}
-
 #ifdef HAVE_OPENCV_ML
 double trainMixture(const std::vector<Mat>& maps, const std::vector<Mat>& uppers, int maxComponents, int seed,
                     GaussianMixture& mixture)
 {
     checkMaps(maps, uppers);
-    Histogram fitted, heldOut;
+    OffsetHistogram fitted, heldOut;
     histogramsOfHalves(maps, uppers, seed, fitted, heldOut);
     double best = -DBL_MAX;
     int bestComponents = 1;
@@ -298,7 +275,8 @@ double trainMixture(const std::vector<Mat>& maps, const std::vector<Mat>& uppers
             bestComponents = components;
         }
     }
-    add(heldOut, fitted);
+    for (const auto& bin : heldOut)
+        fitted[bin.first] += bin.second;
     mixture = fitMixture(fitted, bestComponents, seed);
     return best;
 }
@@ -310,4 +288,25 @@ double trainMixture(const std::vector<Mat>& maps, const std::vector<Mat>& uppers
 }
 #endif
 
-}}} // namespace cv::stereo::hdp
+} // namespace hdp
+
+void DisparityPredictionModel::countOffsets(InputArrayOfArrays disparities, InputArrayOfArrays upperDisparities,
+                                            std::vector<int>& offsets, std::vector<double>& counts)
+{
+    std::vector<Mat> maps, uppers;
+    disparities.getMatVector(maps);
+    upperDisparities.getMatVector(uppers);
+    hdp::checkMaps(maps, uppers);
+    hdp::OffsetHistogram histogram;
+    for (size_t i = 0; i < maps.size(); ++i)
+        hdp::addOffsets(maps[i], uppers[i], Range(0, maps[i].rows), histogram);
+    offsets.clear();
+    counts.clear();
+    for (const auto& bin : histogram)
+    {
+        offsets.push_back(bin.first);
+        counts.push_back(bin.second);
+    }
+}
+
+}} // namespace cv::stereo

@@ -6,8 +6,6 @@
 
 #include "opencv2/core.hpp"
 
-#include <map>
-
 namespace cv { namespace stereo { namespace hdp {
 
 //! GMM_l of section 2.2
@@ -17,12 +15,6 @@ struct GaussianMixture
 };
 
 double densityOf(const GaussianMixture& mixture, double offset);
-
-//! Number of pixels by offset
-typedef std::map<int, double> OffsetHistogram;
-
-//! See DisparityPredictionModel::countOffsets(). Throws if the maps are not as it wants them.
-OffsetHistogram offsetHistogram(const std::vector<Mat>& maps, const std::vector<Mat>& uppers);
 
 //! See DisparityPredictionModel::train(), whose maxComponents and seed have been checked. Returns what it returns.
 double trainMixture(const std::vector<Mat>& maps, const std::vector<Mat>& uppers, int maxComponents, int seed,
