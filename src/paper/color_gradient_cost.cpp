@@ -26,28 +26,19 @@ const int borderGain = 4;
 // surfaces
 const float bitsOfMost = 9;
 
-//! Grey levels in 1 / 65536, see greyOf(). Rounded to whole levels they cost accuracy: the gradients of smooth surfaces
-//! are below one level.
-void gradientLevels(const uchar* pixels, int count, int channels, int* grey)
-{
-    if (channels == 1)
-        for (int x = 0; x < count; ++x)
-            grey[x] = pixels[x] * 65536;
-    else
-        for (int x = 0; x < count; ++x)
-            grey[x] = greyOf(pixels + 3 * x);
-}
-
 //! Half the central difference of the grey levels along each row, in 1 / gradientScale levels; at the ends borderGain
 //! times the one-sided difference.
 void horizontalGradient(const Mat& image, Mat& gradient)
 {
-    const int width = image.cols, last = width - 1;
+    const int last = image.cols - 1;
     gradient.create(image.size(), CV_16S);
-    parallelFor(image.rows, std::vector<int>(width + 1), [&](int y, std::vector<int>& grey) {
-        const int* g = grey.data();
+    // Grey levels in 1 / 65536: rounded to whole ones they cost accuracy, as smooth surfaces have gradients below one.
+    parallelFor(image.rows, std::vector<int>(image.cols), [&](int y, std::vector<int>& g) {
+        const uchar* pixels = image.ptr(y);
+        const int channels = image.channels();
         short* d = gradient.ptr<short>(y);
-        gradientLevels(image.ptr(y), width, image.channels(), grey.data());
+        for (int x = 0; x <= last; ++x)
+            g[x] = channels == 1 ? pixels[x] * 65536 : greyOf(pixels + 3 * x);
         for (int x = 1; x < last; ++x)
             d[x] = (short)((g[x + 1] - g[x - 1] + 2048) >> 12);
         const int after = std::min(1, last), before = std::max(last - 1, 0); // of an only column: itself
@@ -65,30 +56,22 @@ void ColorGradientCost::prepare(const Mat& left, const Mat& right, int numDispar
     const float most =
         params.colorWeight * params.colorTruncation + (1 - params.colorWeight) * params.gradientTruncation;
     bit_ = most / bitsOfMost;
-    const int channels = left.channels(), blockSize = params.blockSize;
+    const int channels = left.channels();
     planes_.width = left.cols;
-    planes_.blockSize = blockSize;
+    planes_.blockSize = params.blockSize;
     planes_.count = channels;
     // The means over the channels and the window and the gradient's units are left to the weights.
-    const float area = (float)(blockSize * blockSize);
+    const float area = (float)(params.blockSize * params.blockSize);
     planes_.colorTruncation = params.colorTruncation * channels;
     planes_.gradientTruncation = params.gradientTruncation * gradientScale;
     planes_.colorWeight = params.colorWeight / (channels * area);
     planes_.gradientWeight = (1 - params.colorWeight) / (gradientScale * area);
-
-    prepareImage(left, false, 0, left_, leftGradient_);
-    prepareImage(right, true, numDisparities + costPadding, right_, rightGradient_);
-    planes_.left = left_.ptr();
-    planes_.right = right_.ptr();
-    planes_.leftGradient = leftGradient_.ptr<short>();
-    planes_.rightGradient = rightGradient_.ptr<short>();
-    planes_.leftStep = left_.step;
-    planes_.rightStep = right_.step;
-    planes_.leftPlane = left_.step * leftGradient_.rows;
-    planes_.rightPlane = right_.step * rightGradient_.rows;
+    planes_.left = prepareImage(left, false, 0, left_, leftGradient_);
+    planes_.right = prepareImage(right, true, numDisparities + costPadding, right_, rightGradient_);
 }
 
-void ColorGradientCost::prepareImage(const Mat& image, bool mirrored, int after, Mat& color, Mat& gradient)
+ColorGradientImage ColorGradientCost::prepareImage(const Mat& image, bool mirrored, int after, Mat& color,
+                                                   Mat& gradient)
 {
     const int radius = planes_.blockSize / 2, rows = image.rows + 2 * radius;
     horizontalGradient(image, gradient_);
@@ -97,6 +80,7 @@ void ColorGradientCost::prepareImage(const Mat& image, bool mirrored, int after,
     for (int c = 0; c < planes_.count; ++c)
         copyBordered(image, c, -radius, radius, radius + after, mirrored, color.rowRange(c * rows, (c + 1) * rows));
     copyBordered(gradient_, 0, -radius, radius, radius + after, mirrored, gradient);
+    return { color.ptr(), gradient.ptr<short>(), color.step, color.step * rows };
 }
 
 void ColorGradientCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const

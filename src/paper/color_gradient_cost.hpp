@@ -16,17 +16,22 @@ struct ColorGradientParams
     int blockSize;            // side of the window the cost is averaged over
 };
 
+//! The planes of an image with its borders
+struct ColorGradientImage
+{
+    const uchar* color;
+    const short* gradient; // in rows of as many elements as those of color
+    size_t step, plane;    // from a row to the next, and from a plane of color to the next
+};
+
 //! The planes of a pair, as ColorGradientCost holds them. The window of pixel (x, y) and those of its candidates have
-//! their first pixels at left[y * leftStep + x] and right[y * rightStep + width - 1 - x + candidate + blockSize - 1].
+//! their first pixels at y * left.step + x and y * right.step + width - 1 - x + candidate + blockSize - 1.
 struct ColorGradientPlanes
 {
     int width;     // of the image
     int blockSize; // of the window
     int count;     // of colour planes, 1 or 3
-    const uchar *left, *right;
-    const short *leftGradient, *rightGradient; // in rows of as many elements as those of left and right
-    size_t leftStep, rightStep;                // from a row to the next
-    size_t leftPlane, rightPlane;              // from a plane to the next
+    ColorGradientImage left, right;
     float colorTruncation, gradientTruncation; // in the units of sums over the channels and of the gradient planes
     float colorWeight, gradientWeight;         // of these sums
 };
@@ -54,7 +59,7 @@ public:
     void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const CV_OVERRIDE;
 
 private:
-    void prepareImage(const Mat& image, bool mirrored, int after, Mat& color, Mat& gradient);
+    ColorGradientImage prepareImage(const Mat& image, bool mirrored, int after, Mat& color, Mat& gradient);
 
     ColorGradientPlanes planes_;
     float bit_;                        // what stands for a bit of the census in CostLimits

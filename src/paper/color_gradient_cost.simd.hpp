@@ -33,14 +33,14 @@ void evaluateCosts(const ColorGradientPlanes& planes, const int* pixels, int siz
         for (int dy = 0; dy < planes.blockSize; ++dy)
             for (int dx = 0; dx < planes.blockSize; ++dx)
             {
-                const size_t left = (y + dy) * planes.leftStep + x + dx;
-                const size_t right = (y + dy) * planes.rightStep + mirroredX - dx;
-                const uchar *pixel = planes.left + left, *candidates = planes.right + right;
-                const short slope = planes.leftGradient[left], blue = pixel[0],
-                            green = channels > 1 ? pixel[planes.leftPlane] : 0,
-                            red = channels > 1 ? pixel[2 * planes.leftPlane] : 0;
-                const short* slopes = planes.rightGradient + right;
-                const size_t plane = channels > 1 ? planes.rightPlane : 0;
+                const size_t left = (y + dy) * planes.left.step + x + dx;
+                const size_t right = (y + dy) * planes.right.step + mirroredX - dx;
+                const uchar *pixel = planes.left.color + left, *candidates = planes.right.color + right;
+                const short slope = planes.left.gradient[left], blue = pixel[0],
+                            green = channels > 1 ? pixel[planes.left.plane] : 0,
+                            red = channels > 1 ? pixel[2 * planes.left.plane] : 0;
+                const short* slopes = planes.right.gradient + right;
+                const size_t plane = channels > 1 ? planes.right.plane : 0;
                 const uchar *greens = candidates + plane, *reds = greens + plane;
                 short color[lanes];
                 HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
