@@ -326,20 +326,6 @@ TEST(HDPStereo_NonLocalRefinement, any_number_of_threads)
     }
 }
 
-TEST(HDPStereo_NonLocalRefinement, bad_arguments)
-{
-    const Size size(6, 5);
-    const Layer layer = oneTree(Mat(size, CV_8UC1, Scalar(1)));
-    const Mat disparity(size, CV_16UC1, Scalar(7)), stable(size, CV_8UC1, Scalar(255));
-    hdp::AggregationBuffers buffers;
-    Mat refined, same = disparity;
-    EXPECT_THROW(refine(layer, disparity.colRange(0, 5), stable, 10), cv::Exception);
-    EXPECT_THROW(refine(layer, Mat(size, CV_16SC1, Scalar(7)), stable, 10), cv::Exception);
-    EXPECT_THROW(refine(layer, disparity, stable.rowRange(0, 4), 10), cv::Exception);
-    EXPECT_THROW(refine(layer, disparity, disparity, 10), cv::Exception);
-    EXPECT_THROW(hdp::refineNonLocal(layer.forest, disparity, stable, 10, true, buffers, same), cv::Exception);
-}
-
 //! Stable: maps to a column of the right image, to which no disparity maps that is larger by more than a pixel.
 TEST(HDPStereo_NonLocalRefinement, stable_pixels_by_comparing_all_pairs)
 {

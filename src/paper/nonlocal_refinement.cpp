@@ -57,13 +57,11 @@ private:
     int refined(int pixel, const RunWinner& winner) const
     {
         const int own = disparity_[pixel];
-        if (winner.lowest == 0 && winner.last == 0) // no cost at all
-            return own;
+        const bool hasCost = winner.lowest != 0 || winner.last != 0;
         // The first and the last candidate are above their neighbours but for costs so close to 0 that few bits are
         // left.
-        if (winner.before < 0 || winner.after < 0)
-            return own;
-        if (stable_[pixel] && wholeDisparity(own) == winner.candidate)
+        const bool isInside = winner.before >= 0 && winner.after >= 0;
+        if (!hasCost || !isInside || (stable_[pixel] && wholeDisparity(own) == winner.candidate))
             return own;
         const float steeper = std::max(winner.before, winner.after) - winner.lowest; // of the slopes on both sides
         const bool hasTip = subpixel_ && steeper > 0;
@@ -81,9 +79,6 @@ private:
 void refineNonLocal(const DisparityForest& forest, const Mat& disparity, const Mat& stable, double gamma, bool subpixel,
                     AggregationBuffers& buffers, Mat& refined)
 {
-    CV_Assert(disparity.type() == CV_16UC1 && disparity.isContinuous() && disparity.size() == forest.links.size());
-    CV_Assert(stable.type() == CV_8UC1 && stable.isContinuous() && stable.size() == disparity.size());
-    CV_Assert(refined.data != disparity.data);
     disparity.copyTo(refined);
     takeWinners(forest, WeightedMedian(disparity, stable, subpixel), gamma, buffers, refined);
 }
