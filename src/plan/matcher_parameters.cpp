@@ -54,11 +54,10 @@ template <typename Parameters, typename Visitor> void visitParams(Parameters& p,
     visit("colorTruncation", p.colorTruncation, isNotNegative(p.colorTruncation), "finite and >= 0");
     visit("gradientTruncation", p.gradientTruncation, isNotNegative(p.gradientTruncation), "finite and >= 0");
     visit("colorWeight", p.colorWeight, p.colorWeight >= 0 && p.colorWeight <= 1, "in [0, 1]");
-    visit("aggregation", p.aggregation, isIn(p.aggregation, M::AGGREGATION_TREES, M::AGGREGATION_TREE_SCANLINES),
-          "AGGREGATION_TREES, AGGREGATION_SCANLINES or AGGREGATION_TREE_SCANLINES");
-    visit("topAggregation", p.topAggregation,
-          isIn(p.topAggregation, M::AGGREGATION_TREES, M::AGGREGATION_TREE_SCANLINES),
-          "AGGREGATION_TREES, AGGREGATION_SCANLINES or AGGREGATION_TREE_SCANLINES");
+    const auto isAggregation = [](int a) { return isIn(a, M::AGGREGATION_TREES, M::AGGREGATION_TREE_SCANLINES); };
+    const char* const aggregations = "AGGREGATION_TREES, AGGREGATION_SCANLINES or AGGREGATION_TREE_SCANLINES";
+    visit("aggregation", p.aggregation, isAggregation(p.aggregation), aggregations);
+    visit("topAggregation", p.topAggregation, isAggregation(p.topAggregation), aggregations);
     visit("gamma", p.gamma, isNotNegative(p.gamma) && p.gamma > 0, "finite and > 0");
     visit("useMedianPrefilter", p.useMedianPrefilter);
     visit("disparityPrior", p.disparityPrior, isIn(p.disparityPrior, M::PRIOR_SUPPORT_POINTS, M::PRIOR_UPPER_LAYER),
@@ -97,7 +96,6 @@ struct Writer
     {
         fs << name << value;
     }
-    void operator()(const char* name, bool value) const { fs << name << (int)value; }
 };
 
 struct Reader
@@ -111,13 +109,7 @@ struct Reader
             return;
         if (!node.isInt() && !(std::is_same<T, double>::value && node.isReal()))
             CV_Error(Error::StsParseError, format("%s must be a number", name));
-        value = (T)node;
-    }
-    void operator()(const char* name, bool& value) const
-    {
-        int number = value;
-        operator()(name, number);
-        value = number != 0;
+        value = saturate_cast<T>((double)node);
     }
 };
 
@@ -197,17 +189,15 @@ void HDPTreeMatcher::Params::write(FileStorage& fs) const
 {
     visitParams(*this, Writer{ fs });
     CV_Assert(treeStrategy);
-    fs << "treeStrategy"
-       << "{"
-       << "strategy" << treeStrategy->getDefaultName();
+    fs.startWriteStruct("treeStrategy", FileNode::MAP);
+    fs << "strategy" << treeStrategy->getDefaultName();
     treeStrategy->write(fs);
-    fs << "}";
+    fs.endWriteStruct();
     if (predictionModel)
     {
-        fs << "predictionModel"
-           << "{";
+        fs.startWriteStruct("predictionModel", FileNode::MAP);
         predictionModel->write(fs);
-        fs << "}";
+        fs.endWriteStruct();
     }
 }
 
@@ -245,7 +235,7 @@ MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ow
     visitRange(parameters, Reader{ fn });
     parameters.treeStrategy = ownStrategy; // for files that name it
     parameters.read(fn);
-    checkParameters(parameters);
+    visitRange(parameters, Checker());
     return parameters;
 }
 
