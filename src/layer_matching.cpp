@@ -39,7 +39,7 @@ public:
     Verdict run()
     {
         result_.prior.clear();
-        if (plan_.hasIntervals && plan_.seesBelow)
+        if (in_.pair.hasRanges && plan_.seesBelow)
             doubleIntervals(intervals(), plan_.numDisparities, own_.candidateIntervals);
         if (plan_.method == COST_SCANLINES)
             matchCosts();
@@ -52,7 +52,7 @@ public:
         if (plan_.trees.refinementGamma > 0)
             clock_.run("non-local refinement", [&] { refine(); });
         Verdict verdict = FIRST;
-        if (plan_.joinsLastFrame)
+        if (plan_.isFinest && in_.pair.followsVideo)
             clock_.run("temporal prediction", [&] {
                 verdict = joinLastFrame(own_.census, in_.lastFrame, in_.prediction, shared_.video, shared_.frame,
                                         result_.winners);
@@ -102,7 +102,7 @@ private:
             left.convertTo(left, CV_8U, 1. / greyScale);
             right.convertTo(right, CV_8U, 1. / greyScale);
         }
-        findSupportPoints(left, right, plan_.hasIntervals ? candidateIntervals() : Mat(), plan_.numDisparities,
+        findSupportPoints(left, right, in_.pair.hasRanges ? candidateIntervals() : Mat(), plan_.numDisparities,
                           shared_.supportPointBuffers, shared_.supportPoints);
         disparityHistogram(shared_.supportPoints, plan_.numDisparities, result_.prior);
     }
@@ -123,7 +123,7 @@ private:
                              trees.margin, shared_.intervals);
             assignIntervals(in_.upper->disparity, size, shared_.intervals, own_.pixelIntv);
         }
-        if (plan_.hasIntervals)
+        if (in_.pair.hasRanges)
             intersectIntervals(candidateIntervals(), own_.pixelIntv);
     }
 
@@ -160,7 +160,7 @@ private:
         }
         if (plan_.prefersLastFrame)
             preferPredicted(shared_.predicted, volume);
-        const bool hasPlanes = plan_.trees.prefersPlanes && volume.isUniform; // which ranges may change
+        const bool hasPlanes = plan_.isTop && volume.isUniform; // which ranges may change
         if (hasPlanes)
             preferLargestSurfaces(own_.census, volume);
         const bool isPredicted = hasPlanes && plan_.prefersLastFrame;
@@ -176,7 +176,7 @@ private:
     //! Winners of the volume; weights: see weighEdges()
     void scanVolume(const Mat& weights)
     {
-        if (plan_.hasIntervals)
+        if (in_.pair.hasRanges)
             excludeCandidates(candidateIntervals(), shared_.volume);
         aggregateVolume(shared_.volume, weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
     }
@@ -222,7 +222,7 @@ private:
         clock_.run("cost aggregation", [&] {
             weighEdges(guide(), own_.edgeWeights);
             aggregateRange(*in_.below, plan_.frame, plan_.numDisparities, in_.upper->disparity, own_.edgeWeights,
-                           plan_.hasIntervals ? own_.candidateIntervals : Mat(), plan_.rangePenalties,
+                           in_.pair.hasRanges ? own_.candidateIntervals : Mat(), plan_.rangePenalties,
                            shared_.rangeScanlines, result_.winners);
         });
         finishWinners();
@@ -283,7 +283,7 @@ private:
                                                   isFirst ? in_.upper->winners : own_.halvedWinners };
             findOtherSurfaces(prediction, own_.surfaceBuffers, own_.others);
             predictWindows(prediction.upper, own_.others, plan_.numDisparities, own_.windows);
-            if (plan_.hasIntervals)
+            if (in_.pair.hasRanges)
                 restrictWindows(intervals(), plan_.numDisparities, own_.windows);
         });
     }
@@ -309,7 +309,7 @@ private:
     void correctWinners()
     {
         keepIntervals(result_.winners);
-        if (plan_.joinsPrior)
+        if (in_.pair.hasPrior)
             clock_.run("prior", [&] {
                 joinPrior(in_.known.points[plan_.layer], in_.images.guide, own_.census, plan_.layer, plan_.maxDisparity,
                           result_.winners);
@@ -319,7 +319,7 @@ private:
 
     void keepIntervals(Mat& disparity) const
     {
-        if (plan_.hasIntervals)
+        if (in_.pair.hasRanges)
             moveIntoIntervals(intervals(), disparity);
     }
 

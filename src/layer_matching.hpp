@@ -7,7 +7,7 @@
 #include "base/stage_clock.hpp"
 #include "forest/forest_aggregation.hpp"
 #include "paper/support_points.hpp"
-#include "plan/known_disparities.hpp"
+#include "plan/pair_plan.hpp"
 #include "scanlines/candidate_windows.hpp"
 #include "scanlines/other_surfaces.hpp"
 #include "video/temporal_join.hpp"
@@ -31,7 +31,7 @@ struct LayerInput
     const LayerImages& images;
     const LayerResult* upper;          // the layer above; none at the top layer
     const CensusCost* below;           // that of the layer below, if the plan sees it
-    const KnownDisparities& known;     // beforehand, if the plan has intervals or joins a prior
+    const KnownDisparities& known;     // beforehand, if the plan has ranges or a prior
     const FrameMemory& lastFrame;      // of a video
     const FramePrediction& prediction; // of this frame, if it is one of a video
 };

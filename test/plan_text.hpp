@@ -21,18 +21,17 @@ inline std::string textOf(const hdp::LayerPlan& p)
          << p.cost.colorGradient.colorWeight << " sees below " << p.seesBelow << " smooths guide " << p.smoothsGuide
          << "\n  trees: prior " << (int)p.trees.prior << " upper " << p.trees.upperDisparities << " delta "
          << p.trees.delta << " margin " << p.trees.margin << " beta " << p.trees.beta << " links " << p.trees.linksTrees
-         << " gamma " << p.trees.gamma << " planes " << p.trees.prefersPlanes << " refinement "
-         << p.trees.refinementGamma << "\n  volume " << p.volumePenalties.small << " " << p.volumePenalties.large << " "
-         << p.volumePenalties.gamma << " range " << p.rangePenalties.small << " " << p.rangePenalties.large << " "
-         << p.rangePenalties.leastLarge << " " << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " "
-         << p.rangePenalties.maxPrior << "\n  passes";
+         << " gamma " << p.trees.gamma << " refinement " << p.trees.refinementGamma << "\n  volume "
+         << p.volumePenalties.small << " " << p.volumePenalties.large << " " << p.volumePenalties.gamma << " range "
+         << p.rangePenalties.small << " " << p.rangePenalties.large << " " << p.rangePenalties.leastLarge << " "
+         << p.rangePenalties.gamma << " " << p.rangePenalties.priorDistance << " " << p.rangePenalties.maxPrior
+         << "\n  passes";
     for (const hdp::ScanlinePenalties& pass : p.passes)
         text << " [" << pass.small << " " << pass.large << " slopes " << pass.edgeSlope << " " << pass.borderSlope
              << " prior " << pass.prior << " nearer " << pass.nearer << " noise " << pass.edgeNoise << "]";
     text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
-         << p.fillsOcclusions << " intervals " << p.hasIntervals << " joins prior " << p.joinsPrior
-         << " joins last frame " << p.joinsLastFrame << " median " << p.medianSize << " thin structures "
-         << p.restoresThinStructures << " votes " << p.votesAtEdges << " smooths " << p.smoothsSurfaces << "\n";
+         << p.fillsOcclusions << " median " << p.medianSize << " thin structures " << p.restoresThinStructures
+         << " votes " << p.votesAtEdges << " smooths " << p.smoothsSurfaces << "\n";
     return text.str();
 }
 
@@ -42,11 +41,11 @@ inline std::string textOf(const hdp::PairPlan& p)
     text << p.size << " pyramids " << p.pyramids.minDisparity << " " << p.pyramids.extension << " " << p.pyramids.layers
          << " " << p.pyramids.isCensus << " " << p.pyramids.smoothsBlocks << "\nalignment "
          << p.alignment.numDisparities << " " << p.alignment.maxRowOffset << " " << p.alignment.findsLight << " "
-         << p.alignment.noiseThreshold << " " << p.alignment.finestLayer << " follows video " << p.followsVideo
-         << " looks for range " << p.looksForRange << "\nstrategy " << (void*)p.treeStrategy.get() << " model "
-         << (p.model ? p.model->getNumLayers() : 0) << "\noutput " << p.output.minDisparity << " " << p.output.extension
-         << " " << p.output.finestLayer << " " << p.output.isWhole << " " << p.output.disp12MaxDiff << " "
-         << p.output.speckleWindowSize << " " << p.output.speckleRange << "\n";
+         << p.alignment.noiseThreshold << " " << p.alignment.finestLayer << " ranges " << p.hasRanges << " prior "
+         << p.hasPrior << " follows video " << p.followsVideo << " looks for range " << p.looksForRange << "\nstrategy "
+         << (void*)p.treeStrategy.get() << " model " << (p.model ? p.model->getNumLayers() : 0) << "\noutput "
+         << p.output.minDisparity << " " << p.output.extension << " " << p.output.finestLayer << " " << p.output.isWhole
+         << " " << p.output.disp12MaxDiff << " " << p.output.speckleWindowSize << " " << p.output.speckleRange << "\n";
     const hdp::ImageFrame& frame = p.given.alignment.frame;
     text << "given " << p.given.isGiven << " frame " << frame.whole << " " << frame.origin << "\n";
     for (const hdp::LayerPlan& layer : p.layers)

@@ -209,27 +209,19 @@ TEST(HDPStereo_Plan, inputs)
         const std::string without = planText(p);
         EXPECT_EQ(without, textOf(hdp::plan(p, imageSize, CV_8UC3, PairModel(), masks))) << "masks are no decision";
         const PairPlan withRanges = hdp::plan(p, imageSize, CV_8UC3, PairModel(), ranges);
-        for (const LayerPlan& layer : withRanges.layers)
-        {
-            EXPECT_TRUE(layer.hasIntervals);
-            EXPECT_FALSE(layer.joinsPrior);
-        }
+        EXPECT_TRUE(withRanges.hasRanges);
+        EXPECT_FALSE(withRanges.hasPrior);
         EXPECT_NE(without, textOf(withRanges));
         if (p.matchingCost != M::COST_CENSUS)
         {
             expectRejected([&] { hdp::plan(p, imageSize, CV_8UC3, PairModel(), prior); }, "setPriorDisparity()");
             p.matchingCost = M::COST_CENSUS;
         }
-        const PairPlan withPrior = hdp::plan(p, imageSize, CV_8UC3, PairModel(), prior);
-        for (const LayerPlan& layer : withPrior.layers)
-        {
-            EXPECT_TRUE(layer.joinsPrior);
-            EXPECT_FALSE(layer.hasIntervals);
-        }
-        PairPlan plain = withPrior;
-        for (LayerPlan& layer : plain.layers)
-            layer.joinsPrior = false;
-        EXPECT_EQ(planText(p), textOf(plain)) << "nothing else";
+        PairPlan withPrior = hdp::plan(p, imageSize, CV_8UC3, PairModel(), prior);
+        EXPECT_TRUE(withPrior.hasPrior);
+        EXPECT_FALSE(withPrior.hasRanges);
+        withPrior.hasPrior = false;
+        EXPECT_EQ(planText(p), textOf(withPrior)) << "nothing else";
     }
 }
 
@@ -392,7 +384,7 @@ TEST(HDPStereo_Plan, adapts_to_a_video)
         MatcherParameters p = parametersOf(preset);
         p.useTemporalPrediction = true;
         const PairPlan plan = hdp::plan(p, imageSize, CV_8UC3);
-        EXPECT_TRUE(plan.finest().joinsLastFrame);
+        EXPECT_TRUE(plan.followsVideo);
         for (const hdp::VideoFindings& video : videos)
         {
             SCOPED_TRACE(format("preset %d, verdict %d, prior %d", preset, video.verdict, video.hasPrior));

@@ -3,6 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "pair_inputs.hpp"
+#include "pair_plan.hpp"
+#include "../pair/image_pyramid.hpp"
 
 #include <cfloat>
 
@@ -10,12 +12,13 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
+//! Without the type that an empty array may have
+Mat toMat(InputArray array) { return array.empty() ? Mat() : array.getMat(); }
+
 Mat toMask(InputArray array, const char* name)
 {
-    if (array.empty())
-        return Mat();
-    const Mat mask = array.getMat();
-    if (mask.dims != 2 || mask.type() != CV_8UC1)
+    const Mat mask = toMat(array);
+    if (!mask.empty() && (mask.dims != 2 || mask.type() != CV_8UC1))
         CV_Error(Error::StsUnsupportedFormat, format("%s must be CV_8UC1, 0 where the image has no data", name));
     return mask.clone();
 }
@@ -38,26 +41,22 @@ void setMasks(InputArray left, InputArray right, PairInputs& inputs)
 
 void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inputs)
 {
-    const Mat smallest = smallestArray.empty() ? Mat() : smallestArray.getMat(),
-              largest = largestArray.empty() ? Mat() : largestArray.getMat();
+    const Mat smallest = toMat(smallestArray), largest = toMat(largestArray);
     if (!smallest.empty() && (smallest.dims != 2 || (smallest.type() != CV_16SC1 && smallest.type() != CV_32FC1)))
         CV_Error(Error::StsUnsupportedFormat, "smallest must be CV_16SC1 or CV_32FC1, disparities in pixels");
     if (largest.dims != smallest.dims || largest.type() != smallest.type() || largest.size() != smallest.size())
         CV_Error(Error::StsUnmatchedSizes, "largest must have the size and type of smallest");
-    Mat isLess;
-    if (!smallest.empty())
-        compare(largest, smallest, isLess, CMP_LT);
-    if (!isLess.empty() && countNonZero(isLess) > 0)
-        CV_Error(Error::StsOutOfRange,
-                 format("largest must not be less than smallest, as it is in %d pixels", countNonZero(isLess)));
+    const int less = smallest.empty() ? 0 : countNonZero(largest < smallest);
+    if (less > 0)
+        CV_Error(Error::StsOutOfRange, format("largest must not be less than smallest, as it is in %d pixels", less));
     smallest.convertTo(inputs.smallest, CV_32F);
     largest.convertTo(inputs.largest, CV_32F);
 }
 
 void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inputs)
 {
-    const Mat disparity = disparityArray.empty() ? Mat() : disparityArray.getMat().clone();
-    Mat sigma = disparity.empty() || sigmaArray.empty() ? Mat() : sigmaArray.getMat().clone();
+    const Mat disparity = toMat(disparityArray).clone();
+    Mat sigma = disparity.empty() ? Mat() : toMat(sigmaArray).clone();
     if (!disparity.empty() && (disparity.dims != 2 || disparity.type() != CV_32FC1))
         CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_32FC1, in pixels, NaN where nothing is known");
     const bool isNumber = sigma.type() == CV_64FC1 && (sigma.total() == 1 || sigma.size() == Size(1, 4)); // or a Scalar
@@ -80,6 +79,23 @@ void checkInputs(const PairInputs& inputs, Size size)
         CV_Error(Error::StsUnmatchedSizes,
                  format("smallest and largest must have at most the size of the images, %d x %d, not %d x %d",
                         size.width, size.height, inputs.smallest.cols, inputs.smallest.rows));
+}
+
+void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities& known)
+{
+    const OutputPlan& output = plan.output;
+    const int first = output.minDisparity, numDisparities = plan.alignment.numDisparities;
+    std::vector<int> counts;
+    for (int layer = 0; layer <= plan.top().layer; ++layer)
+        counts.push_back(layerDisparities(numDisparities, layer, plan.top().hasFractions));
+    expandRanges(inputs.smallest, inputs.largest, plan.size, Range(first, first + numDisparities - 1), output.isWhole,
+                 known.ranges);
+    buildIntervals(known.ranges, first, output.extension, counts, known.units, known.intervals);
+    known.points.resize(counts.size());
+    if (plan.hasPrior)
+        for (const LayerPlan& layer : plan.layers)
+            pointsOfLayer(inputs.prior, inputs.sigma, first, output.extension, layer.layer, counts[layer.layer],
+                          known.points[layer.layer]);
 }
 
 }}} // namespace cv::stereo::hdp

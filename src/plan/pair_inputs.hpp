@@ -4,9 +4,12 @@
 #ifndef OPENCV_HDPSTEREO_PAIR_INPUTS_HPP
 #define OPENCV_HDPSTEREO_PAIR_INPUTS_HPP
 
-#include "opencv2/core.hpp"
+#include "../map/prior_join.hpp"
+#include "../pair/disparity_ranges.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
+
+struct PairPlan;
 
 //! What is known of the pairs beforehand. It is no parameter: files do not have it.
 struct PairInputs
@@ -27,6 +30,17 @@ void setPrior(InputArray disparity, InputArray sigma, PairInputs& inputs);
 
 //! Throws if an input is not for images of this size.
 void checkInputs(const PairInputs& inputs, Size size);
+
+//! The ranges and the prior of a caller in terms of the layers
+struct KnownDisparities
+{
+    PixelRanges ranges;
+    std::vector<Mat> intervals;                  // of the layers, if there are ranges
+    std::vector<std::vector<PriorPoint>> points; // of the layers, if there is a prior
+    std::vector<Mat> units;                      // memory of buildIntervals(), kept from pair to pair
+};
+
+void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities& known);
 
 }}} // namespace cv::stereo::hdp
 

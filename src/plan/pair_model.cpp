@@ -17,7 +17,12 @@ namespace {
 
 const int maxWhole = 1 << 24; // pixels of a side: columns are exact in floats
 
-//! Calls visit(name, value, whether it is valid, what is) for all fields but the vectors.
+bool areFinite(const std::vector<double>& numbers, int count)
+{
+    return (int)numbers.size() == count && checkRange(numbers);
+}
+
+//! Calls visit(name, value, whether it is valid, what is) for all fields.
 template <typename Model, typename Visit> void visitFields(Model& m, const Visit& visit)
 {
     const auto isStep = [](double step) { return std::isfinite(step) && step >= 0; };
@@ -45,11 +50,13 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("leftBlockStep", m.leftBlockStep, isStep(m.leftBlockStep), notNegative);
     visit("rightBlockStart", m.rightBlockStart, m.rightBlockStart >= 0 && m.rightBlockStart < BlockGrid::side, "0..7");
     visit("rightBlockStep", m.rightBlockStep, isStep(m.rightBlockStep), notNegative);
+    visit("rows", m.rows, areFinite(m.rows, RowModel::terms), "5 finite numbers");
+    visit("light", m.light, areFinite(m.light, LightModel::terms), "10 finite numbers");
 }
 
 struct Checker
 {
-    template <typename T> void operator()(const char* name, T, bool isValid, const char* expected) const
+    template <typename T> void operator()(const char* name, const T&, bool isValid, const char* expected) const
     {
         if (!isValid)
             CV_Error(Error::StsOutOfRange, format("PairModel: %s must be %s", name, expected));
@@ -60,53 +67,37 @@ struct Writer
 {
     FileStorage& fs;
 
-    template <typename T> void operator()(const char* name, T value, bool, const char*) const { fs << name << value; }
-    void operator()(const char* name, bool value, bool, const char*) const { fs << name << (int)value; }
+    template <typename T> void operator()(const char* name, const T& value, bool, const char*) const
+    {
+        fs << name << value;
+    }
 };
-
-void checkIsNumber(const FileNode& node, const char* name)
-{
-    if (!node.isInt() && !node.isReal())
-        CV_Error(Error::StsParseError, format("PairModel: %s must be a number", name));
-}
 
 struct Reader
 {
     const FileNode& fn;
 
+    static double numberOf(const FileNode& node, const char* name)
+    {
+        if (!node.isInt() && !node.isReal())
+            CV_Error(Error::StsParseError, format("PairModel: %s must be a number", name));
+        return (double)node;
+    }
+
     template <typename T> void operator()(const char* name, T& value, bool, const char*) const
     {
-        checkIsNumber(fn[name], name);
-        value = saturate_cast<T>((double)fn[name]);
+        value = saturate_cast<T>(numberOf(fn[name], name));
     }
-    void operator()(const char* name, bool& value, bool, const char*) const
+    void operator()(const char* name, std::vector<double>& numbers, bool, const char*) const
     {
-        checkIsNumber(fn[name], name);
-        value = (double)fn[name] != 0;
+        const FileNode node = fn[name];
+        if (!node.isSeq())
+            CV_Error(Error::StsParseError, format("PairModel: %s must be a sequence of numbers", name));
+        numbers.clear();
+        for (const FileNode& number : node)
+            numbers.push_back(numberOf(number, name));
     }
 };
-
-void readNumbers(const FileNode& fn, const char* name, std::vector<double>& numbers)
-{
-    const FileNode node = fn[name];
-    if (!node.isSeq())
-        CV_Error(Error::StsParseError, format("PairModel: %s must be a sequence of numbers", name));
-    numbers.clear();
-    for (const FileNode& number : node)
-    {
-        checkIsNumber(number, name);
-        numbers.push_back((double)number);
-    }
-}
-
-void checkNumbers(const std::vector<double>& numbers, size_t count, const char* name)
-{
-    bool isValid = numbers.size() == count;
-    for (const double number : numbers)
-        isValid = isValid && std::isfinite(number);
-    if (!isValid)
-        CV_Error(Error::StsOutOfRange, format("PairModel: %s must be %d finite numbers", name, (int)count));
-}
 
 //! In 0 .. side - 1, as a column that begins a block
 int blockStart(int column) { return (column % BlockGrid::side + BlockGrid::side) % BlockGrid::side; }
@@ -161,18 +152,12 @@ PairModel PairModel::enlarged(int times, int largeWidth, int largeHeight) const
     return model;
 }
 
-void PairModel::write(FileStorage& fs) const
-{
-    visitFields(*this, Writer{ fs });
-    fs << "rows" << rows << "light" << light;
-}
+void PairModel::write(FileStorage& fs) const { visitFields(*this, Writer{ fs }); }
 
 void PairModel::read(const FileNode& fn)
 {
     PairModel model;
     visitFields(model, Reader{ fn });
-    readNumbers(fn, "rows", model.rows);
-    readNumbers(fn, "light", model.light);
     checkPairModel(model);
     *this = model;
 }
@@ -182,10 +167,9 @@ void PairModel::save(const String& filename) const
     FileStorage fs(filename, FileStorage::WRITE);
     if (!fs.isOpened())
         CV_Error(Error::StsError, "cannot write '" + filename + "'");
-    fs << "pairModel"
-       << "{";
+    fs.startWriteStruct("pairModel", FileNode::MAP);
     write(fs);
-    fs << "}";
+    fs.endWriteStruct();
 }
 
 PairModel PairModel::load(const String& filename)
@@ -214,8 +198,6 @@ void checkPairModel(const PairModel& model)
     if (model.empty())
         return;
     visitFields(model, Checker());
-    checkNumbers(model.rows, RowModel::terms, "rows");
-    checkNumbers(model.light, LightModel::terms, "light");
     const Point2d corner(0.5 * (model.width + model.addedColumns), 0.5 * model.height);
     if (norm(RowModel::basis(corner).mul(RowModel::Coefficients(model.rows.data())), NORM_L1) > maxWhole)
         CV_Error(Error::StsOutOfRange, "PairModel: rows must move pixels by at most 2^24 rows");
@@ -248,7 +230,7 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     GivenPair given;
     const int moved = plan.extension + plan.minDisparity; // columns of the right image
     given.isGiven = !model.empty();
-    given.alignment.frame = ImageFrame(wholeSize(model, size) + Size(plan.extension, 0));
+    given.alignment.frame = ImageFrame(size + Size(plan.extension, 0));
     if (!given.isGiven)
         return given;
     LevelFindings& levels = given.levels;
@@ -263,7 +245,7 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
 
     // Where the matched image of the model begins: with another range it is moved by other columns.
     ImageFrame& frame = given.alignment.frame;
-    frame.whole.width = model.width + model.addedColumns;
+    frame.whole = Size(model.width + model.addedColumns, model.height);
     frame.origin = Point(model.x + model.addedColumns + model.minDisparity - moved, model.y);
     PairFindings& findings = given.alignment.findings;
     std::copy(model.rows.begin(), model.rows.end(), findings.rows.coefficients.val);

@@ -21,28 +21,16 @@ struct GivenPair
 };
 
 //! Throws if a value is not valid. An empty model is.
-CV_EXPORTS void checkPairModel(const PairModel& model);
+void checkPairModel(const PairModel& model);
 
 //! Throws if a model that is not empty is of other images.
 void checkPairModelOf(const PairModel& model, Size size, int type, int layers);
 
-//! Size of the images that a model is of; size, if it is empty
-inline Size wholeSize(const PairModel& model, Size size)
-{
-    return model.empty() ? size : Size(model.width, model.height);
-}
-
-//! From a model to what it says of a pair, and what is the frame of the pair's images without a model
+//! From a model to what it says of a pair; if it is empty, that is the frame alone of images of this size
 CV_EXPORTS GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size);
 
-/** From what was found in a pair to a model.
-@param plan That of the pair.
-@param size Of its images.
-@param depth Of its images.
-@param numDisparities Of its images.
-@param floats Of its images, if they are of floats.
-@param levels What was found.
-@param findings What was found. */
+//! From what was found in a pair to a model. size, depth and numDisparities are those of its images; floats, too, if
+//! these are of floats.
 CV_EXPORTS PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities,
                                  const FloatLevels& floats, const LevelFindings& levels, const PairFindings& findings);
 

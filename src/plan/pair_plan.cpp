@@ -68,21 +68,12 @@ HDP_TUNABLE(int, firstPrior, 1, "bits per 2 pixels",
             "from the layer above, which may be wrong: more cannot be repaired, less loses bare surfaces");
 HDP_TUNABLE(int, laterPrior, 2, "bits per 2 pixels", "from the pass before, which knows more than the layer above");
 
-//! The side of the matching cost's window. Values that are not odd and positive count as with cv::StereoSGBM.
-int windowSide(const MatcherParameters& p)
-{
-    const int side = p.blockSize > 0 ? p.blockSize / 2 * 2 + 1 : 5;
-    return p.matchingCost == M::COST_CENSUS ? clamped(side, 3, 7) : std::min(side, maxWindow);
-}
-
 //! Aggregation below the top layer. Without prediction there are no layers, and the plain tree algorithm matches the
 //! image.
 int aggregationOf(const MatcherParameters& p) { return p.usePrediction ? p.aggregation : (int)M::AGGREGATION_TREES; }
 
 //! The paper's winners, of sums over trees, whatever the layer
 bool hasTreeSums(const MatcherParameters& p) { return aggregationOf(p) == M::AGGREGATION_TREES; }
-
-bool predictsIntervals(const MatcherParameters& p) { return aggregationOf(p) != M::AGGREGATION_SCANLINES; }
 
 bool hasFractions(const MatcherParameters& p) { return p.useSubpixel || !hasTreeSums(p); }
 
@@ -113,7 +104,7 @@ void checkCombinations(const MatcherParameters& p, Size size, bool hasPrior)
 //! The model of the predicted intervals; it has a layer less than the pyramid.
 Ptr<DisparityPredictionModel> modelOf(const MatcherParameters& p, Size size)
 {
-    if (!predictsIntervals(p))
+    if (aggregationOf(p) == M::AGGREGATION_SCANLINES)
         return Ptr<DisparityPredictionModel>();
     if (p.predictionModel)
         return p.predictionModel;
@@ -135,14 +126,6 @@ int countLayers(const MatcherParameters& p, Size size, const Ptr<DisparityPredic
     return layers;
 }
 
-//! With a range if there is none: that of the model, or of a single disparity if it is empty
-MatcherParameters completed(const MatcherParameters& p, const PairModel& model)
-{
-    return p.numDisparities > 0 ? p
-           : model.empty()      ? withRange(p, 0, 1)
-                                : withRange(p, model.minDisparity, model.numDisparities);
-}
-
 //! Columns that are added on the left of the images, for the first ones to have their matches at negative disparities
 int countExtension(const MatcherParameters& p, Size size, int type, int layers)
 {
@@ -160,7 +143,9 @@ CostPlan planCost(const MatcherParameters& p)
 {
     CostPlan cost;
     cost.isCensus = p.matchingCost == M::COST_CENSUS;
-    cost.windowSide = windowSide(p);
+    // Values that are not odd and positive count as with cv::StereoSGBM.
+    const int side = p.blockSize > 0 ? p.blockSize / 2 * 2 + 1 : 5;
+    cost.windowSide = cost.isCensus ? clamped(side, 3, 7) : std::min(side, maxWindow);
     if (!cost.isCensus)
         cost.colorGradient = { (float)p.colorTruncation, (float)p.gradientTruncation, (float)p.colorWeight,
                                cost.windowSide };
@@ -195,7 +180,6 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
     }
     trees.linksTrees = !p.usePrediction;
     trees.gamma = layer.method == TREE_SCANLINES ? p.gamma * meanGamma / std::max(layer.layer, 1) : p.gamma;
-    trees.prefersPlanes = layer.method == TREE_SCANLINES && layer.isTop;
     if (p.useNonLocalRefinement && hasTreeSums(p))
         trees.refinementGamma = p.gamma * refinementGamma;
     return trees;
@@ -290,13 +274,16 @@ int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int m
 PairPlan plan(const MatcherParameters& parameters, Size size, int type, const PairModel& model,
               const PairInputs& inputs)
 {
-    const MatcherParameters p = completed(parameters, model);
-    checkCombinations(p, size, inputs.hasPrior());
     PairPlan plan;
-    plan.looksForRange = parameters.numDisparities == 0 && model.empty();
+    MatcherParameters p = parameters;
+    plan.looksForRange = p.numDisparities == 0 && model.empty();
+    if (p.numDisparities == 0)
+        p = model.empty() ? withRange(p, 0, 1) : withRange(p, model.minDisparity, model.numDisparities);
+    checkCombinations(p, size, inputs.hasPrior());
     plan.size = size;
     plan.treeStrategy = p.treeStrategy;
-    const Size whole = wholeSize(model, size); // a tile is matched as the image that it is a part of
+    // A tile is matched as the image that it is a part of.
+    const Size whole = model.empty() ? size : Size(model.width, model.height);
     plan.model = modelOf(p, whole);
     const int layers = countLayers(p, whole, plan.model);
     checkPairModelOf(model, size, type, layers);
@@ -306,27 +293,19 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     plan.pyramids = { p.minDisparity, extension, layers, p.matchingCost == M::COST_CENSUS, p.noiseThreshold > 0 };
     plan.alignment = { p.numDisparities, p.maxRowOffset, p.useLightAlignment, p.noiseThreshold, finest };
     plan.given = toGivenPair(model, plan.pyramids, size);
+    plan.hasRanges = inputs.hasRanges();
+    plan.hasPrior = inputs.hasPrior();
     plan.followsVideo = p.useTemporalPrediction;
     for (int layer = layers - 1; layer >= finest; --layer)
     {
         plan.layers.push_back(planLayer(p, whole, layer, layers, finest));
         plan.layers.back().frame = plan.given.alignment.frame.ofLayer(layer);
     }
-    plan.layers.back().joinsLastFrame = plan.followsVideo;
-    for (LayerPlan& layer : plan.layers)
-    {
-        layer.hasIntervals = inputs.hasRanges();
-        layer.joinsPrior = inputs.hasPrior();
-    }
-    if (inputs.hasRanges())
+    if (plan.hasRanges)
         plan.layers.front().trees.beta = rangeBeta;
-    plan.output = { p.minDisparity,
-                    extension,
-                    finest,
-                    !p.useSubpixel,
-                    p.disp12MaxDiff,
-                    p.speckleWindowSize,
-                    p.speckleWindowSize > 0 ? p.speckleRange : 0 };
+    const int speckleRange = p.speckleWindowSize > 0 ? p.speckleRange : 0;
+    plan.output = { p.minDisparity,  extension,           finest,      !p.useSubpixel,
+                    p.disp12MaxDiff, p.speckleWindowSize, speckleRange };
     return plan;
 }
 

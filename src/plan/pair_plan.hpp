@@ -52,13 +52,12 @@ struct CostPlan
 struct TreePlan
 {
     PriorSource prior = FULL_RANGE;
-    int upperDisparities = 0; // candidates of the layer above
-    double delta = 0;         // delta_l, section 3.1
-    int margin = 0;           // candidates added to an interval on both sides
-    double beta = 0;          // of DT-Rule 2; only trees whose intervals differ ask for it
-    bool linksTrees = false;  // whether what Rule 2 leaves apart is joined
-    double gamma = 0;         // grey levels, of the sums or means
-    bool prefersPlanes = false;
+    int upperDisparities = 0;   // candidates of the layer above
+    double delta = 0;           // delta_l, section 3.1
+    int margin = 0;             // candidates added to an interval on both sides
+    double beta = 0;            // of DT-Rule 2; only trees whose intervals differ ask for it
+    bool linksTrees = false;    // whether what Rule 2 leaves apart is joined
+    double gamma = 0;           // grey levels, of the sums or means
     double refinementGamma = 0; // of the non-local refinement; 0: none
 };
 
@@ -79,12 +78,9 @@ struct LayerPlan
     VolumePenalties volumePenalties = { 0, 0, 0 };
     RangePenalties rangePenalties = { 0, 0, 0, 0, 1, 0 };
     std::vector<ScanlinePenalties> passes; // of scanlines over windows
-    bool hasIntervals = false;             // whether pixels have candidates of their own
-    bool joinsPrior = false;               // whether winners are joined with what is known beforehand
     bool checksLastFrame = false;          // whether the pair's own costs may refuse the last frame
     bool prefersLastFrame = false;         // whether what the last frame predicts has lower costs
     bool fillsOcclusions = false;
-    bool joinsLastFrame = false;
     int medianSize = 0; // of the median over the winners; 0: none
     bool restoresThinStructures = false;
     bool votesAtEdges = false;
@@ -100,9 +96,11 @@ struct PairPlan
     Size size; // of the images
     PyramidPlan pyramids;
     AlignmentPlan alignment;
-    GivenPair given;            // what is not looked for in the pair, but known
-    bool looksForRange = false; // of disparities, which is not known: what depends on it is for a single disparity
-    bool followsVideo = false;
+    GivenPair given;               // what is not looked for in the pair, but known
+    bool looksForRange = false;    // of disparities, which is not known: what depends on it is for a single disparity
+    bool hasRanges = false;        // whether pixels have candidates of their own
+    bool hasPrior = false;         // whether winners are joined with what is known beforehand
+    bool followsVideo = false;     // and the finest layer is joined with the last frame
     std::vector<LayerPlan> layers; // that are matched, the top one first
     Ptr<TreeStrategy> treeStrategy;
     Ptr<DisparityPredictionModel> model; // of the layers with predicted intervals; none if no layer has them
@@ -112,21 +110,14 @@ struct PairPlan
     const LayerPlan& finest() const { return layers.back(); }
 };
 
-/** What is done for a pair, as far as it depends on nothing but this:
-@param parameters The parameters; each is valid by itself. If numDisparities is 0, the range is that of
-the model.
-@param size Of the images.
-@param type Of the images, as checkPair() accepts it.
-@param model What is known of the images beforehand; valid by itself.
-@param inputs What is known of the pair beforehand, as checkInputs() accepts it.
+/** What is done for a pair, as far as it depends on nothing but this: parameters and a model of which each value is
+valid by itself, size and type of the images as checkPair() accepts them, and inputs as checkInputs() does. If
+numDisparities is 0, the range is that of the model.
 @throws cv::Exception if the parameters do not go with one another or with the images. */
 CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int type, const PairModel& model = PairModel(),
                          const PairInputs& inputs = PairInputs());
 
-/** What is done now that the pair has been seen.
-@param plan From plan().
-@param findings What alignPair() has found.
-@param video What is known of the video; FIRST without one. */
+//! What is done now that the pair has been seen. findings: of alignPair(); video: FIRST without one
 CV_EXPORTS PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFindings& video);
 
 /** Number of pyramid layers for so many disparities, in images of any size: numLayers or more, until the top layer has
