@@ -68,12 +68,10 @@ HDP_TUNABLE(int, firstPrior, 1, "bits per 2 pixels",
             "from the layer above, which may be wrong: more cannot be repaired, less loses bare surfaces");
 HDP_TUNABLE(int, laterPrior, 2, "bits per 2 pixels", "from the pass before, which knows more than the layer above");
 
-//! Aggregation below the top layer. Without prediction there are no layers, and the plain tree algorithm matches the
-//! image.
-int aggregationOf(const MatcherParameters& p) { return p.usePrediction ? p.aggregation : (int)M::AGGREGATION_TREES; }
+// The functions get parameters that plan() has completed.
 
 //! The paper's winners, of sums over trees, whatever the layer
-bool hasTreeSums(const MatcherParameters& p) { return aggregationOf(p) == M::AGGREGATION_TREES; }
+bool hasTreeSums(const MatcherParameters& p) { return p.aggregation == M::AGGREGATION_TREES; }
 
 bool hasFractions(const MatcherParameters& p) { return p.useSubpixel || !hasTreeSums(p); }
 
@@ -87,13 +85,12 @@ void checkCombinations(const MatcherParameters& p, Size size, bool hasPrior)
         CV_Error(Error::StsOutOfRange, format("minDisparity and numDisparities must keep (minDisparity - 1) * %d and "
                                               "(minDisparity + numDisparities - 1) * %d in CV_16S",
                                               (int)M::DISP_SCALE, (int)M::DISP_SCALE));
-    const int aggregation = aggregationOf(p);
-    const char* const needsCensus = aggregation == M::AGGREGATION_SCANLINES        ? "AGGREGATION_SCANLINES"
-                                    : aggregation == M::AGGREGATION_TREE_SCANLINES ? "AGGREGATION_TREE_SCANLINES"
-                                    : p.fillOcclusions                             ? "fillOcclusions"
-                                    : p.useTemporalPrediction                      ? "useTemporalPrediction"
-                                    : hasPrior                                     ? "setPriorDisparity()"
-                                                                                   : nullptr;
+    const char* const needsCensus = p.aggregation == M::AGGREGATION_SCANLINES        ? "AGGREGATION_SCANLINES"
+                                    : p.aggregation == M::AGGREGATION_TREE_SCANLINES ? "AGGREGATION_TREE_SCANLINES"
+                                    : p.fillOcclusions                               ? "fillOcclusions"
+                                    : p.useTemporalPrediction                        ? "useTemporalPrediction"
+                                    : hasPrior                                       ? "setPriorDisparity()"
+                                                                                     : nullptr;
     if (needsCensus && p.matchingCost != M::COST_CENSUS)
         CV_Error(Error::StsBadArg, format("matchingCost must be COST_CENSUS for %s", needsCensus));
     if (p.speckleWindowSize > 0 && size.area() > INT_MAX / speckleBytes)
@@ -104,7 +101,7 @@ void checkCombinations(const MatcherParameters& p, Size size, bool hasPrior)
 //! The model of the predicted intervals; it has a layer less than the pyramid.
 Ptr<DisparityPredictionModel> modelOf(const MatcherParameters& p, Size size)
 {
-    if (aggregationOf(p) == M::AGGREGATION_SCANLINES)
+    if (p.aggregation == M::AGGREGATION_SCANLINES)
         return Ptr<DisparityPredictionModel>();
     if (p.predictionModel)
         return p.predictionModel;
@@ -154,12 +151,12 @@ CostPlan planCost(const MatcherParameters& p)
 
 LayerMethod methodOf(const MatcherParameters& p, const LayerPlan& layer)
 {
-    const int below = aggregationOf(p);
     if (layer.isFinest && !layer.isTop && !hasTreeSums(p))
         return WINDOW_SCANLINES;
-    if (below == M::AGGREGATION_SCANLINES && !layer.isTop)
+    const bool hasScanlines = p.aggregation == M::AGGREGATION_SCANLINES;
+    if (hasScanlines && !layer.isTop)
         return layer.numDisparities <= mostRangeDisparities ? RANGE_SCANLINES : WINDOW_SCANLINES;
-    const int aggregation = below == M::AGGREGATION_SCANLINES ? p.topAggregation : below;
+    const int aggregation = hasScanlines ? p.topAggregation : p.aggregation;
     return aggregation == M::AGGREGATION_TREE_SCANLINES ? TREE_SCANLINES
            : aggregation == M::AGGREGATION_SCANLINES    ? COST_SCANLINES
                                                         : TREE_SUMS;
@@ -279,6 +276,8 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     plan.looksForRange = p.numDisparities == 0 && model.empty();
     if (p.numDisparities == 0)
         p = model.empty() ? withRange(p, 0, 1) : withRange(p, model.minDisparity, model.numDisparities);
+    if (!p.usePrediction) // there are no layers, and the plain tree algorithm matches the image
+        p.aggregation = M::AGGREGATION_TREES;
     checkCombinations(p, size, inputs.hasPrior());
     plan.size = size;
     plan.treeStrategy = p.treeStrategy;
