@@ -99,17 +99,11 @@ RobustFit<terms> fitRobustly(const std::vector<FitSample<terms>>& samples, const
             const FitSample<terms>& sample = samples[s];
             const double relative = residuals[s] / (scale * outlierResidual), deviation = scale * sample.deviation;
             const double weight = 1 / ((1 + relative * relative) * deviation * deviation);
-            for (int i = 0; i < terms; ++i)
-            {
-                const double weighted = weight * sample.basis[i];
-                sum[i] += weighted * sample.value;
-                for (int j = 0; j <= i; ++j)
-                    information(i, j) += weighted * sample.basis[j];
-            }
+            const Vec<double, terms> weighted = weight * sample.basis;
+            sum += sample.value * weighted;
+            information += weighted * sample.basis.t();
         }
-        for (int i = 0; i < terms; ++i)
-            for (int j = i + 1; j < terms; ++j)
-                information(i, j) = information(j, i);
+        completeSymm(information, true);
         fit.covariance = information.inv(DECOMP_CHOLESKY);
         fit.coefficients = fit.covariance * sum;
     }

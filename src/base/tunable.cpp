@@ -31,10 +31,9 @@ String stemOf(const String& file)
 
 } // namespace
 
-TunableVariable::TunableVariable(const char* file, const char* name, double value, bool isWhole, const char* unit,
-                                 const char* reason)
-    : info{ stemOf(file) + "." + name, value, value, isWhole, unit, reason }
+TunableVariable::TunableVariable(const char* file, const TunableInfo& information) : info(information)
 {
+    info.name = stemOf(file) + "." + info.name;
     Tunables& all = allTunables();
     const auto isBefore = [](const TunableVariable* a, const TunableVariable* b) {
         return a->info.name < b->info.name;
@@ -47,16 +46,18 @@ void setTunable(const String& name, const String& value)
     String names;
     for (TunableVariable* tunable : allTunables())
     {
-        names += (names.empty() ? "" : ", ") + tunable->info.name;
-        if (tunable->info.name != name)
+        TunableInfo& info = tunable->info;
+        names += (names.empty() ? "" : ", ") + info.name;
+        if (info.name != name)
             continue;
         char* end = nullptr;
         const double number = std::strtod(value.c_str(), &end);
-        if (end == value.c_str() || *end != 0 || !tunable->holds(number))
-            CV_Error(Error::StsBadArg, "'" + value + "' is not " +
-                                           (tunable->info.isWhole ? "a whole number" : "a number") + ", which " + name +
-                                           " takes (" + tunable->info.unit + ")");
-        tunable->info.value = number;
+        const bool isValid =
+            number >= info.least && number <= info.most && (!info.isWhole || number == cvFloor(number));
+        if (end == value.c_str() || *end != 0 || !isValid)
+            CV_Error(Error::StsBadArg, "'" + value + "' is not " + (info.isWhole ? "a whole number" : "a number") +
+                                           ", which " + name + " takes (" + info.unit + ")");
+        info.value = number;
         return;
     }
     CV_Error(Error::StsBadArg, "no tunable is called '" + name + "', there are: " + names);

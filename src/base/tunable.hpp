@@ -36,6 +36,7 @@ struct TunableInfo
     String name; // "tree_planes.minPixels"
     double value, initial;
     bool isWhole;
+    double least, most; // that its type can have
     String unit, reason;
 };
 
@@ -52,11 +53,7 @@ CV_EXPORTS std::vector<TunableInfo> listTunables();
 class TunableVariable
 {
 public:
-    TunableVariable(const char* file, const char* name, double value, bool isWhole, const char* unit,
-                    const char* reason);
-    virtual ~TunableVariable() {}
-
-    virtual bool holds(double value) const = 0; // whether the type has this value
+    TunableVariable(const char* file, const TunableInfo& information);
 
     TunableInfo info;
 };
@@ -64,19 +61,15 @@ public:
 template <typename T> class Tunable final : public TunableVariable
 {
 public:
+    typedef std::numeric_limits<T> Limits;
+
     Tunable(const char* file, const char* name, T value, const char* unit, const char* reason)
-        : TunableVariable(file, name, (double)value, std::numeric_limits<T>::is_integer, unit, reason)
+        : TunableVariable(file, { name, (double)value, (double)value, Limits::is_integer, (double)Limits::lowest(),
+                                  (double)Limits::max(), unit, reason })
     {
     }
 
     operator T() const { return (T)info.value; }
-
-    bool holds(double value) const override
-    {
-        typedef std::numeric_limits<T> Limits;
-        return value >= (double)Limits::lowest() && value <= (double)Limits::max() &&
-               (!info.isWhole || value == (double)(int64)value);
-    }
 };
 
 }}} // namespace cv::stereo::hdp
