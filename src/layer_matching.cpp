@@ -39,7 +39,7 @@ public:
     Verdict run()
     {
         result_.prior.clear();
-        if (in_.pair.hasRanges && plan_.seesBelow)
+        if (plan_.seesBelow)
             doubleIntervals(intervals(), plan_.numDisparities, own_.candidateIntervals);
         if (plan_.method == COST_SCANLINES)
             matchCosts();
@@ -102,8 +102,8 @@ private:
             left.convertTo(left, CV_8U, 1. / greyScale);
             right.convertTo(right, CV_8U, 1. / greyScale);
         }
-        findSupportPoints(left, right, in_.pair.hasRanges ? candidateIntervals() : Mat(), plan_.numDisparities,
-                          shared_.supportPointBuffers, shared_.supportPoints);
+        findSupportPoints(left, right, candidateIntervals(), plan_.numDisparities, shared_.supportPointBuffers,
+                          shared_.supportPoints);
         disparityHistogram(shared_.supportPoints, plan_.numDisparities, result_.prior);
     }
 
@@ -181,11 +181,11 @@ private:
         aggregateVolume(shared_.volume, weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
     }
 
-    //! DisparityInterval of each pixel, if the plan has them
-    const Mat& intervals() const { return in_.known.intervals[plan_.layer]; }
+    //! DisparityInterval of each pixel; empty without ranges
+    Mat intervals() const { return in_.pair.hasRanges ? in_.known.intervals[plan_.layer] : Mat(); }
 
-    //! The same in candidates of a volume, see run()
-    const Mat& candidateIntervals() const { return plan_.seesBelow ? own_.candidateIntervals : intervals(); }
+    //! The same in the candidates that are compared, see run()
+    Mat candidateIntervals() const { return plan_.seesBelow ? own_.candidateIntervals : intervals(); }
 
     void predictFromLastFrame()
     {
@@ -222,8 +222,7 @@ private:
         clock_.run("cost aggregation", [&] {
             weighEdges(guide(), own_.edgeWeights);
             aggregateRange(*in_.below, plan_.frame, plan_.numDisparities, in_.upper->disparity, own_.edgeWeights,
-                           in_.pair.hasRanges ? own_.candidateIntervals : Mat(), plan_.rangePenalties,
-                           shared_.rangeScanlines, result_.winners);
+                           candidateIntervals(), plan_.rangePenalties, shared_.rangeScanlines, result_.winners);
         });
         finishWinners();
     }

@@ -48,19 +48,25 @@ std::vector<ushort> brightnessCurve(double brightness)
     return curve;
 }
 
-//! Pixels of a pair that are not below a level, in every row or every step-th one
-int64 countFrom(int level, const Mat& left, const Mat& right, int step)
+//! Pixels of a pair that are not below each of some levels, in every row or every step-th one
+std::vector<double> countFrom(const std::vector<int>& levels, const Mat& left, const Mat& right, int step)
 {
     const int width = left.cols;
-    int64 count = 0;
-    for (int y = 0; y < left.rows; y += step)
-    {
-        const ushort *l = left.ptr<ushort>(y), *r = right.ptr<ushort>(y);
-        int ofRow = 0;
-        HDP_VECTORIZED for (int x = 0; x < width; ++x) ofRow += (l[x] >= level) + (r[x] >= level);
-        count += ofRow;
-    }
-    return count;
+    Mat ofRows((left.rows + step - 1) / step, (int)levels.size(), CV_32S);
+    parallelFor(ofRows.rows, [&](int i) {
+        const ushort *l = left.ptr<ushort>(i * step), *r = right.ptr<ushort>(i * step);
+        for (int k = 0; k < ofRows.cols; ++k)
+        {
+            const int level = levels[k];
+            int count = 0;
+            HDP_VECTORIZED for (int x = 0; x < width; ++x) count += (l[x] >= level) + (r[x] >= level);
+            ofRows.at<int>(i, k) = count;
+        }
+    });
+    std::vector<double> counts;
+    for (int k = 0; k < ofRows.cols; ++k)
+        counts.push_back(sum(ofRows.col(k))[0]);
+    return counts;
 }
 
 //! How often levels of so many bits are doubled to become those of 8 bits, brightened; negative: halved
@@ -87,10 +93,15 @@ void greyRow(const Mat& image, int y, int times, const std::vector<ushort>& curv
 
 int bitsInUse(const Mat& left, const Mat& right, double share)
 {
-    int bits = left.depth() == CV_8U ? minBits : maxBits;
-    const double mayBeBright = 2. * left.total() * share / pixelsPerBright;
-    while (bits > minBits && countFrom(1 << (bits - 1), left, right, 1) <= mayBeBright)
-        --bits;
+    int bits = minBits;
+    if (left.depth() == CV_8U)
+        return bits;
+    std::vector<int> ends; // of the levels of minBits bits and more
+    for (int i = minBits; i < maxBits; ++i)
+        ends.push_back(1 << i);
+    const std::vector<double> tooBright = countFrom(ends, left, right, 1);
+    while (bits < maxBits && tooBright[bits - minBits] > 2. * left.total() * share / pixelsPerBright)
+        ++bits;
     return bits;
 }
 
@@ -103,8 +114,8 @@ Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
         buffer.create(image.size(), CV_8UC1);
         parallelFor(image.rows, std::vector<ushort>(image.cols), [&](int y, std::vector<ushort>& levels) {
             greyRow(image, y, times, curve, levels.data());
-            for (int x = 0; x < image.cols; ++x)
-                buffer.ptr(y)[x] = (uchar)(levels[x] / greyScale);
+            uchar* const bytes = buffer.ptr(y);
+            HDP_VECTORIZED for (int x = 0; x < image.cols; ++x) bytes[x] = (uchar)(levels[x] / greyScale);
         });
         return buffer;
     }
@@ -136,13 +147,16 @@ double findBrightness(const Mat& left, const Mat& right, double share)
     if (share == 0) // nothing to be seen
         return 1;
     const int step = std::max(left.rows / rowsThatTell, 1), white = 255 * greyScale;
-    const int64 all = 2 * left.cols * ((left.rows + step - 1) / step);
+    const double all = 2. * left.cols * ((left.rows + step - 1) / step);
+    std::vector<int> ends(1, white); // then those of the levels that are doubled once or more
+    for (int i = 1; i <= maxDoublings; ++i)
+        ends.push_back(whiteEnd >> i);
+    const std::vector<double> bright = countFrom(ends, left, right, step);
+    const double areWhite = bright[0];
     double doublings = 0;
     for (int i = 1; i <= maxDoublings; ++i)
     {
-        const int64 bright = countFrom(whiteEnd >> i, left, right, step),
-                    areWhite = countFrom(white, left, right, step);
-        const int64 dark = all - bright, lost = bright - areWhite;
+        const double dark = all - bright[i], lost = bright[i] - areWhite;
         // Of a pair that is mostly white, what is faint there is all that there is. What has no data is black.
         const double stays = dark - all * (1 - share);
         const double ofThem = (lost + std::max(areWhite - stays, 0.)) / (all * share);

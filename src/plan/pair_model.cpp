@@ -7,6 +7,7 @@
 #include "../base/units.hpp"
 #include "../pair/image_levels.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cv { namespace stereo {
@@ -19,7 +20,8 @@ const int maxWhole = 1 << 24; // pixels of a side: columns are exact in floats
 
 bool areFinite(const std::vector<double>& numbers, int count)
 {
-    return (int)numbers.size() == count && checkRange(numbers);
+    const auto isFinite = [](double number) { return std::isfinite(number); };
+    return (int)numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), isFinite);
 }
 
 //! Calls visit(name, value, whether it is valid, what is) for all fields.

@@ -28,7 +28,7 @@ inline String readText(const String& path)
 }
 
 //! Where the programs are: of this build, or those that the environment names
-inline String programs()
+inline String programFolder()
 {
     const char* const others = std::getenv("HDPSTEREO_PROGRAMS");
     return others ? others : HDP_PROGRAMS;
@@ -39,7 +39,7 @@ inline Execution run(const DatasetFolder& folder, const String& command, const S
                      const String& environment = String())
 {
     const String out = output.empty() ? folder.path("stdout") : output, err = folder.path("stderr");
-    const String line = environment + " " + programs() + "/" + command + " >'" + out + "' 2>'" + err + "'";
+    const String line = environment + " " + programFolder() + "/" + command + " >'" + out + "' 2>'" + err + "'";
     const int status = std::system(line.c_str());
     const bool exited = status != -1 && WIFEXITED(status);
     EXPECT_TRUE(exited) << command;

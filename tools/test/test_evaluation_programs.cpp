@@ -10,11 +10,20 @@
 
 #ifdef __unix__
 #include <cstdio>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace opencv_test { namespace {
+
+//! Names that an option does not know are errors that name them.
+void testUnknown(const DatasetFolder& folder, const String& command, const String& option, const String& kind,
+                 const std::vector<String>& names)
+{
+    for (const String& name : names)
+    {
+        const Execution wrong = run(folder, command + " " + option + "=" + name);
+        EXPECT_EQ(1, wrong.status) << name;
+        EXPECT_EQ(0u, wrong.errors.find("error: " + option + " knows no " + kind + " '" + name + "'")) << wrong.errors;
+    }
+}
 
 TEST(HDPStereo_EvaluationPrograms, help_and_wrong_arguments)
 {
@@ -72,12 +81,7 @@ TEST(HDPStereo_EvaluationPrograms, robustness)
     for (const char* row : { "means of 3 pairs", "| case | fast | sgbm-hh4 |", "| clean |", "| dy3 |", "| gain.5 |",
                              "| noise4 |", "| jpeg40 |", "| shear |" })
         EXPECT_NE(String::npos, good.output.find(row)) << row;
-    for (const char* bad : { "dy", "dy1x", "clean2", "rain" })
-    {
-        const Execution wrong = run(folder, common + " --cases=" + bad);
-        EXPECT_EQ(1, wrong.status) << bad;
-        EXPECT_EQ(0u, wrong.errors.find("error: --cases knows no case '" + String(bad) + "'")) << wrong.errors;
-    }
+    testUnknown(folder, common, "--cases", "case", { "dy", "dy1x", "clean2", "rain" });
     folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
     EXPECT_EQ(2, run(folder, common + " --cases=clean").status);
 }
@@ -101,12 +105,7 @@ TEST(HDPStereo_EvaluationPrograms, stability)
     const Execution few = run(folder, common + " --changes=top3,clean --scenes=a");
     EXPECT_EQ(0, few.status) << few.errors;
     EXPECT_NE(String::npos, few.output.find("| clean | **0.00** | **0.00** |")) << few.output;
-    for (const char* bad : { "left", "left1.5", "jpeg0", "flip2", "rain", "noise" })
-    {
-        const Execution wrong = run(folder, common + " --changes=" + bad);
-        EXPECT_EQ(1, wrong.status) << bad;
-        EXPECT_EQ(0u, wrong.errors.find("error: --changes knows no change '" + String(bad) + "'")) << wrong.errors;
-    }
+    testUnknown(folder, common, "--changes", "change", { "left", "left1.5", "jpeg0", "flip2", "rain", "noise" });
     folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
     EXPECT_EQ(2, run(folder, common + " --changes=flip").status);
 }

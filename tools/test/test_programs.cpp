@@ -6,7 +6,6 @@
 
 #include "test_precomp.hpp"
 #include "programs.hpp"
-#include "synthetic_video.hpp"
 
 #ifdef __unix__
 #include <cstdio>
@@ -167,7 +166,7 @@ TEST(HDPStereo_Tiles, make_the_map_of_the_whole)
 //! The most that a program takes, in KiB
 long peakMemory(const DatasetFolder& folder, const String& command)
 {
-    const String line = "exec " + programs() + "/" + command + " >/dev/null 2>'" + folder.path("stderr") + "'";
+    const String line = "exec " + programFolder() + "/" + command + " >/dev/null 2>'" + folder.path("stderr") + "'";
     const pid_t child = fork();
     if (child == 0)
     {
