@@ -5,7 +5,6 @@
 #define OPENCV_HDPSTEREO_DISPARITY_FOREST_HPP
 
 #include "forest_edges.hpp"
-#include "tree_joiner.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -25,17 +24,40 @@ struct DisparityForest
     std::vector<DisparityTree> trees; // by root
 };
 
+//! Memory to build a forest in: a union-find structure over the pixels
 struct ForestBuffers
 {
-    GrowingTrees trees;
-    std::vector<JoinerStripe> stripes;
+    struct Node
+    {
+        int parent;                 // another pixel of the tree; of a root: minus the tree's number of pixels
+        DisparityInterval interval; // of a root: TreeIntv
+    };
+    struct Stripe // of the image, whose trees a thread joins
+    {
+        std::vector<int> edges;          // in the order in which they are tried
+        std::vector<int> sorted;         // to sort them
+        std::vector<int> undecidedEdges; // those that wait until all stripes are done
+        std::vector<int> frozenRoots;    // of the trees that must not grow until then
+    };
+    std::vector<Node> nodes;       // by pixel
+    std::vector<uchar> maxWeights; // by root: TreeState::maxWeight
+    std::vector<Stripe> stripes;   // the last one in use is for all of them together
 };
 
-/** Builds the forest of a layer.
+//! How trees are joined
+struct JoinerParams
+{
+    double beta; // threshold of DT-Rule 2
+    bool link;   // whether to join what Rule 2 left apart, by a second pass without it, if the strategy does so
+};
+
+/** Builds the forest of a layer by Kruskal's algorithm: tries one edge after the other in the order of Rule 1, and
+joins the trees at its ends if Rule 2 and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the image side
+by side; the trees and their roots are those of trying one edge after the other, for any number of stripes.
 @param image CV_8UC1 or CV_8UC3, the image that gives the edge weights.
 @param pixelIntv CV_16UC2 of its size.
 @param strategy Rule 1 and Rule 2.
-@param params See joinTrees(); trees are linked if the strategy says so, too.
+@param params The rest.
 @param buffers Memory to work in.
 @param forest The result. */
 CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy,

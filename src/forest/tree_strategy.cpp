@@ -36,26 +36,57 @@ FileNode parameter(const FileNode& fn, const char* key, bool isInteger)
     return node;
 }
 
-} // namespace
-
-SegmentTree::SegmentTree(double k) : k_(checkedK(k)) {}
-
-void SegmentTree::write(FileStorage& fs) const { fs << "k" << k_; }
-
-void SegmentTree::read(const FileNode& fn) { k_ = checkedK((double)parameter(fn, "k", false)); }
-
-RandomTree::RandomTree(int seed) : seed_(checkedSeed(seed)) {}
-
-void RandomTree::orderEdges(const Mat&, std::vector<int>& edges) const
+class MinimumSpanningTree CV_FINAL : public TreeStrategy
 {
-    RNG rng((uint64)seed_ + 1); // the state 0 of cv::RNG stands for another one
-    for (int i = (int)edges.size() - 1; i > 0; --i)
-        std::swap(edges[i], edges[rng.uniform(0, i + 1)]);
-}
+public:
+    bool ordersByWeight() const CV_OVERRIDE { return true; }
+    bool mayJoin(int, const TreeState&, const TreeState&) const CV_OVERRIDE { return true; }
+    String getDefaultName() const CV_OVERRIDE { return "hdpstereo_MinimumSpanningTree"; }
+};
 
-void RandomTree::write(FileStorage& fs) const { fs << "seed" << seed_; }
+//! As in the authors' program, which has the first pass of the segment tree alone, with k = 1200 and without uniting
+//! intervals, and a second pass, see linksTrees(), only without prediction. The paper just cites the segment tree.
+class SegmentTree CV_FINAL : public TreeStrategy
+{
+public:
+    explicit SegmentTree(double k) : k_(checkedK(k)) {}
 
-void RandomTree::read(const FileNode& fn) { seed_ = checkedSeed((int)parameter(fn, "seed", true)); }
+    bool ordersByWeight() const CV_OVERRIDE { return true; }
+    bool mayJoin(int weight, const TreeState& a, const TreeState& b) const CV_OVERRIDE
+    {
+        return weight <= a.maxWeight + k_ / a.size && weight <= b.maxWeight + k_ / b.size;
+    }
+    bool unitesIntervals() const CV_OVERRIDE { return false; }
+    String getDefaultName() const CV_OVERRIDE { return "hdpstereo_SegmentTree"; }
+    void write(FileStorage& fs) const CV_OVERRIDE { fs << "k" << k_; }
+    void read(const FileNode& fn) CV_OVERRIDE { k_ = checkedK((double)parameter(fn, "k", false)); }
+
+private:
+    double k_;
+};
+
+//! The authors' program shuffles by std::random_shuffle, whose order depends on the machine.
+class RandomTree CV_FINAL : public TreeStrategy
+{
+public:
+    explicit RandomTree(int seed) : seed_(checkedSeed(seed)) {}
+
+    void orderEdges(const Mat&, std::vector<int>& edges) const CV_OVERRIDE
+    {
+        RNG rng((uint64)seed_ + 1); // the state 0 of cv::RNG stands for another one
+        for (int i = (int)edges.size() - 1; i > 0; --i)
+            std::swap(edges[i], edges[rng.uniform(0, i + 1)]);
+    }
+    bool mayJoin(int, const TreeState&, const TreeState&) const CV_OVERRIDE { return true; }
+    String getDefaultName() const CV_OVERRIDE { return "hdpstereo_RandomTree"; }
+    void write(FileStorage& fs) const CV_OVERRIDE { fs << "seed" << seed_; }
+    void read(const FileNode& fn) CV_OVERRIDE { seed_ = checkedSeed((int)parameter(fn, "seed", true)); }
+
+private:
+    int seed_;
+};
+
+} // namespace
 
 Ptr<TreeStrategy> createTreeStrategy(const String& name)
 {
