@@ -36,6 +36,11 @@ int countLanes(int candidates, int treeSize)
     return lanes;
 }
 
+Range candidatesOf(const DisparityTree& tree)
+{
+    return tree.interval.empty() ? Range() : Range(tree.interval.first, tree.interval.last + 1);
+}
+
 //! Calls take(run, lanes) for runs of candidates that are in memory at once.
 template <typename Take> void forEachRun(const Range& candidates, int treeSize, const Take& take)
 {
@@ -57,10 +62,7 @@ class Matching CV_FINAL : public AggregationProblem
 public:
     Matching(const MatchingCost& cost, bool subpixel) : cost_(cost), subpixel_(subpixel) {}
 
-    Range candidates(const TreeWalk&, const DisparityTree& tree) const CV_OVERRIDE
-    {
-        return tree.interval.empty() ? Range() : Range(tree.interval.first, tree.interval.last + 1);
-    }
+    Range candidates(const TreeWalk&, const DisparityTree& tree) const CV_OVERRIDE { return candidatesOf(tree); }
 
     void evaluate(const int* pixels, int count, int first, int lanes, float* costs) const CV_OVERRIDE
     {
@@ -86,6 +88,32 @@ private:
     const bool subpixel_;
 };
 
+//! The candidates of a tree in groups of whole runs: one group, or several of a large tree that are done side by side
+struct CandidateGroups
+{
+    int count;
+    Range of[maxGroups];
+
+    CandidateGroups(const Range& candidates, int treeSize)
+    {
+        const int lanes = countLanes(candidates.size(), treeSize), runs = (candidates.size() + lanes - 1) / lanes;
+        count = treeSize >= largeTree ? std::min(runs, maxGroups) : 1;
+        const auto firstOf = [&](int group) {
+            return std::min(candidates.start + group * runs / count * lanes, candidates.end);
+        };
+        for (int g = 0; g < count; ++g)
+            of[g] = Range(firstOf(g), firstOf(g + 1));
+    }
+
+    //! Calls take(group, scratch) for each; own: the scratch of this thread.
+    template <typename Take> void forEach(AggregationBuffers& buffers, AggregationScratch& own, const Take& take) const
+    {
+        if (count == 1)
+            return take(0, own);
+        parallelFor(count, [&](int g) { take(g, buffers.getRef()); });
+    }
+};
+
 //! Winners over the sums
 struct WinnerAggregation
 {
@@ -93,6 +121,29 @@ struct WinnerAggregation
     const AggregationProblem& problem;
     const EdgeSimilarity similarity;
     ushort* disparity;
+
+    void process(const DisparityTree& tree, AggregationScratch& own, AggregationBuffers& buffers) const
+    {
+        const TreeWalk& walk = own.walk; // groups use other members of it
+        walkTree(forest, tree, own.walk);
+        const Range candidates = problem.candidates(walk, tree);
+        if (candidates.empty())
+            return;
+        const CandidateGroups groups(candidates, tree.size);
+        own.winners.resize(maxGroups);
+        groups.forEach(buffers, own, [&](int g, AggregationScratch& scratch) {
+            takeWinners(walk, tree.size, groups.of[g], scratch.costs, own.winners[g]);
+        });
+        std::vector<RunWinner>& winners = own.winners[0];
+        const auto finish = [&](const Range& range) {
+            for (int i = range.start; i < range.end; ++i)
+                for (int g = 1; g < groups.count; ++g)
+                    cpu_baseline::joinWinner(winners[i], own.winners[g][i], groups.of[g].start);
+            problem.setDisparities(&walk.pixels[range.start], &winners[range.start], range.size(), disparity);
+        };
+        const Range all(0, tree.size);
+        groups.count > 1 ? parallel_for_(all, finish) : finish(all);
+    }
 
     //! The winners of some candidates, run by run
     void takeWinners(const TreeWalk& walk, int size, const Range& candidates, std::vector<float>& costs,
@@ -108,81 +159,7 @@ struct WinnerAggregation
             dispatched::aggregateRun(walk, size, similarity.table, run, lanes, joins, costs.data(), winners.data());
         });
     }
-
-    void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
-    {
-        walkTree(forest, tree, scratch.walk);
-        const Range candidates = problem.candidates(scratch.walk, tree);
-        if (candidates.empty())
-            return;
-        takeWinners(scratch.walk, tree.size, candidates, scratch.costs, scratch.winners);
-        problem.setDisparities(scratch.walk.pixels.data(), scratch.winners.data(), tree.size, disparity);
-    }
-
-    //! Groups of candidates side by side
-    void processLarge(const DisparityTree& tree, AggregationBuffers& buffers) const
-    {
-        TreeWalk& walk = buffers.ofThread.getRef().walk; // groups use other members of it
-        walkTree(forest, tree, walk);
-        const Range candidates = problem.candidates(walk, tree);
-        if (candidates.empty())
-            return;
-
-        // Whole runs for each group
-        const int lanes = countLanes(candidates.size(), tree.size);
-        const int runs = (candidates.size() + lanes - 1) / lanes, count = std::min(runs, maxGroups);
-        const auto firstOf = [&](int group) {
-            return std::min(candidates.start + group * runs / count * lanes, candidates.end);
-        };
-        std::vector<std::vector<RunWinner>>& groups = buffers.groups;
-        groups.resize(maxGroups);
-        parallelFor(count, [&](int g) {
-            std::vector<float>& costs = buffers.ofThread.getRef().costs;
-            takeWinners(walk, tree.size, Range(firstOf(g), firstOf(g + 1)), costs, groups[g]);
-        });
-
-        parallel_for_(Range(0, tree.size), [&](const Range& range) {
-            for (int i = range.start; i < range.end; ++i)
-                for (int g = 1; g < count; ++g)
-                    cpu_baseline::joinWinner(groups[0][i], groups[g][i], firstOf(g));
-            problem.setDisparities(&walk.pixels[range.start], &groups[0][range.start], range.size(), disparity);
-        });
-    }
 };
-
-//! Calls processLarge() for each large tree with many candidates, one by one, and processSmall() for the others, in
-//! parallel.
-template <typename Aggregation> void aggregateTrees(const Aggregation& aggregation, AggregationBuffers& buffers)
-{
-    const DisparityForest& forest = aggregation.forest;
-    // Tasks of about the same work, in the order of the trees
-    std::vector<Range> tasks;
-    int64 work = taskWork;
-    for (int t = 0; t < (int)forest.trees.size(); ++t)
-    {
-        const DisparityTree& tree = forest.trees[t];
-        const int candidates = tree.interval.size();
-        if (tree.size >= largeTree && candidates > countLanes(candidates, tree.size)) // several runs, side by side
-        {
-            aggregation.processLarge(tree, buffers);
-            work = taskWork;
-            continue;
-        }
-        if (work >= taskWork)
-        {
-            tasks.push_back(Range(t, t));
-            work = 0;
-        }
-        tasks.back().end = t + 1;
-        work += (int64)tree.size * tree.interval.size();
-    }
-
-    parallelFor((int)tasks.size(), [&](int i) {
-        AggregationScratch& scratch = buffers.ofThread.getRef();
-        for (int t = tasks[i].start; t < tasks[i].end; ++t)
-            aggregation.processSmall(forest.trees[t], scratch);
-    });
-}
 
 //! Means over the trees, to a volume
 struct MeanAggregation
@@ -192,7 +169,20 @@ struct MeanAggregation
     const EdgeSimilarity similarity;
     CostVolume& volume;
 
-    size_t numberOf(const DisparityTree& tree) const { return &tree - forest.trees.data(); }
+    void process(const DisparityTree& tree, AggregationScratch& own, AggregationBuffers& buffers) const
+    {
+        walkTree(forest, tree, own.walk);
+        volume.place(forest, &tree - forest.trees.data(), own.walk.pixels.data());
+        if (tree.interval.empty())
+            return;
+        weighNodes(own.walk, tree.size, own.means);
+        const CandidateGroups groups(candidatesOf(tree), tree.size);
+        groups.forEach(buffers, own, [&](int g, AggregationScratch& scratch) {
+            forEachRun(groups.of[g], tree.size, [&](const Range& run, int lanes) {
+                takeMeans(own.walk, tree.size, own.means.nodes.data(), run, lanes, scratch.means);
+            });
+        });
+    }
 
     //! The shares, from the sums of similarities in the same two passes
     void weighNodes(const TreeWalk& walk, int size, MeanBuffers& buffers) const
@@ -233,38 +223,40 @@ struct MeanAggregation
         cost.evaluate(walk.pixels.data(), size, run.start, lanes, buffers.costs.data());
         dispatched::averageRun(walk, nodes, size, run, lanes, buffers.costs.data(), buffers.means.data(), volume);
     }
-
-    void processSmall(const DisparityTree& tree, AggregationScratch& scratch) const
-    {
-        walkTree(forest, tree, scratch.walk);
-        volume.place(forest, numberOf(tree), scratch.walk.pixels.data());
-        if (tree.interval.empty())
-            return;
-        weighNodes(scratch.walk, tree.size, scratch.means);
-        forEachRun(Range(tree.interval.first, tree.interval.last + 1), tree.size, [&](const Range& run, int lanes) {
-            takeMeans(scratch.walk, tree.size, scratch.means.nodes.data(), run, lanes, scratch.means);
-        });
-    }
-
-    void processLarge(const DisparityTree& tree, AggregationBuffers& buffers) const
-    {
-        AggregationScratch& whole = buffers.ofThread.getRef(); // groups use other members of it
-        const TreeWalk& walk = whole.walk;
-        walkTree(forest, tree, whole.walk);
-        volume.place(forest, numberOf(tree), walk.pixels.data());
-        weighNodes(walk, tree.size, whole.means);
-        const int first = tree.interval.first, end = tree.interval.last + 1;
-        const int lanes = countLanes(end - first, tree.size);
-        const int runs = (end - first + lanes - 1) / lanes, groups = std::min(runs, maxGroups);
-        parallelFor(groups, [&](int group) {
-            for (int i = runs * group / groups; i < runs * (group + 1) / groups; ++i)
-            {
-                const Range run(first + i * lanes, std::min(first + (i + 1) * lanes, end));
-                takeMeans(walk, tree.size, whole.means.nodes.data(), run, lanes, buffers.ofThread.getRef().means);
-            }
-        });
-    }
 };
+
+//! Calls aggregation.process() for each tree: for large ones with several groups of candidates one by one, for the
+//! others in parallel.
+template <typename Aggregation> void aggregateTrees(const Aggregation& aggregation, AggregationBuffers& buffers)
+{
+    const DisparityForest& forest = aggregation.forest;
+    // Tasks of about the same work, in the order of the trees
+    std::vector<Range> tasks;
+    int64 work = taskWork;
+    for (int t = 0; t < (int)forest.trees.size(); ++t)
+    {
+        const DisparityTree& tree = forest.trees[t];
+        if (CandidateGroups(candidatesOf(tree), tree.size).count > 1)
+        {
+            aggregation.process(tree, buffers.getRef(), buffers);
+            work = taskWork;
+            continue;
+        }
+        if (work >= taskWork)
+        {
+            tasks.push_back(Range(t, t));
+            work = 0;
+        }
+        tasks.back().end = t + 1;
+        work += (int64)tree.size * tree.interval.size();
+    }
+
+    parallelFor((int)tasks.size(), [&](int i) {
+        AggregationScratch& scratch = buffers.getRef();
+        for (int t = tasks[i].start; t < tasks[i].end; ++t)
+            aggregation.process(forest.trees[t], scratch, buffers);
+    });
+}
 
 } // namespace
 

@@ -54,15 +54,11 @@ struct AggregationScratch
 {
     TreeWalk walk;
     std::vector<float> costs;
-    std::vector<RunWinner> winners; // by position in the walk
+    std::vector<std::vector<RunWinner>> winners; // of groups of candidates, by position in the walk
     MeanBuffers means;
 };
 
-struct AggregationBuffers
-{
-    TLSData<AggregationScratch> ofThread;
-    std::vector<std::vector<RunWinner>> groups; // of a large tree's candidates
-};
+typedef TLSData<AggregationScratch> AggregationBuffers;
 
 //! What winners are taken of: the candidates of each tree, their costs, and the disparity that a winner stands for
 class AggregationProblem
