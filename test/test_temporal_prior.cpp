@@ -125,7 +125,7 @@ TEST(HDPStereo_TemporalPrior, contradiction)
     for (bool areMeans : { false, true })
     {
         CostVolume volume = flatVolume(layerSize / side);
-        volume.costs[15] = (uchar)(flatCost - CostPreference::contradiction - 1);
+        volume.costs[15] = (uchar)(flatCost - contradiction - 1);
         const std::vector<uchar> before = volume.costs;
         prefer(video, areMeans, volume);
         for (int k = 0; k < candidates; ++k)
@@ -147,7 +147,7 @@ TEST(HDPStereo_TemporalPrior, contradicted_frame)
         predictDisparities(video.last, video.next, side, volume.size, predicted);
         return refusesLastFrame(volume, predicted);
     };
-    const int rise = CostPreference::contradiction + 1;
+    const int rise = contradiction + 1;
     EXPECT_FALSE(contradicts(0, rise, false));
     EXPECT_FALSE(contradicts(9, rise, false));
     EXPECT_TRUE(contradicts(10, rise, false));
@@ -190,7 +190,6 @@ TEST(HDPStereo_TemporalPrior, hasPrior)
 TEST(HDPStereo_CostVolume, prefer)
 {
     const int largest = 12;
-    const CostPreference preference(largest);
     CostVolume volume = flatVolume(Size(3, 1));
     const auto costsOf = [&](int pixel) { return &volume.costs[volume.candidates[pixel].start()]; };
     const DisparityInterval none = { 1, 0 };
@@ -198,7 +197,7 @@ TEST(HDPStereo_CostVolume, prefer)
     costsOf(2)[0] = 250;
     const std::vector<uchar> before = volume.costs;
     for (int pixel = 0; pixel < 3; ++pixel)
-        preference.apply(pixel, 7.25, volume);
+        preferDisparity(pixel, 7.25, largest, volume);
     for (int k = 0; k < candidates; ++k)
     {
         const int rise = std::min(cvRound(CostVolume::scale * std::abs(k - 7.25)), largest);
@@ -206,13 +205,13 @@ TEST(HDPStereo_CostVolume, prefer)
         EXPECT_EQ(before[2 * CostVolume::row + k], costsOf(1)[k]) << "of a pixel without candidates";
         EXPECT_EQ(std::min(before[4 * CostVolume::row + k] + rise, 255), costsOf(2)[k]);
     }
-    preference.apply(0, 1e6, volume); // beyond the candidates, whose costs all rise by as much
+    preferDisparity(0, 1e6, largest, volume); // beyond the candidates, whose costs all rise by as much
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[0]);
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[candidates - 1]);
 
     volume.costs = before;
     volume.steps = 2; // candidates per pixel of disparity
-    preference.apply(0, 7.25 / 2, volume);
+    preferDisparity(0, 7.25 / 2, largest, volume);
     for (int k = 0; k < candidates; ++k)
         EXPECT_EQ(flatCost + std::min(cvRound(CostVolume::scale * std::abs(k - 7.25)), largest), costsOf(0)[k]);
 }
@@ -228,7 +227,7 @@ TEST(HDPStereo_CostVolume, prefer_of_many)
     volume.costs.assign(volume.rows * CostVolume::row, (uchar)flatCost);
     const CostVolume::Candidates own = { 0, { 0, many - 1 } };
     volume.candidates.push_back(own);
-    CostPreference(largest).apply(0, disparity, volume);
+    preferDisparity(0, disparity, largest, volume);
     for (int k = 0; k < many; ++k)
         ASSERT_EQ(flatCost + std::min(cvRound(CostVolume::scale * std::abs(k - disparity)), largest), volume.costs[k])
             << k;
@@ -240,15 +239,15 @@ TEST(HDPStereo_CostVolume, contradicts)
     const DisparityInterval none = { 1, 0 };
     volume.candidates[1].interval = none;
     uchar* const costs = &volume.costs[0];
-    costs[15] = (uchar)(flatCost - CostPreference::contradiction);
-    EXPECT_FALSE(CostPreference::isContradicted(0, 7.25f, volume));
-    costs[15] = (uchar)(flatCost - CostPreference::contradiction - 1);
-    EXPECT_TRUE(CostPreference::isContradicted(0, 7.25f, volume));
-    EXPECT_TRUE(CostPreference::isContradicted(0, 1e6, volume)) << "beyond the candidates";
-    EXPECT_TRUE(CostPreference::isContradicted(0, -1e6, volume)) << "beyond the candidates";
-    EXPECT_FALSE(CostPreference::isContradicted(0, 14.5f, volume));
-    EXPECT_TRUE(CostPreference::isContradicted(0, 14.4f, volume));
-    EXPECT_FALSE(CostPreference::isContradicted(1, 7.25f, volume)) << "a pixel without candidates";
+    costs[15] = (uchar)(flatCost - contradiction);
+    EXPECT_FALSE(isContradicted(0, 7.25f, volume));
+    costs[15] = (uchar)(flatCost - contradiction - 1);
+    EXPECT_TRUE(isContradicted(0, 7.25f, volume));
+    EXPECT_TRUE(isContradicted(0, 1e6, volume)) << "beyond the candidates";
+    EXPECT_TRUE(isContradicted(0, -1e6, volume)) << "beyond the candidates";
+    EXPECT_FALSE(isContradicted(0, 14.5f, volume));
+    EXPECT_TRUE(isContradicted(0, 14.4f, volume));
+    EXPECT_FALSE(isContradicted(1, 7.25f, volume)) << "a pixel without candidates";
 }
 
 //! In memory that held a larger volume before, too

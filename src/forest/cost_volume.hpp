@@ -51,12 +51,12 @@ struct CV_EXPORTS CostVolume
 
     //! Provides the memory for the trees of a forest.
     void create(const DisparityForest& forest);
-    //! Takes the costs as they are, of the same candidates for all pixels.
-    void fill(const TwoLayerCost& cost, const Size& size, const DisparityInterval& interval);
-    //! Pixels y * width + x of tree number t, as place() got them, if all have the same candidates
-    const int* pixelsOf(size_t t) const { return &pixels_[firsts_[t]]; }
     //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.
     void place(const DisparityForest& forest, size_t tree, const int* pixels);
+    //! Pixels y * width + x of a tree, as place() got them, if all have the same candidates
+    const int* pixelsOf(size_t tree) const { return &pixels_[firsts_[tree]]; }
+    //! Takes the costs as they are, of the same candidates for all pixels.
+    void fill(const TwoLayerCost& cost, const Size& size, const DisparityInterval& interval);
 
 private:
     void provideCosts(); // for the rows
@@ -72,33 +72,15 @@ private:
 //! Excludes the candidates that pixels do not have, by the largest cost. intervals: DisparityInterval, of the layer.
 CV_EXPORTS void excludeCandidates(const Mat& intervals, CostVolume& volume);
 
-/** Raises the costs of a pixel's other disparities than a preferred one: by a unit of cost, CostVolume::scale, per
-candidate of distance, up to a limit. */
-class CV_EXPORTS CostPreference
-{
-public:
-    enum
-    {
-        contradiction = 3 * CostVolume::scale, // see isContradicted()
-        farthest = 6                           // candidates up to which costs may go on rising
-    };
-    //! largest: the most that a cost rises by, up to farthest candidates, in units of the volume
-    explicit CostPreference(int largest);
+//! Raises the costs of other disparities of pixel y * width + x than a preferred one, in pixels: by a unit of cost,
+//! CostVolume::scale, per candidate of distance, up to a limit in units of the volume.
+CV_EXPORTS void preferDisparity(int pixel, float disparity, int limit, CostVolume& volume);
 
-    //! Raises the costs of pixel y * width + x; disparity in pixels.
-    void apply(int pixel, float disparity, CostVolume& volume) const;
-    //! Whether the cost of a disparity exceeds the lowest one of the pixel by more than the contradiction. A disparity
-    //! beyond the candidates counts as the nearest of them.
-    static bool isContradicted(int pixel, float disparity, const CostVolume& volume);
+const int contradiction = 3 * CostVolume::scale;
 
-private:
-    enum
-    {
-        centre = CostVolume::row + farthest + 1,
-        length = centre + farthest + 1 + CostVolume::row
-    };
-    uchar rises_[CostVolume::scale][length]; // by the fraction of the disparity, of the candidates around it
-};
+//! Whether the cost of a disparity, in pixels, exceeds the lowest one of the pixel by more than the contradiction. A
+//! disparity beyond the candidates counts as the nearest of them.
+CV_EXPORTS bool isContradicted(int pixel, float disparity, const CostVolume& volume);
 
 }}} // namespace cv::stereo::hdp
 

@@ -4,7 +4,6 @@
 #include "../precomp.hpp"
 #include "tree_planes.hpp"
 
-#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 #include <numeric>
 
@@ -27,8 +26,6 @@ HDP_TUNABLE(int, maxPenalty, 10, "cost", "of a disparity off the plane: so the s
 //! d = coefficients . (1, x, y)
 typedef Vec3d Plane;
 
-Vec3d basisOf(int pixel, int width) { return Vec3d(1, pixel % width, pixel / width); }
-
 //! The pixels of a tree that its plane is looked for with, in eight groups of every eighth one
 class TreeSamples
 {
@@ -47,7 +44,7 @@ public:
             for (int i = group * step; i < tree.size; i += groups * step, ++sample)
             {
                 const int pixel = pixels[i];
-                const Vec3d basis = basisOf(pixel, volume.size.width);
+                const Vec3d basis(1, pixel % volume.size.width, pixel / volume.size.width);
                 const CostVolume::Candidates own = volume.of(pixel);
                 const uchar* const costs = &volume.costs[own.start()];
                 std::copy(costs, costs + candidates, &costs_[sample * candidates]);
@@ -109,12 +106,17 @@ public:
     {
         int count = 0;
         for (int i = 0; i < count_; ++i)
-            count += std::abs(plane.dot(basis(i)) - disparity_[i]) <= fitDistance;
+            count += isOn(plane, i);
         return count / (double)count_;
     }
 
 private:
     Vec3d basis(int sample) const { return Vec3d(1, x_[sample], y_[sample]); }
+
+    bool isOn(const Plane& plane, int sample) const
+    {
+        return std::abs(plane.dot(basis(sample)) - disparity_[sample]) <= fitDistance;
+    }
 
     //! The candidate next to a disparity
     int candidateAt(float disparity) const
@@ -161,27 +163,16 @@ private:
     //! The least squares of the disparities near a plane
     Plane fitted(const Plane& plane) const
     {
-        Matx33d squares = Matx33d::eye() * 1e-6; // for pixels of one line
-        Vec3d sum = squares * plane;
-        double ones = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, d = 0, xd = 0, yd = 0;
+        Matx33d squares;
+        Vec3d sum;
         for (int i = 0; i < count_; ++i)
-        {
-            const double ownX = x_[i], ownY = y_[i], own = disparity_[i];
-            const double isNear = std::abs(plane[0] + plane[1] * ownX + plane[2] * ownY - own) <= fitDistance;
-            const double nearX = isNear * ownX, nearY = isNear * ownY;
-            ones += isNear;
-            x += nearX;
-            y += nearY;
-            xx += nearX * ownX;
-            xy += nearX * ownY;
-            yy += nearY * ownY;
-            d += isNear * own;
-            xd += nearX * own;
-            yd += nearY * own;
-        }
-        squares += Matx33d(ones, x, y, x, xx, xy, y, xy, yy);
-        sum += Vec3d(d, xd, yd);
-        return squares.solve(sum, DECOMP_CHOLESKY);
+            if (isOn(plane, i))
+            {
+                squares += basis(i) * basis(i).t();
+                sum += disparity_[i] * basis(i);
+            }
+        const Matx33d few = Matx33d::eye() * 1e-6; // for pixels of one line
+        return (few + squares).solve(few * plane + sum, DECOMP_CHOLESKY);
     }
 
     //! The plane through three samples; false if they lie on a line
@@ -214,14 +205,13 @@ private:
 
 void prefer(const Plane& plane, const int* pixels, int count, CostVolume& volume)
 {
-    const CostPreference preference(maxPenalty);
     const double rowsPerPixel = 1. / volume.size.width;
     for (int i = 0; i < count; ++i)
     {
         const int pixel = pixels[i], y = rowOf(pixel, rowsPerPixel), x = pixel - y * volume.size.width;
         const float disparity = (float)(plane[0] + plane[1] * x + plane[2] * y);
-        if (!CostPreference::isContradicted(pixel, disparity, volume))
-            preference.apply(pixel, disparity, volume);
+        if (!isContradicted(pixel, disparity, volume))
+            preferDisparity(pixel, disparity, maxPenalty, volume);
     }
 }
 
@@ -230,14 +220,12 @@ void prefer(const Plane& plane, const int* pixels, int count, CostVolume& volume
 int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVolume& volume)
 {
     CV_DbgAssert(volume.isUniform);
-    std::vector<size_t> trees;
-    for (size_t t = 0; t < forest.trees.size(); ++t)
-        if (forest.trees[t].size >= samples)
-            trees.push_back(t);
-    std::vector<uchar> hasPlane(trees.size());
-    parallelFor((int)trees.size(), [&](int t) {
-        const DisparityTree& tree = forest.trees[trees[t]];
-        const int* const pixels = volume.pixelsOf(trees[t]);
+    std::vector<uchar> hasPlane(forest.trees.size());
+    parallelFor((int)forest.trees.size(), [&](int t) {
+        const DisparityTree& tree = forest.trees[t];
+        if (tree.size < samples)
+            return;
+        const int* const pixels = volume.pixelsOf(t);
         const TreeSamples of(pixels, tree, disparity, volume);
         if (!of.haveContrast())
             return;

@@ -67,7 +67,7 @@ bool refusesLastFrame(const CostVolume& volume, Mat& predicted)
     parallelFor(volume.size.height, [&](int y) {
         float* const row = predicted.ptr<float>(y);
         for (int x = 0; x < volume.size.width; ++x)
-            if (row[x] >= 0 && CostPreference::isContradicted(y * volume.size.width + x, row[x], volume))
+            if (row[x] >= 0 && isContradicted(y * volume.size.width + x, row[x], volume))
                 row[x] = -1;
     });
     const int64 refused = known - countNonZero(predicted >= 0);
@@ -76,12 +76,11 @@ bool refusesLastFrame(const CostVolume& volume, Mat& predicted)
 
 void preferPredicted(const Mat& predicted, CostVolume& volume)
 {
-    const CostPreference preference(CostVolume::scale * maxPenalty);
     parallelFor(volume.size.height, [&](int y) {
         const float* const row = predicted.ptr<float>(y);
         for (int x = 0; x < volume.size.width; ++x)
             if (row[x] >= 0)
-                preference.apply(y * volume.size.width + x, row[x], volume);
+                preferDisparity(y * volume.size.width + x, row[x], CostVolume::scale * maxPenalty, volume);
     });
 }
 
