@@ -4,7 +4,6 @@
 #include "../precomp.hpp"
 #include "repeated_surfaces.hpp"
 
-#include "../base/vectorized.hpp"
 #include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -30,42 +29,18 @@ struct Run
     int centre; // of its lowest costs, in halves of a candidate
 };
 
-//! Where candidates fit
-struct Fit
-{
-    int first, last;
-    int lowest; // cost
-    bool hasBarrier;
-};
-
-//! The candidates of a pixel up to fitRise above the lowest cost, and whether there is a barrier between them. Indices
-//! are short: vectors hold more of them.
-Fit fitOf(const CostVolume& volume, int pixel)
+//! Adds the runs of a pixel's candidates up to fitRise above the lowest cost, with a barrier between two of them.
+void addRuns(const CostVolume& volume, int pixel, std::vector<Run>& runs)
 {
     const CostVolume::Candidates own = volume.of(pixel);
-    const uchar *const costs = volume.costs.data() + own.start(), lowest = volume.lowestOf(own);
-    uchar highest = 0;
-    const short limit = (short)(lowest + fitRise), end = (short)own.interval.size();
-    short first = end, last = 0;
-    HDP_VECTORIZED for (short k = 0; k < end; ++k)
-    {
-        const bool fits = costs[k] <= limit;
-        first = std::min(first, fits ? k : end);
-        last = std::max(last, fits ? k : (short)0);
-    }
-    HDP_VECTORIZED for (int k = first; k < last; ++k) highest = std::max(highest, costs[k]);
-    return { first, last, lowest, highest >= lowest + barrierRise };
-}
-
-void addRuns(const uchar* costs, const Fit& fit, std::vector<Run>& runs)
-{
+    const uchar *const costs = volume.costs.data() + own.start(), least = volume.lowestOf(own);
     bool isOpen = false;
-    int lowest = 0, from = 0;
-    for (int k = fit.first; k <= fit.last; ++k)
+    int lowest = 0, from = 0; // of the run
+    for (int k = 0; k < own.interval.size(); ++k)
     {
-        if (costs[k] > fit.lowest + fitRise)
+        if (costs[k] > least + fitRise)
         {
-            isOpen &= costs[k] < fit.lowest + barrierRise;
+            isOpen &= costs[k] < least + barrierRise;
             continue;
         }
         if (!isOpen)
@@ -116,18 +91,14 @@ public:
     {
         if (!looksRepeated())
             return 0;
-        fits_.resize(pixels_);
-        firsts_.resize(pixels_ + 1);
-        parallelFor(pixels_, [&](int i) { fits_[i] = fitOf(volume_, i); });
         joinRuns();
-        int count = 0;
-        for (const std::vector<int>& area : findAreas())
-            if ((int)area.size() >= minPixels)
-            {
-                preferLargest(area);
-                count += (int)area.size();
-            }
-        return count;
+        const std::vector<int> repeated = findRepeated();
+        for (int i : repeated)
+            for (int a = firsts_[i]; a < firsts_[i + 1]; ++a)
+                count(i, a);
+        for (int i : repeated)
+            raiseOthers(i);
+        return (int)repeated.size();
     }
 
 private:
@@ -140,11 +111,8 @@ private:
             for (int x = sampleStep / 2; x < width_; x += sampleStep, ++samples)
             {
                 const int i = y * width_ + x;
-                const Fit fit = fitOf(volume_, i);
-                if (!fit.hasBarrier)
-                    continue;
                 runs.clear();
-                addRuns(costsOf(i), fit, runs);
+                addRuns(volume_, i, runs);
                 int periods = 0;
                 for (size_t a = 1; a < runs.size() && periods == 0; ++a)
                     periods = periodsAlike(i, runs[a].centre - runs[a - 1].centre);
@@ -169,9 +137,10 @@ private:
     {
         for (int i = 0; i < pixels_; ++i)
         {
-            addRuns(costsOf(i), fits_[i], runs_);
-            firsts_[i + 1] = (int)runs_.size();
+            firsts_.push_back((int)runs_.size());
+            addRuns(volume_, i, runs_);
         }
+        firsts_.push_back((int)runs_.size());
         sizes_.resize(runs_.size());
         surfaces_.resize(runs_.size());
         std::iota(surfaces_.begin(), surfaces_.end(), 0);
@@ -219,11 +188,11 @@ private:
     //! Leaves out the runs of small surfaces.
     void keepLarge(Sets& joined, int least)
     {
-        std::fill(sizes_.begin(), sizes_.end(), 0);
+        std::vector<int> sizes(sizes_.size());
         for (int& surface : surfaces_)
         {
             surface = joined.find(surface);
-            ++sizes_[surface];
+            ++sizes[surface];
         }
         int kept = 0;
         for (int i = 0, a = 0; i < pixels_; ++i)
@@ -231,7 +200,7 @@ private:
             const int end = firsts_[i + 1];
             firsts_[i] = kept;
             for (; a < end; ++a)
-                if (sizes_[surfaces_[a]] >= least)
+                if (sizes[surfaces_[a]] >= least)
                 {
                     runs_[kept] = runs_[a];
                     surfaces_[kept++] = surfaces_[a];
@@ -239,7 +208,6 @@ private:
         }
         firsts_[pixels_] = kept;
         surfaces_.resize(kept);
-        std::fill(sizes_.begin(), sizes_.end(), 0);
     }
 
     void joinPixels(int p, int q, Sets& joined) const
@@ -256,47 +224,22 @@ private:
 
     bool isRepeated(int pixel) const { return firsts_[pixel + 1] - firsts_[pixel] > 1; }
 
-    //! Pixels with several surfaces, together if they have some in common: not only if they touch, as the corners of
-    //! a grid do not
-    std::vector<std::vector<int>> findAreas() const
+    //! Pixels with several surfaces, of areas that are not small. They are of one area if they have some in common: not
+    //! only if they touch, as the corners of a grid do not.
+    std::vector<int> findRepeated() const
     {
-        Sets joined(sizes_.size());
+        Sets areas(sizes_.size());
         for (int i = 0; i < pixels_; ++i)
             for (int a = firsts_[i] + 1; a < firsts_[i + 1]; ++a)
-                joined.join(surfaces_[a - 1], surfaces_[a]);
-        std::vector<int> numbers(sizes_.size(), -1);
-        std::vector<std::vector<int>> areas;
+                areas.join(surfaces_[a - 1], surfaces_[a]);
+        std::vector<int> areaSizes(sizes_.size()), repeated;
         for (int i = 0; i < pixels_; ++i)
-        {
-            if (!isRepeated(i))
-                continue;
-            int& number = numbers[joined.find(surfaces_[firsts_[i]])];
-            if (number < 0)
-            {
-                number = (int)areas.size();
-                areas.push_back(std::vector<int>());
-            }
-            areas[number].push_back(i);
-        }
-        return areas;
-    }
-
-    void preferLargest(const std::vector<int>& area)
-    {
-        for (int i : area)
-            for (int a = firsts_[i]; a < firsts_[i + 1]; ++a)
-                count(i, a);
-        for (int i : area)
-        {
-            int best = firsts_[i];
-            for (int a = best + 1; a < firsts_[i + 1]; ++a)
-                if (sizes_[surfaces_[a]] > sizes_[surfaces_[best]])
-                    best = a;
-            raiseOthers(costsOf(i), volume_.of(i).interval.size(), runs_[best]);
-        }
-        for (int i : area)
-            for (int a = firsts_[i]; a < firsts_[i + 1]; ++a)
-                sizes_[surfaces_[a]] = 0;
+            if (isRepeated(i))
+                ++areaSizes[areas.find(surfaces_[firsts_[i]])];
+        for (int i = 0; i < pixels_; ++i)
+            if (isRepeated(i) && areaSizes[areas.find(surfaces_[firsts_[i]])] >= minPixels)
+                repeated.push_back(i);
+        return repeated;
     }
 
     //! A run of a pixel with several ones, and what is beside it
@@ -359,24 +302,28 @@ private:
         return alike;
     }
 
-    static void raiseOthers(uchar* costs, int count, const Run& run)
+    //! The costs of candidates of other surfaces than the largest one
+    void raiseOthers(int pixel)
     {
-        for (int k = 0; k < count; ++k)
-            if (k < run.first - 1 || k > run.last + 1)
-                costs[k] = (uchar)std::min(costs[k] + penalty, +UCHAR_MAX);
+        int best = firsts_[pixel];
+        for (int a = best + 1; a < firsts_[pixel + 1]; ++a)
+            if (sizes_[surfaces_[a]] > sizes_[surfaces_[best]])
+                best = a;
+        const CostVolume::Candidates own = volume_.of(pixel);
+        uchar* const costs = &volume_.costs[own.start()];
+        for (int k = 0; k < own.interval.size(); ++k)
+            if (k < runs_[best].first - 1 || k > runs_[best].last + 1)
+                costs[k] = saturate_cast<uchar>(costs[k] + penalty);
     }
-
-    uchar* costsOf(int pixel) const { return &volume_.costs[volume_.of(pixel).start()]; }
 
     const CensusCost& own_;
     CostVolume& volume_;
     const int width_, pixels_;
-    std::vector<Fit> fits_;
     std::vector<Run> runs_;
-    std::vector<int> firsts_;   // by pixel: of runs
-    std::vector<int> surfaces_; // of runs
-    std::vector<int> sizes_;    // of surfaces, in the area that is looked at
-    std::vector<uchar> isCounted_;
+    std::vector<int> firsts_;      // by pixel: of runs
+    std::vector<int> surfaces_;    // of runs
+    std::vector<int> sizes_;       // of surfaces, in areas and beside them
+    std::vector<uchar> isCounted_; // runs beside areas
 };
 
 } // namespace
