@@ -278,10 +278,10 @@ private:
                 halveDisparity(result_.winners, own_.halvedWinners);
             });
         clock_.run("disparity prediction", [&] {
-            const WindowPrediction prediction = { isFirst ? in_.upper->disparity : own_.halved,
-                                                  isFirst ? in_.upper->winners : own_.halvedWinners };
-            findOtherSurfaces(prediction, own_.surfaceBuffers, own_.others);
-            predictWindows(prediction.upper, own_.others, plan_.numDisparities, own_.windows);
+            const Mat& upper = isFirst ? in_.upper->disparity : own_.halved;
+            const Mat& unfiltered = isFirst ? in_.upper->winners : own_.halvedWinners;
+            findOtherSurfaces(upper, unfiltered, own_.surfaceBuffers, own_.others);
+            predictWindows(upper, own_.others, plan_.numDisparities, own_.windows);
             if (in_.pair.hasRanges)
                 restrictWindows(intervals(), plan_.numDisparities, own_.windows);
         });

@@ -18,7 +18,7 @@ TEST(HDPStereo_OtherSurfaces, rule)
             SCOPED_TRACE(testing::Message() << size << ", disparities " << numDisparities);
             Prediction prediction(patchesAbove(rng, size, numDisparities, 7));
             prediction.addThinStructures(rng, numDisparities);
-            hdp::findOtherSurfaces(prediction.forStage(), buffers, others);
+            hdp::findOtherSurfaces(prediction.upper, prediction.unfiltered, buffers, others);
             ASSERT_EQ(size, others.size());
             ASSERT_EQ(CV_16UC1, others.type());
             for (int y = 0; y < size.height; ++y)

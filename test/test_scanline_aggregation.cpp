@@ -46,9 +46,8 @@ struct Layer
                             right.at<ushort>(y, x - d) = left.at<ushort>(y, x);
             }
         hdp::SurfaceBuffers buffers;
-        const hdp::WindowPrediction prediction = { upper, upper };
         Mat others;
-        hdp::findOtherSurfaces(prediction, buffers, others);
+        hdp::findOtherSurfaces(upper, upper, buffers, others);
         hdp::predictWindows(upper, others, numDisparities, windows);
     }
 

@@ -41,8 +41,6 @@ struct Prediction
                 if (rng.uniform(0, 30) == 0)
                     unfiltered.at<ushort>(y, x) = (ushort)rng.uniform(0, largest / 2 + 1);
     }
-
-    hdp::WindowPrediction forStage() const { return { upper, unfiltered }; }
 };
 
 namespace oracle {

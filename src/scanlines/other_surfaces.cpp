@@ -19,10 +19,10 @@ HDP_DISPATCH(findOthersOfRow)
 
 } // namespace
 
-void findOtherSurfaces(const WindowPrediction& prediction, SurfaceBuffers& buffers, Mat& others)
+void findOtherSurfaces(const Mat& upper, const Mat& unfiltered, SurfaceBuffers& buffers, Mat& others)
 {
-    const Mat maps[] = { prediction.upper, prediction.unfiltered };
-    const Size size = prediction.upper.size();
+    const Mat maps[] = { upper, unfiltered };
+    const Size size = upper.size();
     // Not Mat::ones(): the first thread with an expression sets them up, in OpenCV, which ThreadSanitizer does not see.
     const Mat kernel(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U, Scalar(1));
     for (int map = 0; map < 2; ++map)

@@ -8,13 +8,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! What is known of a layer before it is matched
-struct WindowPrediction
-{
-    const Mat& upper;      // the disparities of the layer above, CV_16UC1, a disparity map
-    const Mat& unfiltered; // the same before the median, which removes thin structures
-};
-
 //! Memory of findOtherSurfaces()
 struct SurfaceBuffers
 {
@@ -32,11 +25,12 @@ from it: the first one there is of
 - the pixel's own disparity before the median,
 - the farthest one of the disparities in 7 x 7 pixels,
 - the farthest one of those before the median.
-@param prediction What to find them in.
+@param upper The disparities of the layer above, CV_16UC1, a disparity map.
+@param unfiltered The same before the median, which removes thin structures.
 @param buffers Memory to work in.
 @param others Receives CV_16UC1 of the size of the layer above, in 1 / subpixelScale pixel of the layer: the other
 surface, or the pixel's own disparity if there is none. */
-CV_EXPORTS void findOtherSurfaces(const WindowPrediction& prediction, SurfaceBuffers& buffers, Mat& others);
+CV_EXPORTS void findOtherSurfaces(const Mat& upper, const Mat& unfiltered, SurfaceBuffers& buffers, Mat& others);
 
 //! Pixels of the layer between disparities of different surfaces: what is nearer is in one window of candidates
 const int otherSurfaceDistance = 5;
