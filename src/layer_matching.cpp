@@ -178,7 +178,7 @@ private:
     {
         if (in_.pair.hasRanges)
             excludeCandidates(candidateIntervals(), shared_.volume);
-        aggregateVolume(shared_.volume, weights, plan_.volumePenalties, shared_.volumeScanlines, result_.winners);
+        aggregateVolume(shared_.volume, weights, plan_.volumePenalties, shared_.volumeSums, result_.winners);
     }
 
     //! DisparityInterval of each pixel; empty without ranges

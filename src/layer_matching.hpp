@@ -70,7 +70,7 @@ struct SharedScratch
     ScanlineBuffers scanlines;
     TwoLayerCost volumeCost;
     CostVolume volume;
-    VolumeScanlineBuffers volumeScanlines;
+    std::vector<short> volumeSums;
     RangeBuffers rangeScanlines;
     VideoScratch video;
     Mat predicted;     // disparities of the top layer, by the last frame

@@ -32,6 +32,14 @@ template <typename Scratch, typename F> void parallelFor(int count, const Scratc
     });
 }
 
+//! At least so many elements of a vector that only ever grows
+template <typename T> T* grown(std::vector<T>& elements, size_t count)
+{
+    if (elements.size() < count)
+        elements.resize(count);
+    return elements.data();
+}
+
 }}} // namespace cv::stereo::hdp
 
 #endif

@@ -88,7 +88,7 @@ struct Layer
         return oracle::volumeDisparity(costs, weights, intervals, penalties);
     }
 
-    Mat aggregate(const hdp::VolumePenalties& penalties, hdp::VolumeScanlineBuffers& buffers) const
+    Mat aggregate(const hdp::VolumePenalties& penalties, std::vector<short>& buffers) const
     {
         Mat disparity;
         hdp::aggregateVolume(volume, weights, penalties, buffers, disparity);
@@ -99,7 +99,7 @@ struct Layer
 TEST(HDPStereo_VolumeScanlines, formula_in_images_of_any_size)
 {
     RNG rng(61);
-    hdp::VolumeScanlineBuffers buffers; // kept, as the matcher keeps them
+    std::vector<short> buffers; // kept, as the matcher keeps them
     for (int height : { 1, 2, 3, 7, 8, 9, 17, 30 })
         for (int width : { 1, 2, 3, 15, 16, 17, 31, 33 })
         {
@@ -112,7 +112,7 @@ TEST(HDPStereo_VolumeScanlines, formula_in_images_of_any_size)
 TEST(HDPStereo_VolumeScanlines, formula_for_any_number_of_disparities)
 {
     RNG rng(62);
-    hdp::VolumeScanlineBuffers buffers;
+    std::vector<short> buffers;
     for (int numDisparities = 1; numDisparities <= 70; ++numDisparities)
         for (int limit : { 3, 256 })
         {
@@ -129,7 +129,7 @@ TEST(HDPStereo_VolumeScanlines, formula_for_any_number_of_disparities)
 TEST(HDPStereo_VolumeScanlines, candidates_of_half_a_pixel)
 {
     RNG rng(63);
-    hdp::VolumeScanlineBuffers buffers;
+    std::vector<short> buffers;
     for (bool isFull : { true, false })
     {
         Layer layer(rng, Size(19, 11), 33, 256, isFull);
@@ -145,7 +145,7 @@ TEST(HDPStereo_VolumeScanlines, candidates_of_half_a_pixel)
 TEST(HDPStereo_VolumeScanlines, formula_for_candidates_of_each_pixel)
 {
     RNG rng(67);
-    hdp::VolumeScanlineBuffers buffers;
+    std::vector<short> buffers;
     for (int numDisparities : { 1, 2, 3, 5, 16, 17, 40, 100 })
         for (int limit : { 3, 256 })
             for (int i = 0; i < 6; ++i)
@@ -160,7 +160,7 @@ TEST(HDPStereo_VolumeScanlines, formula_for_candidates_of_each_pixel)
 TEST(HDPStereo_VolumeScanlines, any_penalties)
 {
     RNG rng(63);
-    hdp::VolumeScanlineBuffers buffers;
+    std::vector<short> buffers;
     const int largest = hdp::VolumePenalties::largest;
     for (int numDisparities : { 3, 33 })
     {
@@ -180,7 +180,7 @@ TEST(HDPStereo_VolumeScanlines, any_penalties)
 TEST(HDPStereo_VolumeScanlines, lowest_disparity_wins_a_tie)
 {
     RNG rng(64);
-    hdp::VolumeScanlineBuffers buffers;
+    std::vector<short> buffers;
     for (int numDisparities : { 1, 16, 37 })
     {
         const Layer layer(rng, Size(20, 10), numDisparities, 1); // all costs are 0
@@ -191,7 +191,7 @@ TEST(HDPStereo_VolumeScanlines, lowest_disparity_wins_a_tie)
 TEST(HDPStereo_VolumeScanlines, any_number_of_threads)
 {
     RNG rng(65);
-    hdp::VolumeScanlineBuffers buffers;
+    std::vector<short> buffers;
     const Layer layer(rng, Size(75, 61), 29, 256, false);
     const int threads = cv::getNumThreads();
     const Mat expected = layer.aggregate(usualPenalties, buffers);
@@ -206,7 +206,7 @@ TEST(HDPStereo_VolumeScanlines, any_number_of_threads)
 TEST(HDPStereo_VolumeScanlines, lanes_without_vectors)
 {
     RNG rng(66);
-    hdp::VolumeScanlineBuffers buffers;
+    std::vector<short> buffers;
     for (int numDisparities : { 1, 16, 50 })
     {
         const Size size(14, 8); // one block of scanlines

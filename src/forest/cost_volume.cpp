@@ -51,7 +51,7 @@ void CostVolume::create(const DisparityForest& forest)
         candidates.resize(size.area());
         rows = first;
     }
-    provideCosts();
+    grown(costs, rows * row);
 }
 
 void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pixels)
@@ -77,7 +77,7 @@ void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const Dis
     rows = (size_t)size.area() * usualRows_;
     isUniform = true;
     uniform_ = interval;
-    provideCosts();
+    grown(costs, rows * row);
     parallelFor(size.height, [&](int y) {
         std::vector<int> pixels(size.width);
         std::vector<uchar> run(size.width * row);
@@ -89,12 +89,6 @@ void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const Dis
                 std::copy_n(&run[x * row], +row, &costs[of(pixels[x]).start() + r * row]);
         }
     });
-}
-
-void CostVolume::provideCosts()
-{
-    if (costs.size() < rows * row)
-        costs.resize(rows * row);
 }
 
 void excludeCandidates(const Mat& intervals, CostVolume& volume)

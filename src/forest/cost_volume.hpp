@@ -59,8 +59,6 @@ struct CV_EXPORTS CostVolume
     void fill(const TwoLayerCost& cost, const Size& size, const DisparityInterval& interval);
 
 private:
-    void provideCosts(); // for the rows
-
     DisparityInterval uniform_; // the candidates of all pixels
     // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in
     // the order of the trees.

@@ -132,7 +132,13 @@ struct WinnerAggregation
         const CandidateGroups groups(candidates, tree.size);
         own.winners.resize(maxGroups);
         groups.forEach(buffers, own, [&](int g, AggregationScratch& scratch) {
-            takeWinners(walk, tree.size, groups.of[g], scratch.costs, own.winners[g]);
+            RunWinner* const winners = grown(own.winners[g], tree.size);
+            forEachRun(groups.of[g], tree.size, [&](const Range& run, int lanes) {
+                float* const costs = grown(scratch.costs, (size_t)tree.size * lanes);
+                problem.evaluate(walk.pixels.data(), tree.size, run.start, lanes, costs);
+                const bool joins = run.start > groups.of[g].start;
+                dispatched::aggregateRun(walk, tree.size, similarity.table, run, lanes, joins, costs, winners);
+            });
         });
         std::vector<RunWinner>& winners = own.winners[0];
         const auto finish = [&](const Range& range) {
@@ -143,21 +149,6 @@ struct WinnerAggregation
         };
         const Range all(0, tree.size);
         groups.count > 1 ? parallel_for_(all, finish) : finish(all);
-    }
-
-    //! The winners of some candidates, run by run
-    void takeWinners(const TreeWalk& walk, int size, const Range& candidates, std::vector<float>& costs,
-                     std::vector<RunWinner>& winners) const
-    {
-        if (winners.size() < (size_t)size)
-            winners.resize(size);
-        forEachRun(candidates, size, [&](const Range& run, int lanes) {
-            if (costs.size() < (size_t)size * lanes)
-                costs.resize((size_t)size * lanes);
-            problem.evaluate(walk.pixels.data(), size, run.start, lanes, costs.data());
-            const bool joins = run.start > candidates.start;
-            dispatched::aggregateRun(walk, size, similarity.table, run, lanes, joins, costs.data(), winners.data());
-        });
     }
 };
 
@@ -175,23 +166,26 @@ struct MeanAggregation
         volume.place(forest, &tree - forest.trees.data(), own.walk.pixels.data());
         if (tree.interval.empty())
             return;
-        weighNodes(own.walk, tree.size, own.means);
+        const MeanNode* const nodes = weighNodes(tree.size, own);
         const CandidateGroups groups(candidatesOf(tree), tree.size);
         groups.forEach(buffers, own, [&](int g, AggregationScratch& scratch) {
             forEachRun(groups.of[g], tree.size, [&](const Range& run, int lanes) {
-                takeMeans(own.walk, tree.size, own.means.nodes.data(), run, lanes, scratch.means);
+                const size_t count = (size_t)tree.size * lanes;
+                uchar* const costs = grown(scratch.meanCosts, count);
+                short* const means = grown(scratch.means, count);
+                cost.evaluate(own.walk.pixels.data(), tree.size, run.start, lanes, costs);
+                dispatched::averageRun(own.walk, nodes, tree.size, run, lanes, costs, means, volume);
             });
         });
     }
 
     //! The shares, from the sums of similarities in the same two passes
-    void weighNodes(const TreeWalk& walk, int size, MeanBuffers& buffers) const
+    const MeanNode* weighNodes(int size, AggregationScratch& own) const
     {
-        buffers.sums.assign(size, 1.f);
-        if (buffers.nodes.size() < (size_t)size)
-            buffers.nodes.resize(size);
-        float* const sums = buffers.sums.data();
-        MeanNode* const nodes = buffers.nodes.data();
+        const TreeWalk& walk = own.walk;
+        own.sums.assign(size, 1.f);
+        float* const sums = own.sums.data();
+        MeanNode* const nodes = grown(own.nodes, size);
         for (int i = size - 1; i > 0; --i)
         {
             float& parent = sums[walk.parents[i]];
@@ -209,19 +203,7 @@ struct MeanAggregation
             sums[i] = rest + (1 - s * s) * sums[i];
             nodes[i].fromParent = share(rest / sums[i]);
         }
-    }
-
-    void takeMeans(const TreeWalk& walk, int size, const MeanNode* nodes, const Range& run, int lanes,
-                   MeanBuffers& buffers) const
-    {
-        const size_t count = (size_t)size * lanes;
-        if (buffers.means.size() < count) // the last to grow, as in walkTree()
-        {
-            buffers.costs.resize(count);
-            buffers.means.resize(count);
-        }
-        cost.evaluate(walk.pixels.data(), size, run.start, lanes, buffers.costs.data());
-        dispatched::averageRun(walk, nodes, size, run, lanes, buffers.costs.data(), buffers.means.data(), volume);
+        return nodes;
     }
 };
 

@@ -40,22 +40,16 @@ struct MeanNode
     };
 };
 
-//! Memory for the means over a tree, by position in its walk
-struct MeanBuffers
-{
-    std::vector<float> sums; // of similarities
-    std::vector<MeanNode> nodes;
-    std::vector<uchar> costs; // of some candidates of each pixel, in units of the volume
-    std::vector<short> means;
-};
-
-//! Memory of one thread for the trees it works on
+//! Memory of one thread for the trees it works on, by position in the walk
 struct AggregationScratch
 {
     TreeWalk walk;
-    std::vector<float> costs;
-    std::vector<std::vector<RunWinner>> winners; // of groups of candidates, by position in the walk
-    MeanBuffers means;
+    std::vector<float> costs;                    // of some candidates
+    std::vector<std::vector<RunWinner>> winners; // of groups of candidates
+    std::vector<float> sums;                     // of similarities
+    std::vector<MeanNode> nodes;
+    std::vector<uchar> meanCosts; // of some candidates, in units of the volume
+    std::vector<short> means;
 };
 
 typedef TLSData<AggregationScratch> AggregationBuffers;

@@ -10,25 +10,16 @@ namespace cv { namespace stereo { namespace hdp {
 
 void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk& walk)
 {
-    if (walk.weights.size() < (size_t)tree.size) // the last to grow: if there was no memory, the others may be larger
-    {
-        walk.pixels.resize(tree.size);
-        walk.parents.resize(tree.size);
-        walk.weights.resize(tree.size);
-    }
-    if (walk.pending.empty())
-        walk.pending.resize(64);
     const int width = forest.links.cols;
     const uchar* links = forest.links.ptr();
     const uchar* weights = forest.weights.ptr();
     // By the side on which the parent of pixel p is: the number of the edge to it, less 2 * p
     const int edgeOffsets[] = { 0, 0, 1, 0, -2, 0, 0, 0, 1 - 2 * width };
 
-    int* pixels = walk.pixels.data();
-    int* parents = walk.parents.data();
-    uchar* edges = walk.weights.data();
-    TreeWalk::Step* pending = walk.pending.data();
-    size_t capacity = walk.pending.size();
+    int* const pixels = grown(walk.pixels, tree.size);
+    int* const parents = grown(walk.parents, tree.size);
+    uchar* const edges = grown(walk.weights, tree.size);
+    TreeWalk::Step* pending = grown(walk.pending, 64);
     pending[0] = { tree.root, 0, 0 };
     size_t count = 1;
     for (int i = 0; count > 0; ++i)
@@ -41,12 +32,8 @@ void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk
         edges[i] = weights[2 * p + edgeOffsets[parentLink]];
 
         // All four neighbours are written and only children are counted: branches would often be mispredicted.
-        if (count + 4 > capacity)
-        {
-            capacity *= 2;
-            walk.pending.resize(capacity);
-            pending = walk.pending.data();
-        }
+        if (count + 4 > walk.pending.size())
+            pending = grown(walk.pending, 2 * walk.pending.size());
         const int children = links[p] & ~parentLink;
         pending[count] = { p - width, i, TreeLink::BELOW };
         count += (children / TreeLink::ABOVE) & 1;

@@ -23,34 +23,36 @@ HDP_DISPATCH(aggregateColumns)
 
 //! Calls aggregate(scanlines, memory) for each block of scanlines.
 template <typename Aggregate>
-void runBlocks(const VolumeProblem& problem, int scanlines, int block, Mat& lines, const Aggregate& aggregate)
+void runBlocks(const VolumeProblem& problem, int scanlines, int block, const Aggregate& aggregate)
 {
-    const int blocks = (scanlines + block - 1) / block;
-    lines.create(blocks, problem.lineMemory(block), CV_16S);
-    parallelFor(blocks,
-                [&](int i) { aggregate(Range(i * block, std::min((i + 1) * block, scanlines)), lines.ptr<short>(i)); });
+    const std::vector<short> memory(problem.lineMemory(block));
+    parallelFor((scanlines + block - 1) / block, memory, [&](int i, std::vector<short>& lines) {
+        aggregate(Range(i * block, std::min((i + 1) * block, scanlines)), lines.data());
+    });
 }
 
 } // namespace
 
 void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumePenalties& penalties,
-                     VolumeScanlineBuffers& buffers, Mat& disparity)
+                     std::vector<short>& sums, Mat& disparity)
 {
     CV_DbgAssert(std::max(penalties.small, penalties.large) <= VolumePenalties::largest);
     const Size size = volume.size;
-    if (buffers.sums.size() < volume.rows * CostVolume::row)
-        buffers.sums.resize(volume.rows * CostVolume::row);
     disparity.create(size, CV_16U);
 
-    VolumeProblem problem = { volume, weights.ptr(),       (short)penalties.small,
-                              {},     buffers.sums.data(), disparity.ptr<ushort>() };
+    VolumeProblem problem = { volume,
+                              weights.ptr(),
+                              (short)penalties.small,
+                              {},
+                              grown(sums, volume.rows * CostVolume::row),
+                              disparity.ptr<ushort>() };
     const EdgeSimilarity similarity(penalties.gamma);
     for (int w = 0; w < 256; ++w)
         problem.large[w] = (short)std::max(penalties.small, cvRound(penalties.large * similarity.table[w]));
 
-    runBlocks(problem, size.height, blockRows, buffers.lines,
+    runBlocks(problem, size.height, blockRows,
               [&](const Range& rows, short* lines) { dispatched::aggregateRows(problem, rows, lines); });
-    runBlocks(problem, size.width, blockColumns(size.width), buffers.lines,
+    runBlocks(problem, size.width, blockColumns(size.width),
               [&](const Range& columns, short* lines) { dispatched::aggregateColumns(problem, columns, lines); });
 }
 

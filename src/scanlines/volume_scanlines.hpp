@@ -19,12 +19,6 @@ struct VolumePenalties
     };
 };
 
-struct VolumeScanlineBuffers
-{
-    std::vector<short> sums; // those of the directions so far, in the order of the volume; it only ever grows
-    Mat lines;               // L of the pixels before, a row per block of scanlines
-};
-
 //! What is aggregated, see aggregateVolume(), and where to
 struct VolumeProblem
 {
@@ -59,10 +53,10 @@ that of the slope between those next to it, or that which leaves the fraction at
 @param volume The costs C.
 @param weights w, CV_8UC2, see weighEdges().
 @param penalties The penalties.
-@param buffers Memory to work in.
+@param sums Memory to work in: those of the directions so far, in the order of the volume; it only ever grows.
 @param disparity Receives CV_16UC1, a disparity map. */
 CV_EXPORTS void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumePenalties& penalties,
-                                VolumeScanlineBuffers& buffers, Mat& disparity);
+                                std::vector<short>& sums, Mat& disparity);
 
 }}} // namespace cv::stereo::hdp
 
