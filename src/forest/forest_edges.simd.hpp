@@ -3,10 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "opencv2/core/hal/intrin.hpp"
-#include <algorithm>
-#endif
+#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
@@ -19,45 +16,32 @@ void weighRow(const uchar* row, const uchar* next, int width, int channels, ucha
 namespace {
 
 //! The largest absolute difference over the channels of two pixels
-int difference(const uchar* a, const uchar* b, int channels)
+template <int channels> CV_ALWAYS_INLINE uchar largestDifference(const uchar* a, const uchar* b)
 {
-    int largest = 0;
+    uchar largest = 0;
     for (int c = 0; c < channels; ++c)
-        largest = std::max(largest, std::abs(a[c] - b[c]));
+        largest = std::max(largest, difference(a[c], b[c]));
     return largest;
 }
 
-#if CV_SIMD128
-//! difference() of 16 pairs of pixels
-v_uint8x16 differences(const uchar* a, const uchar* b, int channels)
+template <int channels> void weighPixels(const uchar* row, const uchar* next, int width, uchar* weights)
 {
-    if (channels == 1)
-        return v_absdiff(v_load(a), v_load(b));
-    v_uint8x16 a0, a1, a2, b0, b1, b2;
-    v_load_deinterleave(a, a0, a1, a2);
-    v_load_deinterleave(b, b0, b1, b2);
-    return v_max(v_max(v_absdiff(a0, b0), v_absdiff(a1, b1)), v_absdiff(a2, b2));
+    const int last = width - 1;
+    HDP_VECTORIZED for (int x = 0; x < last; ++x)
+    {
+        const uchar* const p = row + x * channels;
+        weights[2 * x] = largestDifference<channels>(p, p + channels);
+        weights[2 * x + 1] = largestDifference<channels>(p, next + x * channels);
+    }
+    weights[2 * last] = 0; // there is no pixel
+    weights[2 * last + 1] = largestDifference<channels>(row + last * channels, next + last * channels);
 }
-#endif
 
 } // namespace
 
 void weighRow(const uchar* row, const uchar* next, int width, int channels, uchar* weights)
 {
-    int x = 0;
-#if CV_SIMD128
-    for (; x + 16 < width; x += 16)
-    {
-        const uchar *p = row + x * channels, *right = p + channels, *below = next + x * channels;
-        v_store_interleave(weights + 2 * x, differences(p, right, channels), differences(p, below, channels));
-    }
-#endif
-    for (; x < width; ++x)
-    {
-        const uchar *p = row + x * channels, *right = x + 1 < width ? p + channels : p;
-        weights[2 * x] = (uchar)difference(p, right, channels);
-        weights[2 * x + 1] = (uchar)difference(p, next + x * channels, channels);
-    }
+    channels == 1 ? weighPixels<1>(row, next, width, weights) : weighPixels<3>(row, next, width, weights);
 }
 
 #endif
