@@ -26,7 +26,9 @@ HDP_TUNABLE(int, penalty, 32, "cost", "of candidates of other surfaces: more tha
 struct Run
 {
     int first, last;
-    int centre; // of its lowest costs, in halves of a candidate
+    int centre;     // of its lowest costs, in halves of a candidate
+    int surface;    // its number
+    bool isCounted; // as a part of its surface beside areas
 };
 
 //! Adds the runs of a pixel's candidates up to fitRise above the lowest cost, with a barrier between two of them.
@@ -44,7 +46,7 @@ void addRuns(const CostVolume& volume, int pixel, std::vector<Run>& runs)
             continue;
         }
         if (!isOpen)
-            runs.push_back({ k, k, 2 * k });
+            runs.push_back({ k, k, 2 * k, (int)runs.size(), false });
         if (!isOpen || costs[k] < lowest)
         {
             lowest = costs[k];
@@ -142,39 +144,27 @@ private:
         }
         firsts_.push_back((int)runs_.size());
         sizes_.resize(runs_.size());
-        surfaces_.resize(runs_.size());
-        std::iota(surfaces_.begin(), surfaces_.end(), 0);
         Sets joined(runs_.size());
-        joinNeighbours(joined);
+        for (int i = 0; i < pixels_; ++i)
+            joinNext(i, 1, joined);
         keepLarge(joined, minPiece);
-        joinAcrossGaps(joined);
+        for (int i = 0; i < pixels_; ++i)
+            if (isRepeated(i))
+                joinNext(i, maxGap, joined);
         keepLarge(joined, minPixels);
-        isCounted_.assign(surfaces_.size(), 0);
     }
 
-    void joinNeighbours(Sets& joined) const
+    //! A pixel's runs with the next ones in the row and in the column that are of the same surface
+    void joinNext(int pixel, int farthest, Sets& joined) const
     {
-        for (int i = 0; i < pixels_; ++i)
+        const int x = pixel % width_, y = pixel / width_;
+        for (int a = firsts_[pixel]; a < firsts_[pixel + 1]; ++a)
         {
-            if ((i + 1) % width_ != 0)
-                joinPixels(i, i + 1, joined);
-            if (i + width_ < pixels_)
-                joinPixels(i, i + width_, joined);
+            joinNext(pixel, a, -1, std::min(x, farthest), joined);
+            joinNext(pixel, a, 1, std::min(width_ - 1 - x, farthest), joined);
+            joinNext(pixel, a, -width_, std::min(y, farthest), joined);
+            joinNext(pixel, a, width_, std::min(volume_.size.height - 1 - y, farthest), joined);
         }
-    }
-
-    //! From pixels with several runs to the next ones in the row and in the column that have the same surface
-    void joinAcrossGaps(Sets& joined) const
-    {
-        for (int i = 0; i < pixels_; ++i)
-            for (int a = firsts_[i]; isRepeated(i) && a < firsts_[i + 1]; ++a)
-            {
-                const int x = i % width_, y = i / width_;
-                joinNext(i, a, -1, std::min(x, +maxGap), joined);
-                joinNext(i, a, 1, std::min(width_ - 1 - x, +maxGap), joined);
-                joinNext(i, a, -width_, std::min(y, +maxGap), joined);
-                joinNext(i, a, width_, std::min(volume_.size.height - 1 - y, +maxGap), joined);
-            }
     }
 
     void joinNext(int pixel, int run, int step, int farthest, Sets& joined) const
@@ -182,17 +172,17 @@ private:
         for (int k = 0, q = pixel + step; k < farthest; ++k, q += step)
             for (int a = firsts_[q]; a < firsts_[q + 1]; ++a)
                 if (areNear(runs_[a], runs_[run]))
-                    return joined.join(surfaces_[a], surfaces_[run]);
+                    return joined.join(runs_[a].surface, runs_[run].surface);
     }
 
     //! Leaves out the runs of small surfaces.
     void keepLarge(Sets& joined, int least)
     {
         std::vector<int> sizes(sizes_.size());
-        for (int& surface : surfaces_)
+        for (Run& run : runs_)
         {
-            surface = joined.find(surface);
-            ++sizes[surface];
+            run.surface = joined.find(run.surface);
+            ++sizes[run.surface];
         }
         int kept = 0;
         for (int i = 0, a = 0; i < pixels_; ++i)
@@ -200,24 +190,11 @@ private:
             const int end = firsts_[i + 1];
             firsts_[i] = kept;
             for (; a < end; ++a)
-                if (sizes[surfaces_[a]] >= least)
-                {
-                    runs_[kept] = runs_[a];
-                    surfaces_[kept++] = surfaces_[a];
-                }
+                if (sizes[runs_[a].surface] >= least)
+                    runs_[kept++] = runs_[a];
         }
         firsts_[pixels_] = kept;
-        surfaces_.resize(kept);
-    }
-
-    void joinPixels(int p, int q, Sets& joined) const
-    {
-        for (int a = firsts_[p], b = firsts_[q]; a < firsts_[p + 1] && b < firsts_[q + 1];)
-        {
-            if (areNear(runs_[a], runs_[b]))
-                joined.join(surfaces_[a], surfaces_[b]);
-            runs_[a].centre <= runs_[b].centre ? ++a : ++b;
-        }
+        runs_.resize(kept);
     }
 
     static bool areNear(const Run& a, const Run& b) { return std::abs(a.centre - b.centre) <= maxStep; }
@@ -231,13 +208,13 @@ private:
         Sets areas(sizes_.size());
         for (int i = 0; i < pixels_; ++i)
             for (int a = firsts_[i] + 1; a < firsts_[i + 1]; ++a)
-                areas.join(surfaces_[a - 1], surfaces_[a]);
+                areas.join(runs_[a - 1].surface, runs_[a].surface);
         std::vector<int> areaSizes(sizes_.size()), repeated;
         for (int i = 0; i < pixels_; ++i)
             if (isRepeated(i))
-                ++areaSizes[areas.find(surfaces_[firsts_[i]])];
+                ++areaSizes[areas.find(runs_[firsts_[i]].surface)];
         for (int i = 0; i < pixels_; ++i)
-            if (isRepeated(i) && areaSizes[areas.find(surfaces_[firsts_[i]])] >= minPixels)
+            if (isRepeated(i) && areaSizes[areas.find(runs_[firsts_[i]].surface)] >= minPixels)
                 repeated.push_back(i);
         return repeated;
     }
@@ -253,7 +230,7 @@ private:
             if (periods == 0)
                 continue;
             const int period = gap / (2 * volume_.steps);
-            ++sizes_[surfaces_[run]];
+            ++sizes_[runs_[run].surface];
             countBeside(pixel, run, 1, period, periods);
             countBeside(pixel, run, -1, period, periods);
             return;
@@ -272,11 +249,11 @@ private:
         for (int q = pixel + step; q != end; q += step)
         {
             const int own = firsts_[q];
-            if (own == firsts_[q + 1] || surfaces_[own] != surfaces_[run] || isCounted_[own] ||
+            if (own == firsts_[q + 1] || runs_[own].surface != runs_[run].surface || runs_[own].isCounted ||
                 !isAlike(q, -step * periods))
                 continue;
-            isCounted_[own] = 1;
-            ++sizes_[surfaces_[run]];
+            runs_[own].isCounted = true;
+            ++sizes_[runs_[run].surface];
         }
     }
 
@@ -307,7 +284,7 @@ private:
     {
         int best = firsts_[pixel];
         for (int a = best + 1; a < firsts_[pixel + 1]; ++a)
-            if (sizes_[surfaces_[a]] > sizes_[surfaces_[best]])
+            if (sizes_[runs_[a].surface] > sizes_[runs_[best].surface])
                 best = a;
         const CostVolume::Candidates own = volume_.of(pixel);
         uchar* const costs = &volume_.costs[own.start()];
@@ -320,10 +297,8 @@ private:
     CostVolume& volume_;
     const int width_, pixels_;
     std::vector<Run> runs_;
-    std::vector<int> firsts_;      // by pixel: of runs
-    std::vector<int> surfaces_;    // of runs
-    std::vector<int> sizes_;       // of surfaces, in areas and beside them
-    std::vector<uchar> isCounted_; // runs beside areas
+    std::vector<int> firsts_; // by pixel: of runs
+    std::vector<int> sizes_;  // of surfaces, in areas and beside them
 };
 
 } // namespace
