@@ -31,7 +31,7 @@ class TreeSamples
 {
 public:
     TreeSamples(const int* pixels, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
-        : interval_(tree.interval), steps_((float)volume.steps), begin_(0, volume.size.width, volume.size.height)
+        : interval_(tree.interval), steps_((float)volume.steps)
     {
         const ushort* const winners = disparity.ptr<ushort>();
         const int step = std::max(tree.size / samples, 1), candidates = interval_.size();
@@ -44,26 +44,22 @@ public:
             for (int i = group * step; i < tree.size; i += groups * step, ++sample)
             {
                 const int pixel = pixels[i];
-                const Vec3d basis(1, pixel % volume.size.width, pixel / volume.size.width);
                 const CostVolume::Candidates own = volume.of(pixel);
                 const uchar* const costs = &volume.costs[own.start()];
                 std::copy(costs, costs + candidates, &costs_[sample * candidates]);
-                x_.push_back((float)basis[1]);
-                y_.push_back((float)basis[2]);
+                x_.push_back((float)(pixel % volume.size.width));
+                y_.push_back((float)(pixel / volume.size.width));
                 disparity_.push_back(winners[pixel] / (float)subpixelScale);
                 cost_.push_back(costs[candidateAt(disparity_.back())]);
                 const uchar lowest = volume.lowestOf(own);
                 minRise_[group] += lowest - cost_.back();
                 haveContrast_ = haveContrast_ || std::count(costs, costs + candidates, lowest) < candidates;
-                for (int term = 1; term < 3; ++term)
-                {
-                    begin_[term] = std::min(begin_[term], basis[term]);
-                    end_[term] = std::max(end_[term], basis[term]);
-                }
             }
         }
         firsts_[groups] = count_;
         at_.resize(count_);
+        extentX_ = extentOf(x_);
+        extentY_ = extentOf(y_);
     }
 
     //! Whether the costs tell anything
@@ -111,6 +107,12 @@ public:
     }
 
 private:
+    static double extentOf(const std::vector<float>& values)
+    {
+        const auto ends = std::minmax_element(values.begin(), values.end());
+        return *ends.second - *ends.first;
+    }
+
     Vec3d basis(int sample) const { return Vec3d(1, x_[sample], y_[sample]); }
 
     bool isOn(const Plane& plane, int sample) const
@@ -146,8 +148,7 @@ private:
     //! if it is not, which some of the samples may tell.
     double score(const Plane& plane, double limit) const
     {
-        const Vec3d extent = end_ - begin_;
-        const double tilt = tiltCost * (std::abs(plane[1]) * extent[1] + std::abs(plane[2]) * extent[2]);
+        const double tilt = tiltCost * (std::abs(plane[1]) * extentX_ + std::abs(plane[2]) * extentY_);
         int sum = std::accumulate(minRise_, minRise_ + groups, 0);
         double least = 0;
         for (int group = 0; group < groups; ++group)
@@ -192,7 +193,7 @@ private:
     static const int groups = 8;
     const DisparityInterval interval_;
     const float steps_; // candidates per pixel of disparity
-    Vec3d begin_, end_; // of its columns and rows
+    double extentX_, extentY_;
     int count_;
     int firsts_[groups + 1]; // samples of the groups
     int minRise_[groups];    // the lowest that riseOf() may be
