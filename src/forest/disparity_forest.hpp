@@ -63,6 +63,9 @@ by side; the trees and their roots are those of trying one edge after the other,
 CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy,
                             const JoinerParams& params, ForestBuffers& buffers, DisparityForest& forest);
 
+//! One of the library's strategies with default parameters, or an empty pointer if none has this name; see tree_strategy.
+Ptr<TreeStrategy> createTreeStrategy(const String& name);
+
 //! R_l of the paper's Table 1: mean over the pixels of |TreeIntv| / numDisparities.
 CV_EXPORTS double searchRatio(const DisparityForest& forest, int numDisparities);
 

@@ -2,9 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
-#include "tree_strategy.hpp"
-
-#include "forest_edges.hpp"
+#include "disparity_forest.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "matcher_parameters.hpp"
 
-#include "../forest/tree_strategy.hpp"
+#include "../forest/disparity_forest.hpp"
 #include "../scanlines/scanline_aggregation.hpp"
 
 #include <cmath>
