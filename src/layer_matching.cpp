@@ -150,8 +150,7 @@ private:
     {
         const DisparityForest& forest = shared_.forest;
         CostVolume& volume = shared_.volume;
-        shared_.volumeCost.prepare(own_.census, in_.below);
-        aggregateMeans(forest, shared_.volumeCost, plan_.trees.gamma, shared_.aggregation, volume);
+        aggregateMeans(forest, TwoLayerCost(own_.census, in_.below), plan_.trees.gamma, shared_.aggregation, volume);
         if (plan_.checksLastFrame)
         {
             predictFromLastFrame();
@@ -201,8 +200,7 @@ private:
         result_.searchRatio = 1;
         clock_.run("disparity prediction", [&] {
             const DisparityInterval all = { 0, (ushort)(plan_.numDisparities - 1) };
-            shared_.volumeCost.prepare(own_.census, in_.below);
-            shared_.volume.fill(shared_.volumeCost, in_.images.guide.size(), all);
+            shared_.volume.fill(TwoLayerCost(own_.census, in_.below), in_.images.guide.size(), all);
             if (!plan_.prefersLastFrame)
                 return;
             predictFromLastFrame();

@@ -68,7 +68,6 @@ struct SharedScratch
     ForestBuffers forestBuffers;
     AggregationBuffers aggregation;
     ScanlineBuffers scanlines;
-    TwoLayerCost volumeCost;
     CostVolume volume;
     std::vector<short> volumeSums;
     RangeBuffers rangeScanlines;

@@ -245,8 +245,7 @@ struct CensusLayer : Layer
 void expectMeans(const CensusLayer& layer, double gamma, hdp::AggregationBuffers& buffers, int step = 1)
 {
     hdp::CostVolume volume;
-    hdp::TwoLayerCost cost;
-    cost.prepare(layer.census, nullptr);
+    const hdp::TwoLayerCost cost(layer.census, nullptr);
     hdp::aggregateMeans(layer.forest, cost, gamma, buffers, volume);
     ASSERT_EQ(layer.left.size(), volume.size);
     std::vector<char> isTaken(volume.rows);

@@ -32,8 +32,7 @@ struct Layer
         for (int x = panel.x; x < panel.br().x; ++x)
             image(Rect(x, panel.y, 1, panel.height)).setTo((x % stripePeriod < 3 ? 68 : 188) * hdp::greyScale);
         census.prepare(image, image, candidates, 7);
-        hdp::TwoLayerCost cost;
-        cost.prepare(census, nullptr);
+        const hdp::TwoLayerCost cost(census, nullptr);
         const hdp::DisparityInterval all = { 0, candidates - 1 };
         volume.fill(cost, size, all);
         std::fill(volume.costs.begin(), volume.costs.end(), (uchar)highCost);

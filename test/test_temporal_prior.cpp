@@ -264,8 +264,7 @@ TEST(HDPStereo_CostVolume, fill)
             rng.fill(right, RNG::UNIFORM, 0, 5);
             CensusCost ofLayer;
             ofLayer.prepare(left, right, all.size(), blockSize);
-            TwoLayerCost cost;
-            cost.prepare(ofLayer, nullptr);
+            const TwoLayerCost cost(ofLayer, nullptr);
             const oracle::CensusCost census(left, right, blockSize);
             volume.fill(cost, imageSize, all);
             EXPECT_EQ(imageSize, volume.size);

@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/cost/two_layer_cost.hpp"
+#include "../src/cost/census_cost.hpp"
 
 #include <numeric>
 
@@ -36,7 +36,6 @@ void expectCosts(const TwoLayerCost& cost, Size size, int candidates, const std:
 TEST(HDPStereo_TwoLayerCost, definition_per_pixel)
 {
     RNG rng(50);
-    TwoLayerCost cost;
     for (int blockSize : { 7, 5, 3 })
         for (const Size& finer : { Size(2, 2), Size(3, 5), Size(41, 13), Size(66, 8) })
             for (int candidates : { 1, 9, 40 })
@@ -51,18 +50,17 @@ TEST(HDPStereo_TwoLayerCost, definition_per_pixel)
                 below.prepare(leftBelow, rightBelow, 2 * candidates, blockSize, 1);
                 const oracle::CensusCost ownFormula(left, right, blockSize);
                 const oracle::CensusCost belowFormula(leftBelow, rightBelow, blockSize, 1);
-                cost.prepare(own, &below);
-                ASSERT_EQ(2, cost.steps());
-                expectCosts(cost, size, 2 * candidates, [&](int y, int x, int h) {
+                const TwoLayerCost both(own, &below), alone(own, nullptr);
+                ASSERT_EQ(2, both.steps());
+                expectCosts(both, size, 2 * candidates, [&](int y, int x, int h) {
                     double sum = 0;
                     for (int i = 0; i < 4; ++i)
                         sum += belowFormula(2 * y + i / 2, 2 * x + i % 2, h);
                     const double ofOwn = ownFormula(y, x, h / 2) + ownFormula(y, x, (h + 1) / 2);
                     return cvCeil(8 * (ofOwn / 8 + 3 * sum / 16));
                 });
-                cost.prepare(own, nullptr);
-                ASSERT_EQ(1, cost.steps());
-                expectCosts(cost, size, candidates, [&](int y, int x, int d) { return 8 * (int)ownFormula(y, x, d); });
+                ASSERT_EQ(1, alone.steps());
+                expectCosts(alone, size, candidates, [&](int y, int x, int d) { return 8 * (int)ownFormula(y, x, d); });
             }
 }
 

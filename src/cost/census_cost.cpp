@@ -5,6 +5,7 @@
 #include "census_cost.hpp"
 #include "census_cost.simd.hpp"
 #include "cost/census_cost.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -17,11 +18,22 @@ const int censusMargin = 16;
 // caches.
 const int censusColumns = 32, censusRows = 16;
 
-HDP_DISPATCH(leftCensusRow)
-HDP_DISPATCH(rightCensusRow)
+HDP_DISPATCH(censusRow)
 HDP_DISPATCH(censusCostOfRow)
 HDP_DISPATCH(evaluateCensusCost)
-HDP_DISPATCH(countCensusCost)
+HDP_DISPATCH(countTwoLayers)
+
+//! From planes, censusRows of each and at last the grey levels, to the first rows of CensusCost::leftPixels()
+void mergePlanes(const Mat& planes, int count, Mat pixels)
+{
+    Mat bytes[4];
+    for (int k = 0; k < 4; ++k)
+    {
+        const int plane = k == CensusCost::greyByte ? count : std::min(k, count - 1); // what there is not means nothing
+        bytes[k] = planes.rowRange(plane * censusRows, plane * censusRows + pixels.rows);
+    }
+    merge(bytes, 4, pixels);
+}
 
 } // namespace
 
@@ -49,30 +61,31 @@ void CensusCost::prepareImage(const Mat& image, int radius, int tolerance, bool 
     else
         left_.create(rows, censusMargin + cols + censusMargin, CV_8UC4);
     parallel_for_(Range(0, (rows + censusRows - 1) / censusRows), [&](const Range& range) {
-        Mat bordered(censusRows + 2 * radius, cols + 2 * radius, CV_16S); // all levels are below 32768
-        const CensusWindow window = { radius, tolerance, (ptrdiff_t)bordered.step1() };
-        std::vector<uchar> leftPlanes(isRight ? 0 : 3 * cols);
+        Mat flipped, bordered;
+        Mat leftPlanes(isRight ? 0 : (planes + 1) * censusRows, cols, CV_8U);
         for (int i = range.start; i < range.end; ++i)
         {
             const int first = i * censusRows, end = std::min(first + censusRows, rows);
-            copyBordered(image, 0, first - radius, radius, radius + cols - width, isRight,
-                         bordered.rowRange(0, end - first + 2 * radius));
+            const int from = std::max(first - radius, 0), to = std::min(end + radius, rows);
+            if (isRight)
+                flip(image.rowRange(from, to), flipped, 1);
+            copyMakeBorder(isRight ? flipped : image.rowRange(from, to), bordered, from - first + radius,
+                           end + radius - to, radius, radius + cols - width, BORDER_REPLICATE | BORDER_ISOLATED);
+            const CensusWindow window = { radius, tolerance, (ptrdiff_t)bordered.step1() };
             for (int y = first; y < end; ++y)
             {
-                const short* grey = bordered.ptr<short>(y - first + radius) + radius;
-                if (!isRight)
+                uchar* row = isRight ? right_.ptr(y) + censusMargin : leftPlanes.ptr(y - first);
+                const size_t planeSize = isRight ? right_.step * rows : leftPlanes.step * censusRows;
+                const short* grey = bordered.ptr<short>(y - first + radius) + radius; // all levels are below 32768
+                dispatched::censusRow(window, grey, isRight, cols, row, planeSize);
+                for (int plane = 0; plane <= planes && isRight; ++plane, row += planeSize)
                 {
-                    dispatched::leftCensusRow(window, grey, cols, leftPlanes.data(), left_.ptr(y) + 4 * censusMargin);
-                    continue;
-                }
-                dispatched::rightCensusRow(window, grey, cols, right_.ptr(y) + censusMargin, right_.step * rows);
-                for (int plane = 0; plane <= planes; ++plane)
-                {
-                    uchar* row = right_.ptr(plane * rows + y) + censusMargin;
                     std::fill(row - censusMargin, row, row[0]);
-                    std::fill(row + width, right_.ptr(plane * rows + y) + right_.cols, row[width - 1]);
+                    std::fill(row + width, row - censusMargin + right_.cols, row[width - 1]);
                 }
             }
+            if (!isRight)
+                mergePlanes(leftPlanes, planes, left_(Rect(censusMargin, first, cols, end - first)));
         }
     });
 }
@@ -85,7 +98,7 @@ void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, fl
 
 void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const
 {
-    dispatched::countCensusCost(planes_, pixels, count, first, lanes, cost);
+    dispatched::evaluateCensusCost(planes_, pixels, count, first, lanes, cost);
     limits_.apply(pixels, count, first, lanes, (uchar)1, 1, cost);
 }
 
@@ -96,6 +109,20 @@ void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
         dispatched::censusCostOfRow(planes_, y, disparity.ptr<ushort>(y), costs.ptr(y));
         limits_.apply(y, disparity.ptr<ushort>(y), costs.ptr(y));
     });
+}
+
+void TwoLayerCost::evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const
+{
+    if (below_)
+    {
+        CV_DbgAssert(first % 2 == 0);
+        dispatched::countTwoLayers(own_.data(), below_->data(), pixels, count, first, lanes, cost);
+        own_.limits().apply(pixels, count, first, lanes, (uchar)scale, steps(), cost);
+        return;
+    }
+    own_.evaluate(pixels, count, first, lanes, cost);
+    const size_t size = (size_t)count * lanes;
+    HDP_VECTORIZED for (size_t k = 0; k < size; ++k) cost[k] = (uchar)(scale * cost[k]);
 }
 
 }}} // namespace cv::stereo::hdp

@@ -6,43 +6,38 @@
 #include "census_cost.hpp"
 #include "../base/units.hpp"
 #include "../base/vectorized.hpp"
-#include <cstring>
-#include <type_traits>
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#include "../base/byte_lanes.simd.hpp"
+#endif
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** A row of the left image: the census transform, a bit for each pixel of the checkerboard around the centre, set if it
-is clearly darker, and the grey levels.
+/** A row of an image: the planes of its census, which have a bit for each pixel of the checkerboard around the centre,
+set if it is clearly darker, and behind them that of the grey levels in 8 bits.
 @param window The window.
 @param grey The first pixel of the row, levels times greyScale; it has a border of the radius, and may be read up to
 column cols.
+@param mirrored Whether the image is mirrored: so is the window then, so that the bits are the same ones.
 @param cols Columns to compute.
-@param planes Memory for a row of 3 planes, cols bytes each.
-@param pixels Receives the row, see CensusCost::leftPixels(). */
-void leftCensusRow(const CensusWindow& window, const short* grey, int cols, uchar* planes, uchar* pixels);
-
-/** A row of the right image, as leftCensusRow(). The image is mirrored, and so is its window then, so that its bits are
-the same ones.
-@param row Receives the row, see CensusCost::rightPlane().
+@param row Receives the row of the first plane.
 @param planeSize From a plane to the next. */
-void rightCensusRow(const CensusWindow& window, const short* grey, int cols, uchar* row, size_t planeSize);
+void censusRow(const CensusWindow& window, const short* grey, bool mirrored, int cols, uchar* row, size_t planeSize);
 
-//! CensusCost::evaluate()
-void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost);
+//! CensusCost::evaluate(), in floats or bytes
+template <typename T>
+void evaluateCensusCost(const CensusPlanes& census, const int* pixels, int count, int first, int lanes, T* cost);
 
-//! The same in bytes
-void countCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, uchar* cost);
+//! TwoLayerCost::evaluate() with a layer below
+void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
+                    int lanes, uchar* cost);
 
 //! CensusCost::ofDisparities() for row y
 void censusCostOfRow(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-namespace {
-
-//! Returns the number of planes.
-int censusRow(const CensusWindow& window, const short* grey, bool mirrored, int cols, uchar* census, size_t planeSize)
+void censusRow(const CensusWindow& window, const short* grey, bool mirrored, int cols, uchar* row, size_t planeSize)
 {
     const int radius = window.radius, block = 256;
     const short tolerance = (short)window.tolerance;
@@ -54,7 +49,7 @@ int censusRow(const CensusWindow& window, const short* grey, bool mirrored, int 
             if ((dx + dy) % 2 != 0)
                 offsets[bits++] = dy * window.step + (mirrored ? -dx : dx);
     short words[block]; // of a byte: without this memory the compiler narrows each comparison
-    for (int bit = 0; bit < bits; bit += 8, census += planeSize)
+    for (int bit = 0; bit < bits; bit += 8, row += planeSize)
         for (int begin = 0; begin < cols; begin += block)
         {
             const int count = std::min(block, cols - begin);
@@ -75,111 +70,123 @@ int censusRow(const CensusWindow& window, const short* grey, bool mirrored, int 
                 word = (short)(word | (short)(p7[x] < centre ? 128 : 0));
                 words[x] = word;
             }
-            uchar* const to = census + begin;
+            uchar* const to = row + begin;
             HDP_VECTORIZED for (int x = 0; x < count; ++x) to[x] = (uchar)words[x];
         }
-    return (bits + 7) / 8;
-}
-
-} // namespace
-
-void leftCensusRow(const CensusWindow& window, const short* grey, int cols, uchar* planes, uchar* pixels)
-{
-    const int count = censusRow(window, grey, false, cols, planes, cols);
-    const uchar *second = planes + (count > 1 ? cols : 0), *third = planes + (count > 2 ? 2 * cols : 0);
-    HDP_VECTORIZED for (int x = 0; x < cols; ++x)
-    {
-        pixels[4 * x] = planes[x];
-        pixels[4 * x + 1] = second[x];
-        pixels[4 * x + 2] = third[x];
-        pixels[4 * x + CensusCost::greyByte] = (uchar)(grey[x] / greyScale);
-    }
-}
-
-void rightCensusRow(const CensusWindow& window, const short* grey, int cols, uchar* row, size_t planeSize)
-{
-    row += censusRow(window, grey, true, cols, row, planeSize) * planeSize;
     HDP_VECTORIZED for (int x = 0; x < cols; ++x) row[x] = (uchar)(grey[x] / greyScale);
 }
 
 namespace {
 
-//! A byte in each of a word's; words are of as many bytes as there are candidates, up to 8.
-template <typename Word> inline Word repeated(unsigned byte) { return (Word)-1 / 255 * byte; }
-
-//! The number of bits set in each 4 bits
-template <typename Word> inline Word countInNibbles(Word bits)
+//! A pixel of the left image, and its candidates in the first plane of the right one
+struct PixelCensus
 {
-    bits -= (bits >> 1) & repeated<Word>(0x55);
-    return (bits & repeated<Word>(0x33)) + ((bits >> 2) & repeated<Word>(0x33));
-}
+    const uchar *left, *right;
 
-//! The number of bits set in each byte of 1 to 3 words
-template <int count, typename Word> inline Word countInBytes(Word a, Word b, Word c)
-{
-    // Sum and carry of three bits: two counts instead of three
-    const Word nibbles = count == 1   ? countInNibbles(a)
-                         : count == 2 ? countInNibbles(a) + countInNibbles(b)
-                                      : countInNibbles(a ^ b ^ c) + 2 * countInNibbles((a & b) | ((a ^ b) & c));
-    return (nibbles & repeated<Word>(0x0f)) + ((nibbles >> 4) & repeated<Word>(0x0f));
-}
-
-template <int lanes, int count, typename T>
-void evaluateCosts(const CensusPlanes& planes, const int* pixels, int size, int first, T* cost)
-{
-    typedef typename std::conditional<lanes == 4, unsigned, uint64>::type Word;
-    // Bits are counted in all words of a block at once, in order to fill vectors.
-    const int block = lanes > 16 ? 1 : 32, words = lanes / (int)sizeof(Word);
-    const double rowsPerPixel = 1. / planes.width;
-    Word differences[count][block * words], bits[block * words];
-    for (int begin = 0; begin < size; begin += block)
+    PixelCensus(const CensusPlanes& census, int y, int x, int first)
+        : left(census.left + y * census.leftStep + 4 * x),
+          right(census.right + y * census.rightStep + (census.width - 1 - x + first))
     {
-        const int pixelCount = block == 1 ? 1 : std::min(block, size - begin);
-        for (int i = 0; i < pixelCount; ++i)
+    }
+
+    //! C of some candidates from number k on
+    template <int planes> CV_ALWAYS_INLINE ByteLanes costs(size_t rightPlane, int k) const
+    {
+        ByteLanes sum = (ByteLanes::repeat(left[0]) ^ ByteLanes::load(right + k)).countBits();
+        for (int plane = 1; plane < planes; ++plane)
+            sum = sum + (ByteLanes::repeat(left[plane]) ^ ByteLanes::load(right + plane * rightPlane + k)).countBits();
+        return sum;
+    }
+
+    //! C(floor(h / 2)) + C(ceil(h / 2)) of candidates h, from number 2 * k on
+    template <int planes> CV_ALWAYS_INLINE ByteLanes costsOfHalves(size_t rightPlane, int k) const
+    {
+        ByteLanes sum = ByteLanes::repeat(0);
+        for (int plane = 0; plane < planes; ++plane)
         {
-            const int p = pixels[begin + i], y = rowOf(p, rowsPerPixel), x = p - y * planes.width;
-            const uchar* left = planes.left + y * planes.leftStep + 4 * x;
-            const uchar* right = planes.right + y * planes.rightStep + (planes.width - 1 - x + first);
-            for (int plane = 0; plane < count; ++plane, ++left, right += planes.rightPlane)
-            {
-                const Word pixel = repeated<Word>(*left);
-                HDP_VECTORIZED for (int k = 0; k < words; ++k)
-                {
-                    Word candidates;
-                    std::memcpy(&candidates, right + k * sizeof(Word), sizeof(Word));
-                    differences[plane][i * words + k] = candidates ^ pixel;
-                }
-            }
+            const ByteLanes pixel = ByteLanes::repeat(left[plane]);
+            const uchar* const from = right + plane * rightPlane + k;
+            sum = sum + (pixel ^ ByteLanes::loadInTurns(from, from)).countBits() +
+                  (pixel ^ ByteLanes::loadInTurns(from, from + 1)).countBits();
         }
-        HDP_VECTORIZED for (int k = 0; k < pixelCount * words; ++k) bits[k] = countInBytes<count>(
-            differences[0][k], differences[count > 1 ? 1 : 0][k], differences[count > 2 ? 2 : 0][k]);
-        const uchar* const counted = reinterpret_cast<const uchar*>(bits);
-        T* const to = cost + (size_t)begin * lanes;
-        HDP_VECTORIZED for (int k = 0; k < pixelCount * lanes; ++k) to[k] = counted[k];
+        return sum;
+    }
+};
+
+//! Costs of pixels. costOf(y, x, k): those of some candidates of a pixel from number k on
+template <int lanes, typename T, typename CostOf>
+CV_ALWAYS_INLINE void evaluatePixels(int width, const int* pixels, int count, T* cost, const CostOf& costOf)
+{
+    const int vector = 16 * ByteLanes::groups;
+    const double rowsPerPixel = 1. / width;
+    const bool areStored = sizeof(T) == 1 && lanes >= vector; // as they are
+    uchar bytes[lanes > vector ? lanes : vector];
+    for (int i = 0; i < count; ++i, cost += lanes)
+    {
+        const int y = rowOf(pixels[i], rowsPerPixel), x = pixels[i] - y * width;
+        uchar* const to = areStored ? reinterpret_cast<uchar*>(cost) : bytes;
+        for (int k = 0; k < lanes; k += vector)
+            costOf(y, x, k).store(to + k);
+        HDP_VECTORIZED for (int k = 0; k < lanes && !areStored; ++k) cost[k] = bytes[k];
     }
 }
 
-template <int lanes> struct EvaluateTask
+template <int planes> struct CensusCosts
 {
-    template <typename T> static void run(const CensusPlanes& planes, const int* pixels, int size, int first, T* cost)
+    //! Those of the layer
+    template <int lanes> struct OfLayer
     {
-        const auto evaluate = planes.count == 3   ? &evaluateCosts<lanes, 3, T>
-                              : planes.count == 2 ? &evaluateCosts<lanes, 2, T>
-                                                  : &evaluateCosts<lanes, 1, T>;
-        evaluate(planes, pixels, size, first, cost);
-    }
+        template <typename T>
+        static void run(const CensusPlanes& census, const int* pixels, int count, int first, T* cost)
+        {
+            evaluatePixels<lanes>(census.width, pixels, count, cost, [&](int y, int x, int k) {
+                return PixelCensus(census, y, x, first).costs<planes>(census.rightPlane, k);
+            });
+        }
+    };
+
+    //! Those of the layer and the one below
+    template <int lanes> struct OfTwoLayers
+    {
+        static void run(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
+                        uchar* cost)
+        {
+            evaluatePixels<lanes>(own.width, pixels, count, cost, [&](int y, int x, int k) {
+                ByteLanes sum = ByteLanes::repeat(0);
+                HDP_UNROLLED for (int i = 0; i < 4; ++i) sum =
+                    sum + PixelCensus(below, 2 * y + i / 2, 2 * x + i % 2, first).costs<planes>(below.rightPlane, k);
+                return PixelCensus(own, y, x, first / 2).costsOfHalves<planes>(own.rightPlane, k / 2) + sum +
+                       (sum + ByteLanes::repeat(1)).half();
+            });
+        }
+    };
 };
 
 } // namespace
 
-void evaluateCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, float* cost)
+template <typename T>
+void evaluateCensusCost(const CensusPlanes& census, const int* pixels, int count, int first, int lanes, T* cost)
 {
-    runTask<EvaluateTask>(lanes, planes, pixels, count, first, cost);
+    if (census.count == 3)
+        runTask<CensusCosts<3>::OfLayer>(lanes, census, pixels, count, first, cost);
+    else if (census.count == 2)
+        runTask<CensusCosts<2>::OfLayer>(lanes, census, pixels, count, first, cost);
+    else
+        runTask<CensusCosts<1>::OfLayer>(lanes, census, pixels, count, first, cost);
 }
 
-void countCensusCost(const CensusPlanes& planes, const int* pixels, int count, int first, int lanes, uchar* cost)
+template void evaluateCensusCost(const CensusPlanes&, const int*, int, int, int, float*);
+template void evaluateCensusCost(const CensusPlanes&, const int*, int, int, int, uchar*);
+
+void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
+                    int lanes, uchar* cost)
 {
-    runTask<EvaluateTask>(lanes, planes, pixels, count, first, cost);
+    if (own.count == 3)
+        runTask<CensusCosts<3>::OfTwoLayers>(lanes, own, below, pixels, count, first, cost);
+    else if (own.count == 2)
+        runTask<CensusCosts<2>::OfTwoLayers>(lanes, own, below, pixels, count, first, cost);
+    else
+        runTask<CensusCosts<1>::OfTwoLayers>(lanes, own, below, pixels, count, first, cost);
 }
 
 namespace {

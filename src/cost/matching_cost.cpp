@@ -5,39 +5,74 @@
 #include "matching_cost.hpp"
 
 #include "../base/units.hpp"
-#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
-namespace {
-
-template <typename T> void copyColumns(const T* from, int step, int width, T* to)
+void CostLimits::prepare(const PairMasks& masks, int numDisparities)
 {
-    if (step == 1)
-        std::copy(from, from + width, to);
-    else if (step == -1)
+    const Mat &left = masks.left, &right = masks.right;
+    if (left.empty())
     {
-        HDP_VECTORIZED for (int x = 0; x < width; ++x) to[x] = from[-x];
+        left_.release();
+        right_.release();
+        return;
     }
-    else
-        for (int x = 0; x < width; ++x, from += step)
-            to[x] = *from;
+    width_ = left.cols;
+    copyMakeBorder(pixelsWithData(left), left_, 0, 0, margin, margin, BORDER_REPLICATE);
+    Mat mirrored;
+    flip(max(pixelsWithData(right), +ordinary), mirrored, 1);
+    copyMakeBorder(mirrored, right_, 0, 0, margin, numDisparities + costPadding + margin, BORDER_REPLICATE);
 }
 
-template <typename T>
-void copyRows(const Mat& image, int channel, int first, int before, int after, bool mirrored, Mat& bordered)
+template <typename Cost>
+void CostLimits::apply(const int* pixels, int count, int first, int lanes, Cost unit, int steps, Cost* cost) const
 {
-    const int step = image.channels(), width = image.cols;
-    parallelFor(bordered.rows, [&](int y) {
-        const T* from = image.ptr<T>(std::min(std::max(first + y, 0), image.rows - 1)) + channel;
-        T* to = bordered.ptr<T>(y);
-        copyColumns(mirrored ? from + (width - 1) * step : from, mirrored ? -step : step, width, to + before);
-        std::fill(to, to + before, to[before]);
-        std::fill(to + before + width, to + before + width + after, to[before + width - 1]);
-    });
+    if (isEmpty())
+        return;
+    const int shift = steps - 1; // divides by the steps
+    for (int i = 0; i < count; ++i, cost += lanes)
+    {
+        const int y = pixels[i] / width_, x = pixels[i] - y * width_;
+        const uchar* const limit = right(y) + width_ - 1 - x;
+        if (left(y)[x] == 0)
+            std::fill(cost, cost + lanes, (Cost)0);
+        else
+            for (int k = 0; k < lanes; ++k)
+            {
+                const int candidate = first + k;
+                const uchar both = std::min(limit[candidate >> shift], limit[(candidate + shift) >> shift]);
+                cost[k] = both == none ? cost[k] : std::min(cost[k], (Cost)(unit * both));
+            }
+    }
 }
 
-} // namespace
+template void CostLimits::apply(const int*, int, int, int, float, int, float*) const;
+template void CostLimits::apply(const int*, int, int, int, uchar, int, uchar*) const;
+
+void CostLimits::apply(int y, const ushort* disparity, uchar* cost) const
+{
+    if (isEmpty())
+        return;
+    const uchar *own = left(y), *limit = right(y) + width_ - 1;
+    for (int x = 0; x < width_; ++x)
+        cost[x] = std::min(cost[x], std::min(own[x], limit[wholeDisparity(disparity[x]) - x]));
+}
+
+Mat CostLimits::dropMissing(const Mat& disparity) const
+{
+    if (isEmpty())
+        return disparity;
+    Mat dropped = disparity.clone();
+    dropped.setTo(Scalar(USHRT_MAX), left_.colRange(margin, margin + width_) == 0);
+    return dropped;
+}
+
+void CostLimits::hideUnmatched(int y, const ushort* disparity, uchar* visible) const
+{
+    const uchar* const limit = right(y) + width_ - 1;
+    for (int x = 0; x < width_; ++x)
+        visible[x] = limit[wholeDisparity(disparity[x]) - x] == none ? visible[x] : 0;
+}
 
 MatchingCost::~MatchingCost() {}
 
@@ -53,14 +88,6 @@ void MatchingCost::ofDisparities(const Mat& disparity, Mat& costs) const
             costs.ptr<int>(y)[x] = cvRound(512 * cost[0]);
         }
     });
-}
-
-void copyBordered(const Mat& image, int channel, int first, int before, int after, bool mirrored, Mat bordered)
-{
-    if (image.elemSize1() == 1)
-        copyRows<uchar>(image, channel, first, before, after, mirrored, bordered);
-    else
-        copyRows<ushort>(image, channel, first, before, after, mirrored, bordered);
 }
 
 }}} // namespace cv::stereo::hdp

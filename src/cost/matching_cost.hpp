@@ -4,9 +4,55 @@
 #ifndef OPENCV_HDPSTEREO_MATCHING_COST_HPP
 #define OPENCV_HDPSTEREO_MATCHING_COST_HPP
 
-#include "cost_limits.hpp"
+#include "../base/mask.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
+
+/** What pixels without data may cost. One of the left image costs nothing, whatever its candidate is: it prefers none.
+A candidate in the right image that has no data costs no more than an ordinary pixel: it is neither preferred to a
+match nor avoided as a bad one would be. */
+class CV_EXPORTS CostLimits
+{
+public:
+    enum
+    {
+        none = 255,
+        ordinary = 8 // bits of the census: more drives surfaces out of what is masked, less draws them into it
+    };
+
+    /** Takes the masks of a layer.
+    @param masks Empty: there are no limits.
+    @param numDisparities The number of candidates a pixel may be asked for. */
+    void prepare(const PairMasks& masks, int numDisparities);
+
+    bool isEmpty() const { return left_.empty(); }
+
+    //! A row of the left image: 0 where a pixel has no data, else none. There are 32 more bytes to read before and
+    //! behind it.
+    const uchar* left(int y) const { return left_.ptr(y) + margin; }
+    //! A row of the right image, from right to left, as CensusCost::rightPlane(): ordinary where there is no data, else
+    //! none. Candidate d of pixel x is at [width - 1 - x + d].
+    const uchar* right(int y) const { return right_.ptr(y) + margin; }
+
+    //! Limits what MatchingCost::evaluate() has found, in floats or bytes. unit: the cost of a bit; steps: candidates
+    //! per pixel of disparity, 1 or 2. What is between two pixels has data if both have.
+    template <typename Cost>
+    void apply(const int* pixels, int count, int first, int lanes, Cost unit, int steps, Cost* cost) const;
+    //! Limits the costs of a row of disparities.
+    void apply(int y, const ushort* disparity, uchar* cost) const;
+    //! A disparity map of the left image, USHRT_MAX where there is no data
+    Mat dropMissing(const Mat& disparity) const;
+    //! Marks the pixels of a row by 0 whose matches have no data.
+    void hideUnmatched(int y, const ushort* disparity, uchar* visible) const;
+
+private:
+    enum
+    {
+        margin = 32
+    };
+    int width_ = 0;
+    Mat left_, right_;
+};
 
 //! The matching cost M(p, x) of a layer (section 3.3): how unlike are pixel p of the left and p - x of the right image.
 class CV_EXPORTS MatchingCost
@@ -38,16 +84,6 @@ protected:
 
 //! Columns behind the last candidate that evaluate() may read
 const int costPadding = 32;
-
-/** Copies rows of a channel and adds borders, whose pixels are the nearest ones of the image.
-@param image Of 8 or 16 bits.
-@param channel Its channel.
-@param first The row to copy first; those above and below the image are borders.
-@param before Columns added on the left of the copy.
-@param after Columns added on its right.
-@param mirrored Whether the copy has the columns from right to left.
-@param bordered Receives the copy, as many rows as it has. */
-void copyBordered(const Mat& image, int channel, int first, int before, int after, bool mirrored, Mat bordered);
 
 //! y of pixel y * width + x; rowsPerPixel: 1. / width. Exact: the error of the product is far less than half a pixel.
 CV_ALWAYS_INLINE int rowOf(int pixel, double rowsPerPixel) { return (int)((pixel + 0.5) * rowsPerPixel); }

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_COST_VOLUME_HPP
 #define OPENCV_HDPSTEREO_COST_VOLUME_HPP
 
-#include "../cost/two_layer_cost.hpp"
+#include "../cost/census_cost.hpp"
 #include "disparity_forest.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -5,7 +5,7 @@
 #define OPENCV_HDPSTEREO_DISPARITY_REASONS_HPP
 
 #include "disparity_output.hpp"
-#include "../cost/cost_limits.hpp"
+#include "../cost/matching_cost.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
