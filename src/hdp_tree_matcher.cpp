@@ -5,7 +5,7 @@
 
 #include "layer_matching.hpp"
 #include "map/disparity_confidence.hpp"
-#include "map/disparity_reasons.hpp"
+#include "map/disparity_output.hpp"
 #include "map/disparity_sigma.hpp"
 #include "pair/image_levels.hpp"
 #include "pair/missing_pixels.hpp"
@@ -141,7 +141,9 @@ public:
         const Result& r = result_.isMatched ? result_ : none;
         // The model is about the centre of the right image that is matched, which has columns added and is shifted.
         const RowModel rows = r.findings.rows.about(0.5 * r.model.addedColumns + r.model.minDisparity);
-        const LightModel light = r.findings.light.scaled(1 / r.brightness);
+        const double brightness =
+            r.isMatched ? roundedBrightness(pyramids_.levels.brightness) : 1; // of what was matched
+        const LightModel light = r.findings.light.scaled(1 / brightness);
         Findings findings;
         findings.rows.assign(rows.coefficients.val, rows.coefficients.val + RowModel::terms);
         findings.areRowsMoved = r.findings.hasRows;
@@ -153,7 +155,7 @@ public:
         findings.minDisparity = r.plan.output.minDisparity;
         findings.numDisparities = r.plan.alignment.numDisparities;
         findings.rowError = r.findings.rowError;
-        findings.noise = r.findings.noise.ofLayer(r.plan.finest().layer) / r.brightness;
+        findings.noise = r.findings.noise.ofLayer(r.plan.finest().layer) / brightness;
         findings.searchRatios.assign(r.plan.top().layer + 1, 0);
         for (const LayerPlan& layer : r.plan.layers)
             findings.searchRatios[layer.layer] = layers_[layer.layer].searchRatio;
@@ -189,8 +191,8 @@ public:
         if (!result_.isMatched)
             return confidenceArray.release();
         give(confidenceOfLayer(), INTER_LINEAR_EXACT, confidenceArray);
-        if (output_.hasRejected)
-            confidenceArray.setTo(Scalar(0), output_.rejected);
+        if (!output_.rejected.empty())
+            confidenceArray.setTo(Scalar(0), output_.rejected.back().pixels);
     }
 
     void getDisparitySigma(OutputArray sigmaArray) const CV_OVERRIDE
@@ -207,8 +209,8 @@ public:
         for (int layer = 0; layer < plan.layer; ++layer)
             scale *= sigmaPerLayer;
         give(ofLayer * scale, INTER_NEAREST, sigmaArray); // the same on all machines
-        if (output_.hasRejected)
-            sigmaArray.setTo(Scalar(std::numeric_limits<float>::infinity()), output_.rejected);
+        if (!output_.rejected.empty())
+            sigmaArray.setTo(Scalar(std::numeric_limits<float>::infinity()), output_.rejected.back().pixels);
     }
 
     void getReasons(OutputArray reasonsArray) const CV_OVERRIDE
@@ -221,14 +223,8 @@ public:
         findReasons(layers_[layer.layer].disparity, pairPlan.output, pairPlan.size.width,
                     scratch_[layer.layer].cost(layer.cost).limits(), ofLayer);
         give(ofLayer, INTER_NEAREST, reasonsArray);
-        const OutputPlan& output = pairPlan.output;
-        if (output.hasFilters())
-            reasonsArray.setTo(Scalar(output.speckleWindowSize > 0 ? REASON_SPECKLE : REASON_UNSTABLE),
-                               output_.rejected);
-        if (output.hasBothFilters())
-            reasonsArray.setTo(Scalar(REASON_UNSTABLE), output_.notStable);
-        if (!output_.masked.empty())
-            reasonsArray.setTo(Scalar(REASON_MASKED), output_.masked);
+        for (auto rejected = output_.rejected.rbegin(); rejected != output_.rejected.rend(); ++rejected)
+            reasonsArray.setTo(Scalar(rejected->reason), rejected->pixels);
     }
 
     // cv::Algorithm
@@ -264,7 +260,6 @@ private:
         PairPlan plan;
         PairFindings findings;
         PairModel model;
-        double brightness = 1; // of the levels that were matched, relative to those of the images
     };
 
     //! To values that are valid, or not at all
@@ -295,7 +290,6 @@ private:
             buildPairPyramids(pair_.left, pair_.right, pair_.masks, pairPlan.pyramids, pyramids_, images,
                               given.isGiven ? &given.levels : nullptr);
         });
-        result_.brightness = roundedBrightness(pyramids_.levels.brightness);
         if (given.isGiven || pairPlan.alignment.looksForAnything())
             clock_.run("alignment", [&] {
                 alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings,

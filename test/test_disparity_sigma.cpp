@@ -6,7 +6,7 @@
 #include "synthetic_pair.hpp"
 #include "../src/base/units.hpp"
 #include "../src/cost/census_cost.hpp"
-#include "../src/map/disparity_reasons.hpp"
+#include "../src/map/disparity_output.hpp"
 #include "../src/map/disparity_sigma.hpp"
 #include "../src/pair/image_levels.hpp"
 

@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/map/upsampling.hpp"
+#include "../src/map/disparity_output.hpp"
 
 namespace opencv_test { namespace {
 

@@ -5,8 +5,8 @@
 #include "disparity_output.hpp"
 
 #include "left_right_check.hpp"
-#include "upsampling.hpp"
 #include "../base/units.hpp"
+#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -51,11 +51,42 @@ void removeSpeckles(Mat& disparity, const OutputPlan& plan, short invalid, Mat& 
 
 } // namespace
 
+void upsampleDisparity(const Mat& upper, Size size, Mat& disparity)
+{
+    disparity.create(size, CV_16U);
+    parallelFor(size.height, [&](int y) {
+        const auto clampRow = [&](int row) { return clamped(row, 0, upper.rows - 1); };
+        const ushort* own = upper.ptr<ushort>(clampRow(y / 2));
+        const ushort* beside = upper.ptr<ushort>(clampRow(y % 2 ? y / 2 + 1 : y / 2 - 1));
+        ushort* row = disparity.ptr<ushort>(y);
+        const auto mean = [&](int x, int next) {
+            const int d = own[x];
+            const auto sameSurface = [&](int other) { return std::abs(other - d) <= subpixelScale ? other : d; };
+            return (ushort)((9 * d + 3 * sameSurface(own[next]) + 3 * sameSurface(beside[x]) +
+                             sameSurface(beside[next]) + 4) /
+                            8);
+        };
+        const int last = upper.cols - 1;
+        HDP_VECTORIZED for (int x = 1; x < last; ++x)
+        {
+            row[2 * x] = mean(x, x - 1);
+            row[2 * x + 1] = mean(x, x + 1);
+        }
+        row[0] = mean(0, 0);
+        if (size.width > 1)
+            row[1] = mean(0, std::min(1, last));
+        for (int x = std::max(2 * last, 2); x < size.width; ++x) // a last odd column is that pixel's, too
+            row[x] = mean(last, x % 2 ? last : x / 2 - 1);
+    });
+}
+
 void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity, const Mat& mask,
                      const PixelRanges& ranges)
 {
-    buffers.masked.release();
-    buffers.hasRejected = plan.hasFilters() || !mask.empty() || !ranges.isEmpty();
+    const bool missesAny = !mask.empty() || !ranges.isEmpty(), isChecked = plan.disp12MaxDiff > 0,
+               isFiltered = plan.speckleWindowSize > 0, mayReject = missesAny || isChecked || isFiltered;
+    std::vector<Rejected>& rejected = buffers.rejected;
+    rejected.clear();
     const Size extendedSize = disparity.size() + Size(plan.extension, 0);
     Mat extended = enlarge(finest, plan.finestLayer, extendedSize, buffers.enlarged);
     if (plan.isWhole)
@@ -66,11 +97,11 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
     }
     const Mat map = extended.colRange(plan.extension, extended.cols);
     const bool isFloat = disparity.depth() == CV_32F;
-    if (isFloat && !buffers.hasRejected)
+    if (isFloat && !mayReject)
         return convert(map, CV_32F, 1. / unit, plan.minDisparity, disparity);
     Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
     convert(map, CV_16S, 1, (double)plan.minDisparity * unit, fixedPoint);
-    if (!buffers.hasRejected)
+    if (!mayReject)
         return;
 
     const short invalid = (short)((plan.minDisparity - 1) * unit);
@@ -78,17 +109,44 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
         moveIntoRanges(ranges, invalid, fixedPoint);
     if (!mask.empty())
         fixedPoint.setTo(Scalar(invalid), mask == 0);
-    if (!mask.empty() || !ranges.isEmpty())
-        compare(fixedPoint, Scalar(invalid), buffers.masked, CMP_EQ);
-    if (plan.disp12MaxDiff > 0)
+    const auto addRejected = [&](HDPTreeMatcher::Reason reason) {
+        rejected.push_back({ reason, fixedPoint == invalid });
+    };
+    if (missesAny)
+        addRejected(HDPTreeMatcher::REASON_MASKED);
+    if (isChecked)
+    {
         rejectOccluded(fixedPoint, plan.disp12MaxDiff, invalid);
-    if (plan.hasBothFilters())
-        compare(fixedPoint, Scalar(invalid), buffers.notStable, CMP_EQ);
-    if (plan.speckleWindowSize > 0)
+        addRejected(HDPTreeMatcher::REASON_UNSTABLE);
+    }
+    if (isFiltered)
+    {
         removeSpeckles(fixedPoint, plan, invalid, buffers.speckles);
-    compare(fixedPoint, Scalar(invalid), buffers.rejected, CMP_EQ);
+        addRejected(HDPTreeMatcher::REASON_SPECKLE);
+    }
     if (isFloat)
         convert(fixedPoint, CV_32F, 1. / unit, 0, disparity);
+}
+
+void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const CostLimits& limits, Mat& reasons)
+{
+    Mat stable;
+    findStable(limits.dropMissing(disparity), stable);
+    const int scale = 1 << plan.finestLayer, half = subpixelScale / 2;
+    reasons.create(disparity.size(), CV_8U);
+    parallelFor(reasons.rows, [&](int y) {
+        for (int x = 0; x < reasons.cols; ++x)
+        {
+            // The column of the right image, in 1 / subpixelScale pixel
+            const int64 column = ((int64)x * scale - plan.extension - plan.minDisparity) * subpixelScale -
+                                 (int64)disparity.at<ushort>(y, x) * scale;
+            const bool isInside = column > -half && column <= (width - 1) * (int64)subpixelScale + half;
+            const bool isStable = stable.at<uchar>(y, x) != 0;
+            reasons.at<uchar>(y, x) = (uchar)(!isInside  ? HDPTreeMatcher::REASON_OUTSIDE
+                                              : isStable ? HDPTreeMatcher::REASON_MATCHED
+                                                         : HDPTreeMatcher::REASON_OCCLUDED);
+        }
+    });
 }
 
 }}} // namespace cv::stereo::hdp

@@ -4,6 +4,9 @@
 #ifndef OPENCV_HDPSTEREO_DISPARITY_OUTPUT_HPP
 #define OPENCV_HDPSTEREO_DISPARITY_OUTPUT_HPP
 
+#include "opencv2/hdpstereo/hdp_tree_matcher.hpp"
+
+#include "../cost/matching_cost.hpp"
 #include "../pair/disparity_ranges.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -19,21 +22,28 @@ struct OutputPlan
     int finestLayer; // 0: the image
     bool isWhole;    // whether disparities are rounded to whole pixels
     int disp12MaxDiff, speckleWindowSize, speckleRange; // as of cv::StereoMatcher; <= 0: no filter
+};
 
-    bool hasFilters() const { return disp12MaxDiff > 0 || speckleWindowSize > 0; }
-    bool hasBothFilters() const { return disp12MaxDiff > 0 && speckleWindowSize > 0; }
+//! What outputDisparity() has rejected for a reason, and for those before
+struct Rejected
+{
+    HDPTreeMatcher::Reason reason;
+    Mat pixels; // CV_8UC1, 255 where
 };
 
 //! Memory that is kept from pair to pair
 struct OutputBuffers
 {
-    bool hasRejected = false;
-    Mat rejected;  // CV_8UC1, 255 where a pixel has no data or a filter rejected it; if hasRejected
-    Mat notStable; // CV_8UC1, 255 where the left-right check rejected it or it has no data, if there are two filters
-    Mat masked;    // CV_8UC1, 255 where it has no data, or its range no candidate; empty: all have
+    std::vector<Rejected> rejected; // in the order of what was done; empty if nothing could be
     std::vector<Mat> enlarged;
     Mat whole, fixedPoint, speckles;
 };
+
+/** The disparities of a layer from those of the layer above: bilinear inside a surface, its pixel's own at its border.
+@param upper CV_16UC1, a disparity map.
+@param size Of the layer.
+@param disparity Receives CV_16UC1, a disparity map. */
+CV_EXPORTS void upsampleDisparity(const Mat& upper, Size size, Mat& disparity);
 
 /** From the disparities of the finest layer to what cv::StereoMatcher promises: those of every pixel of the image, from
 minDisparity on, less those without data and what the left-right check and the speckle filter reject.
@@ -45,6 +55,15 @@ minDisparity on, less those without data and what the left-right check and the s
 @param ranges What each pixel may have: the nearest of that, or nothing if it may have none of the candidates. */
 CV_EXPORTS void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity,
                                 const Mat& mask = Mat(), const PixelRanges& ranges = PixelRanges());
+
+/** Why the pixels of a layer have their disparities, see HDPTreeMatcher::Reason: MATCHED, OCCLUDED or OUTSIDE.
+@param disparity Of the layer, CV_16UC1, a disparity map.
+@param plan Of the output: where the layer lies in the image.
+@param width Of the image.
+@param limits Of the layer: pixels without data hide none.
+@param reasons Receives CV_8UC1. */
+CV_EXPORTS void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const CostLimits& limits,
+                            Mat& reasons);
 
 }}} // namespace cv::stereo::hdp
 
