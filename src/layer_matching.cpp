@@ -11,10 +11,8 @@
 #include "pair/disparity_ranges.hpp"
 #include "map/edge_vote.hpp"
 #include "map/left_right_check.hpp"
-#include "map/median_filter.hpp"
+#include "map/map_filters.hpp"
 #include "map/occlusion_filling.hpp"
-#include "map/surface_smoothing.hpp"
-#include "map/thin_structures.hpp"
 #include "paper/nonlocal_refinement.hpp"
 #include "video/temporal_prior.hpp"
 

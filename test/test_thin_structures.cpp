@@ -4,8 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/map/median_filter.hpp"
-#include "../src/map/thin_structures.hpp"
+#include "../src/map/map_filters.hpp"
 
 namespace opencv_test { namespace {
 

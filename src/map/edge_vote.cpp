@@ -30,7 +30,6 @@ void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted)
     if (width < VoteRows::columns)
         return disparity.copyTo(voted);
     voted.create(disparity.size(), CV_16U);
-    const VoteRule rule = { (ushort)likeness, (ushort)(minStep * subpixelScale), (ushort)(reach * subpixelScale) };
     const int count = (disparity.rows + voteBlock - 1) / voteBlock, border = VoteRows::rowStep * (VoteRows::rows / 2);
     parallel_for_(Range(0, count), [&](const Range& range) {
         std::vector<ushort> near(width + 2), far(width + 2);
@@ -38,6 +37,9 @@ void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted)
         VoteRows rows;
         rows.width = width;
         rows.channels = image.channels();
+        rows.likeness = (ushort)likeness;
+        rows.minStep = (ushort)(minStep * subpixelScale);
+        rows.reach = (ushort)(reach * subpixelScale);
         for (int y = range.start * voteBlock; y < std::min(range.end * voteBlock, disparity.rows); ++y)
         {
             const int first = std::max(y / voteBlock * voteBlock - border, 0);
@@ -48,13 +50,10 @@ void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted)
                 const int row = clamped(y + VoteRows::rowStep * r - border, 0, lastRow);
                 for (int c = 0; c < rows.channels; ++c)
                     rows.colour[c][r] = channels[c].ptr(row - first);
-                rows.disparity[r] = disparity.ptr<ushort>(row);
             }
-            rows.farAbove = disparity.ptr<ushort>(std::max(y - VoteRows::barWidth, 0));
-            rows.farBelow = disparity.ptr<ushort>(std::min(y + VoteRows::barWidth, lastRow));
-            rows.above = disparity.ptr<ushort>(std::max(y - 1, 0));
-            rows.below = disparity.ptr<ushort>(std::min(y + 1, lastRow));
-            dispatched::voteRow(rows, rule, near.data(), far.data(), voted.ptr<ushort>(y));
+            for (int dy = -VoteRows::barWidth; dy <= VoteRows::barWidth; ++dy)
+                rows.disparities[VoteRows::barWidth + dy] = disparity.ptr<ushort>(clamped(y + dy, 0, lastRow));
+            dispatched::voteRow(rows, near.data(), far.data(), voted.ptr<ushort>(y));
         }
     });
 }

@@ -8,7 +8,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! What is around a row of voteAtEdges()
+//! What is around a row of voteAtEdges(), and how pixels vote
 struct VoteRows
 {
     enum
@@ -20,20 +20,14 @@ struct VoteRows
         barWidth = 8, // pixels, up to which a surface is a bar
         maxChannels = 3
     };
-    // The window's rows
-    const uchar* colour[maxChannels][rows];
-    const ushort* disparity[rows];
-    int channels;                      // of the colours: 1 or maxChannels
-    const ushort *above, *below;       // disparities of the rows beside the one in the middle
-    const ushort *farAbove, *farBelow; // the same, barWidth rows away
+    const uchar* colour[maxChannels][rows];      // of the window
+    const ushort* disparities[2 * barWidth + 1]; // of the rows up to barWidth away
+    int channels;                                // of the colours: 1 or maxChannels
     int width;
-};
-
-//! How pixels vote
-struct VoteRule
-{
     ushort likeness;       // the difference of colours from which on votes count nothing
     ushort minStep, reach; // of disparities: what is a step, and how far beyond its ends the surfaces go
+
+    CV_ALWAYS_INLINE const ushort* disparity(int dy) const { return disparities[barWidth + dy]; }
 };
 
 /** Moves the outlines of surfaces to the edges of the image: where disparities have a step, the pixels around vote for

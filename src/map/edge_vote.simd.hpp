@@ -13,44 +13,30 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** A row of voteAtEdges().
 @param rows What is around it.
-@param rule How the pixels vote.
 @param near Memory of width + 2 elements.
 @param far The same.
 @param voted Receives the row. */
-void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* far, ushort* voted);
+void voteRow(const VoteRows& rows, ushort* near, ushort* far, ushort* voted);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
-//! Disparities from the first to the last one
-struct Surface
-{
-    SixteenWords first, last;
-
-    Surface(int first_, int last_) : first(SixteenWords::repeat(first_)), last(SixteenWords::repeat(last_)) {}
-
-    //! The votes of those pixels whose disparities it has
-    CV_ALWAYS_INLINE SixteenWords votes(const SixteenWords& all, const SixteenWords& disparity) const
-    {
-        return all.whereEqual(disparity, disparity.max(first).min(last));
-    }
-};
-
 /** Whether a pixel of the nearer surface is in a bar: across it the farther surface begins within barWidth pixels both
 ways, along it the nearer one goes on for as many at least one way. Beyond the image it goes on. */
 inline bool isInBar(const VoteRows& rows, int x, ushort middle)
 {
-    const int reach = VoteRows::barWidth, own = VoteRows::rows / 2;
-    bool left = true, right = true, up = rows.farAbove[x] > middle, down = rows.farBelow[x] > middle;
+    const int reach = VoteRows::barWidth;
+    const ushort* const own = rows.disparity(0);
+    bool left = true, right = true, up = true, down = true;
     for (int u = std::max(x - reach, 0); u < x; ++u)
-        left &= rows.disparity[own][u] > middle;
+        left &= own[u] > middle;
     for (int u = x + 1; u <= std::min(x + reach, rows.width - 1); ++u)
-        right &= rows.disparity[own][u] > middle;
-    for (int r = 0; r < own; ++r)
+        right &= own[u] > middle;
+    for (int distance : { +VoteRows::rowStep, 2 * VoteRows::rowStep, reach })
     {
-        up &= rows.disparity[r][x] > middle;
-        down &= rows.disparity[own + 1 + r][x] > middle;
+        up &= rows.disparity(-distance)[x] > middle;
+        down &= rows.disparity(distance)[x] > middle;
     }
     return (!left && !right && (up || down)) || (!up && !down && (left || right));
 }
@@ -66,14 +52,14 @@ CV_ALWAYS_INLINE SixteenWords differenceOf(const VoteRows& rows, int r, int star
 }
 
 //! The disparity of a pixel at a step from nearest to farthest
-template <int channels>
-inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort nearest, ushort farthest)
+template <int channels> inline ushort voteAt(const VoteRows& rows, int x, ushort nearest, ushort farthest)
 {
     const int start = std::min(std::max(x - VoteRows::columnsBefore, 0), rows.width - VoteRows::columns);
     const int middle = (nearest + farthest) / 2;
-    const Surface near(middle + 1, std::min(nearest + rule.reach, (int)USHRT_MAX));
-    const Surface far(std::max(farthest - rule.reach, 0), middle);
-    const SixteenWords likeness = SixteenWords::repeat(rule.likeness);
+    const SixteenWords nearFirst = SixteenWords::repeat(middle + 1), farLast = SixteenWords::repeat(middle),
+                       nearLast = SixteenWords::repeat(std::min(nearest + rows.reach, (int)USHRT_MAX)),
+                       farFirst = SixteenWords::repeat(std::max(farthest - rows.reach, 0));
+    const SixteenWords likeness = SixteenWords::repeat(rows.likeness);
     SixteenWords colour[channels], majority = SixteenWords::repeat(0);
     for (int c = 0; c < channels; ++c)
         colour[c] = SixteenWords::repeat(rows.colour[c][VoteRows::rows / 2][x]);
@@ -81,11 +67,13 @@ inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort n
     {
         const SixteenWords change = differenceOf<channels>(rows, r, start, colour).min(likeness);
         const SixteenWords votes = likeness.minus(change);
-        const SixteenWords disparity = SixteenWords::load(rows.disparity[r] + start);
-        majority = majority.plus(near.votes(votes, disparity)).minus(far.votes(votes, disparity));
+        const SixteenWords disparity =
+            SixteenWords::load(rows.disparity(VoteRows::rowStep * (r - VoteRows::rows / 2)) + start);
+        majority = majority.plus(votes.whereEqual(disparity, disparity.max(nearFirst).min(nearLast)))
+                       .minus(votes.whereEqual(disparity, disparity.max(farFirst).min(farLast)));
     }
     const int nearVotes = majority.sum(); // less those for the other one
-    const ushort own = rows.disparity[VoteRows::rows / 2][x];
+    const ushort own = rows.disparity(0)[x];
     if (own <= middle)
         return nearVotes > 0 ? nearest : own;
     return nearVotes < 0 && !isInBar(rows, x, (ushort)middle) ? farthest : own;
@@ -94,11 +82,10 @@ inline ushort voteAt(const VoteRows& rows, const VoteRule& rule, int x, ushort n
 CV_ALWAYS_INLINE ushort largestOfThree(const ushort* v) { return std::max(std::max(v[0], v[2]), v[1]); }
 CV_ALWAYS_INLINE ushort smallestOfThree(const ushort* v) { return std::min(std::min(v[0], v[2]), v[1]); }
 
-template <int channels>
-void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* far, ushort* voted)
+template <int channels> void voteRow(const VoteRows& rows, ushort* near, ushort* far, ushort* voted)
 {
     const int width = rows.width;
-    const ushort *const above = rows.above, *const own = rows.disparity[VoteRows::rows / 2], *const below = rows.below;
+    const ushort *const above = rows.disparity(-1), *const own = rows.disparity(0), *const below = rows.disparity(1);
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         near[x + 1] = std::max(std::max(above[x], below[x]), own[x]);
@@ -108,7 +95,7 @@ void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* f
     far[0] = far[1];
     near[width + 1] = near[width];
     far[width + 1] = far[width];
-    const ushort minStep = rule.minStep;
+    const ushort minStep = rows.minStep;
     for (int begin = 0; begin < width; begin += VoteRows::columns)
     {
         const int end = std::min(begin + VoteRows::columns, width);
@@ -125,19 +112,19 @@ void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* f
             const ushort nearest = largestOfThree(near + x);
             const ushort farthest = smallestOfThree(far + x);
             if (nearest - farthest > minStep)
-                voted[x] = voteAt<channels>(rows, rule, x, nearest, farthest);
+                voted[x] = voteAt<channels>(rows, x, nearest, farthest);
         }
     }
 }
 
 } // namespace
 
-void voteRow(const VoteRows& rows, const VoteRule& rule, ushort* near, ushort* far, ushort* voted)
+void voteRow(const VoteRows& rows, ushort* near, ushort* far, ushort* voted)
 {
     if (rows.channels == 1)
-        voteRow<1>(rows, rule, near, far, voted);
+        voteRow<1>(rows, near, far, voted);
     else
-        voteRow<3>(rows, rule, near, far, voted);
+        voteRow<3>(rows, near, far, voted);
 }
 
 #endif

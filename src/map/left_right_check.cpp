@@ -17,46 +17,31 @@ HDP_DISPATCH(visibilityRow)
 @param disparity CV_16SC1 or CV_16UC1 (T), in 1 / subpixelScale pixel.
 @param maxDiff Maximum difference, in pixels, of a visible pixel.
 @param invalid Disparity of pixels that map to no column, or a value that none has.
-@param visit Called with each row and the Visibility of its pixels, rows side by side. */
-template <typename T, typename Visit>
-void checkLeftRight(const Mat& disparity, int maxDiff, int invalid, const Visit& visit)
+@return A Visibility per pixel, CV_8UC1. */
+template <typename T> Mat checkLeftRight(const Mat& disparity, int maxDiff, int invalid)
 {
     const int maxDifference = (int)std::min<int64>((int64)maxDiff * subpixelScale, INT_MAX);
+    Mat visibility(disparity.size(), CV_8U);
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         std::vector<int> columns(disparity.cols), nearest(disparity.cols + 1);
-        std::vector<uchar> visibility(disparity.cols);
         for (int y = rows.start; y < rows.end; ++y)
-        {
             dispatched::visibilityRow(disparity.ptr<T>(y), disparity.cols, invalid, maxDifference, columns.data(),
-                                      nearest.data(), visibility.data());
-            visit(y, visibility.data());
-        }
+                                      nearest.data(), visibility.ptr(y));
     });
+    return visibility;
 }
 
 } // namespace
 
 void rejectOccluded(Mat& disparity, int maxDiff, short invalid)
 {
-    const auto reject = [&](int y, const uchar* visibility) {
-        short* row = disparity.ptr<short>(y);
-        for (int x = 0; x < disparity.cols; ++x)
-            if (visibility[x] == OCCLUDED)
-                row[x] = invalid;
-    };
-    checkLeftRight<short>(disparity, maxDiff, invalid, reject);
+    disparity.setTo(Scalar(invalid), checkLeftRight<short>(disparity, maxDiff, invalid) == +OCCLUDED);
 }
 
 void findStable(const Mat& disparity, Mat& stable)
 {
-    stable.create(disparity.size(), CV_8U);
-    const auto mark = [&](int y, const uchar* visibility) {
-        uchar* row = stable.ptr(y);
-        const int width = stable.cols; // for vectors: bytes that are written could otherwise be those of the number
-        HDP_VECTORIZED for (int x = 0; x < width; ++x) row[x] = visibility[x] == VISIBLE ? 255 : 0;
-    };
     const int maxDiff = 1;
-    checkLeftRight<ushort>(disparity, maxDiff, USHRT_MAX, mark);
+    compare(checkLeftRight<ushort>(disparity, maxDiff, USHRT_MAX), +VISIBLE, stable, CMP_EQ);
 }
 
 }}} // namespace cv::stereo::hdp

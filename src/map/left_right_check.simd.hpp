@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
-#include "visibility.simd.hpp"
+#include "left_right_check.hpp"
 #include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

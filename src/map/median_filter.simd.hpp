@@ -32,47 +32,12 @@ inline void sortPair(short& a, short& b)
     a = first;
 }
 
-inline void sortThree(short& a, short& b, short& c)
+template <int count> CV_ALWAYS_INLINE void sort(short* v)
 {
-    sortPair(a, b);
-    sortPair(b, c);
-    sortPair(a, b);
+    HDP_UNROLLED for (int i = 0; i < count - 1; ++i) sortPair(v[i], v[i + 1]);
+    sort<count - 1>(v);
 }
-
-inline void sortFour(short& a, short& b, short& c, short& d)
-{
-    sortPair(a, b);
-    sortPair(c, d);
-    sortPair(a, c);
-    sortPair(b, d);
-    sortPair(b, c);
-}
-
-inline void sort(short (&v)[3]) { sortThree(v[0], v[1], v[2]); }
-
-inline void sort(short (&v)[5])
-{
-    sortFour(v[0], v[1], v[2], v[3]);
-    sortPair(v[3], v[4]);
-    sortPair(v[2], v[3]);
-    sortPair(v[1], v[2]);
-    sortPair(v[0], v[1]);
-}
-
-inline void sort(short (&v)[7])
-{
-    sortFour(v[0], v[1], v[2], v[3]);
-    sortThree(v[4], v[5], v[6]);
-    // Batcher's merging of four and three
-    sortPair(v[0], v[4]);
-    sortPair(v[1], v[5]);
-    sortPair(v[2], v[6]);
-    sortPair(v[2], v[4]);
-    sortPair(v[3], v[5]);
-    sortPair(v[1], v[2]);
-    sortPair(v[3], v[4]);
-    sortPair(v[5], v[6]);
-}
+template <> CV_ALWAYS_INLINE void sort<1>(short*) {}
 
 inline short medianOfThree(short a, short b, short c) { return larger(smaller(a, b), smaller(larger(a, b), c)); }
 
@@ -107,11 +72,12 @@ inline short medianOfSorted(const short (&d)[5][5])
 {
     const short low = larger(d[1][2], d[2][1]), high = smaller(d[2][3], d[3][2]);
     // The median of nine: low <= d[2][2] <= high and two groups of three
-    short a = larger(d[0][3], d[3][0]), b = d[0][4], c = d[4][0];
-    short e = smaller(d[1][4], d[4][1]), f = d[1][3], g = d[3][1];
-    sortThree(a, b, c);
-    sortThree(e, f, g);
-    return medianOfThree(larger(larger(a, e), low), medianOfThree(b, f, d[2][2]), smaller(smaller(c, g), high));
+    short first[] = { larger(d[0][3], d[3][0]), d[0][4], d[4][0] };
+    short second[] = { smaller(d[1][4], d[4][1]), d[1][3], d[3][1] };
+    sort<3>(first);
+    sort<3>(second);
+    return medianOfThree(larger(larger(first[0], second[0]), low), medianOfThree(first[1], second[1], d[2][2]),
+                         smaller(smaller(first[2], second[2]), high));
 }
 
 //    . . . . a c x      . drops out
@@ -133,19 +99,18 @@ inline short medianOfSorted(const short (&w)[7][7])
 }
 
 //! Sorts each column of the rows.
-template <int size>
-void sortColumns(const ushort* const (&rows)[size], const Range& columns, short* const (&sorted)[size])
+template <int size> void sortColumns(const ushort* const* rows, const Range& columns, short* const* sorted)
 {
     HDP_VECTORIZED for (int x = columns.start; x < columns.end; ++x)
     {
         short column[size];
         HDP_UNROLLED for (int i = 0; i < size; ++i) column[i] = (short)(rows[i][x] ^ SHRT_MIN);
-        sort(column);
+        sort<size>(column);
         HDP_UNROLLED for (int i = 0; i < size; ++i) sorted[i][x] = column[i];
     }
 }
 
-template <int size> void medianOfColumns(const short* const (&sorted)[size], const Range& columns, ushort* filtered)
+template <int size> void medianOfColumns(const short* const* sorted, const Range& columns, ushort* filtered)
 {
     HDP_VECTORIZED for (int x = columns.start; x < columns.end; ++x)
     {
@@ -153,7 +118,7 @@ template <int size> void medianOfColumns(const short* const (&sorted)[size], con
         HDP_UNROLLED for (int i = 0; i < size; ++i)
         {
             HDP_UNROLLED for (int j = 0; j < size; ++j) window[i][j] = sorted[i][x + j - size / 2];
-            sort(window[i]); // the columns remain sorted; the compiler leaves out what is not used
+            sort<size>(window[i]); // the columns remain sorted; the compiler leaves out what is not used
         }
         filtered[x] = (ushort)(medianOfSorted(window) ^ SHRT_MIN);
     }
@@ -162,26 +127,18 @@ template <int size> void medianOfColumns(const short* const (&sorted)[size], con
 template <int size> void medianRow(const ushort* const* rows, int width, short* const* sorted, ushort* filtered)
 {
     const int radius = size / 2;
-    const ushort* r[size];
-    short* s[size];
-    const short* columns[size];
-    for (int i = 0; i < size; ++i)
-    {
-        r[i] = rows[i];
-        columns[i] = s[i] = sorted[i];
-    }
     // Whole vectors, of which the last ones overlap: what is left over would take as long, pixel by pixel.
     const int vectors = 32;
     const Range whole(0, width / vectors * vectors), last(std::max(width - vectors, 0), width);
-    sortColumns(r, whole, s);
-    sortColumns(r, last, s);
+    sortColumns<size>(rows, whole, sorted);
+    sortColumns<size>(rows, last, sorted);
     for (int i = 0; i < size; ++i) // the border is replicated
     {
-        std::fill(s[i] - radius, s[i], s[i][0]);
-        std::fill(s[i] + width, s[i] + width + radius, s[i][width - 1]);
+        std::fill(sorted[i] - radius, sorted[i], sorted[i][0]);
+        std::fill(sorted[i] + width, sorted[i] + width + radius, sorted[i][width - 1]);
     }
-    medianOfColumns(columns, whole, filtered);
-    medianOfColumns(columns, last, filtered);
+    medianOfColumns<size>(sorted, whole, filtered);
+    medianOfColumns<size>(sorted, last, filtered);
 }
 
 } // namespace

@@ -17,24 +17,22 @@ HDP_TUNABLE(int, maxBlack, 2, "grey levels", "of blank columns, as JPEG leaves t
 
 HDP_DISPATCH(fillOccludedRow)
 
-//! The number of columns, from the left border on, that are black
-int countBlank(const ushort* grey, int width)
+//! The number of columns of a row, from the left border on, before the first one that shows something
+template <typename T, typename Shows> int countBlank(const Mat& image, int y, const Shows& shows)
 {
-    const int black = maxBlack * greyScale;
-    return (int)(std::find_if(grey, grey + width, [=](ushort level) { return level > black; }) - grey);
+    const T* const row = image.ptr<T>(y);
+    return (int)(std::find_if(row, row + image.cols, shows) - row);
 }
-
-//! The number of columns, from the left border on, without data
-int countMasked(const uchar* mask, int width) { return (int)(std::find_if(mask, mask + width, hasData) - mask); }
 
 } // namespace
 
 void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right, const Mat& rightMask)
 {
+    const auto isBright = [](ushort level) { return level > maxBlack * greyScale; };
     parallelFor(disparity.rows, OcclusionScratch(disparity.cols), [&](int y, OcclusionScratch& scratch) {
-        const int blank = !rightMask.empty() ? countMasked(rightMask.ptr(y), rightMask.cols)
-                          : right.empty()    ? 0
-                                             : countBlank(right.ptr<ushort>(y), right.cols);
+        const int blank = !rightMask.empty() ? countBlank<uchar>(rightMask, y, hasData)
+                          : !right.empty()   ? countBlank<ushort>(right, y, isBright)
+                                             : 0;
         dispatched::fillOccludedRow(disparity.ptr<ushort>(y), residual.ptr(y), disparity.cols, blank, scratch);
     });
 }

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "occlusion_filling.hpp"
-#include "visibility.simd.hpp"
+#include "left_right_check.hpp"
 #include "../base/units.hpp"
 #include <cstring>
 

@@ -82,10 +82,10 @@ public:
 
     void join(int maxDisparity)
     {
-        Mat hypotheses(winners_.size(), CV_16U), speech(winners_.size(), CV_8U), ofWinners, ofHypotheses;
+        Mat hypotheses(winners_.size(), CV_16U), isOpposed(winners_.size(), CV_8U), ofWinners, ofHypotheses;
         parallelFor(winners_.rows, std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
             for (int x = 0; x < width_; ++x)
-                speech.ptr(y)[x] = (uchar)propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
+                isOpposed.ptr(y)[x] = propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
         });
         sumCosts(winners_, ofWinners);
         sumCosts(hypotheses, ofHypotheses);
@@ -93,21 +93,13 @@ public:
         for (int y = 0; y < winners_.rows; ++y)
             for (int x = 0; x < width_; ++x)
             {
-                const int said = speech.ptr(y)[x], more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners.ptr<ushort>(y)[x];
-                if (said != FOR && more <= area * (said == AGAINST ? contradiction : contradictionAlone))
+                const int more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners.ptr<ushort>(y)[x];
+                if (more <= area * (isOpposed.ptr(y)[x] ? contradiction : contradictionAlone))
                     winners_.ptr<ushort>(y)[x] = hypotheses.ptr<ushort>(y)[x];
             }
     }
 
 private:
-    //! What the points say of a winner
-    enum Speech
-    {
-        FOR,
-        AGAINST,
-        NOTHING
-    };
-
     //! In a dense prior a pixel knows enough points that are near.
     static int reachOf(Size size, size_t points, int layer)
     {
@@ -189,8 +181,9 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    //! What the points around a pixel say of its winner, and which disparity they propose
-    Speech propose(Point place, int maxDisparity, std::vector<Neighbour>& found, ushort& proposed) const
+    //! The disparity that the points around a pixel propose: its winner, if they speak for it. Returns whether some speak
+    //! against it.
+    bool propose(Point place, int maxDisparity, std::vector<Neighbour>& found, ushort& proposed) const
     {
         const ushort own = winners_.ptr<ushort>(place.y)[place.x];
         const float winner = own * (1.f / subpixelScale);
@@ -206,10 +199,9 @@ private:
                 against += n.weight;
         }
         if (found.size() < 2 || (speaksFor > 0 && speaksFor >= against))
-            return FOR;
-        const float disparity = planeAt(place, found);
-        proposed = (ushort)clamped(cvRound(disparity * subpixelScale), 0, maxDisparity);
-        return against > 0 ? AGAINST : NOTHING;
+            return false;
+        proposed = (ushort)clamped(cvRound(planeAt(place, found) * subpixelScale), 0, maxDisparity);
+        return against > 0;
     }
 
     //! The disparity of the plane through the points that are alike

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
-#include "surface_smoothing.hpp"
+#include "map_filters.hpp"
 
 #include "surface_smoothing.simd.hpp"
 #include "map/surface_smoothing.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
@@ -21,20 +21,18 @@ HDP_DISPATCH(smoothRow)
 void smoothSurfaces(const Mat& disparity, Mat& smoothed)
 {
     const ushort likeness = (ushort)(mostDifference * subpixelScale);
-    const int radius = SmoothedRow::radius, width = disparity.cols, lastRow = disparity.rows - 1;
+    const int radius = smoothingRadius, width = disparity.cols, lastRow = disparity.rows - 1;
     smoothed.create(disparity.size(), CV_16U);
     parallelFor(disparity.rows, std::vector<ushort>(width + 2 * radius), [&](int y, std::vector<ushort>& padded) {
         const ushort* const own = disparity.ptr<ushort>(y);
         std::fill_n(padded.begin(), radius, own[0]);
         std::copy(own, own + width, padded.begin() + radius);
         std::fill_n(padded.end() - radius, radius, own[width - 1]);
-        SmoothedRow row = { width, padded.data() + radius, {}, {} };
-        for (int k = 0; k < radius; ++k)
-        {
-            row.above[k] = disparity.ptr<ushort>(std::max(y - k - 1, 0));
-            row.below[k] = disparity.ptr<ushort>(std::min(y + k + 1, lastRow));
-        }
-        dispatched::smoothRow(row, likeness, smoothed.ptr<ushort>(y));
+        const ushort* rows[2 * smoothingRadius + 1];
+        for (int dy = -radius; dy <= radius; ++dy)
+            rows[radius + dy] = disparity.ptr<ushort>(clamped(y + dy, 0, lastRow));
+        rows[radius] = &padded[radius];
+        dispatched::smoothRow(rows, width, likeness, smoothed.ptr<ushort>(y));
     });
 }
 

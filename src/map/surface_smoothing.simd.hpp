@@ -3,16 +3,17 @@
 // of this distribution and at http://opencv.org/license.html.
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "../base/vectorized.hpp"
-#include "surface_smoothing.hpp"
+#include "map_filters.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** A row of smoothSurfaces().
-@param row What is around it.
+@param rows Those up to smoothingRadius pixels away; that in the middle has as many elements more on both sides.
+@param width Of the rows.
 @param likeness The most that disparities of a surface differ.
 @param smoothed Receives the row. */
-void smoothRow(const SmoothedRow& row, ushort likeness, ushort* smoothed);
+void smoothRow(const ushort* const* rows, int width, ushort likeness, ushort* smoothed);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -27,17 +28,17 @@ CV_ALWAYS_INLINE ushort addPair(ushort first, ushort second, ushort own, ushort 
 
 } // namespace
 
-void smoothRow(const SmoothedRow& row, ushort likeness, ushort* smoothed)
+void smoothRow(const ushort* const* rows, int width, ushort likeness, ushort* smoothed)
 {
-    const int radius = SmoothedRow::radius, count = 4 * radius;
+    const int radius = smoothingRadius, count = 4 * radius;
     const ushort bias = (ushort)(count * likeness); // so that no sum is negative
-    const ushort* const own = row.own;
-    HDP_VECTORIZED for (int x = 0; x < row.width; ++x)
+    const ushort* const own = rows[radius];
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         ushort sum = (ushort)(bias + count / 2);
         HDP_UNROLLED for (int k = 0; k < radius; ++k)
         {
-            sum = (ushort)(sum + addPair(row.above[k][x], row.below[k][x], own[x], likeness));
+            sum = (ushort)(sum + addPair(rows[k][x], rows[2 * radius - k][x], own[x], likeness));
             sum = (ushort)(sum + addPair(own[x - k - 1], own[x + k + 1], own[x], likeness));
         }
         smoothed[x] = (ushort)(own[x] + sum / count - likeness);

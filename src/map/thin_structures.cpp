@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
-#include "thin_structures.hpp"
+#include "map_filters.hpp"
 
 #include "../base/units.hpp"
 #include "../base/vectorized.hpp"
@@ -18,19 +18,6 @@ HDP_TUNABLE(int, minDistance, 5, "pixels",
             "in front of what the median left: nearer ones are rather noise of a surface");
 HDP_TUNABLE(int, maxDifference, 1, "pixels", "inside the structure: 0 fails by rounding, more joins noise");
 HDP_TUNABLE(int, columns, 64, "pixels", "that are looked at together: hardly a group has any");
-
-//! Whether one of count disparities before the median is nearer than after it by minDistance
-bool isAnyNearer(const ushort* before, const ushort* after, int count)
-{
-    const ushort minRise = (ushort)(minDistance * subpixelScale);
-    ushort any = 0;
-    HDP_VECTORIZED for (int x = 0; x < count; ++x)
-    {
-        const ushort nearer = (ushort)(std::max(before[x], after[x]) - after[x]);
-        any |= (ushort)(nearer >= minRise);
-    }
-    return any != 0;
-}
 
 //! Whether enough pixels around this one have its disparity
 bool isInStructure(const Mat& disparity, int y, int x)
@@ -53,16 +40,17 @@ bool isInStructure(const Mat& disparity, int y, int x)
 
 void restoreThinStructures(const Mat& unfiltered, Mat& disparity)
 {
-    const int minRise = minDistance * subpixelScale;
+    const ushort minRise = (ushort)(minDistance * subpixelScale);
     parallelFor(disparity.rows, [&](int y) {
         const ushort* before = unfiltered.ptr<ushort>(y);
         ushort* row = disparity.ptr<ushort>(y);
         for (int begin = 0; begin < disparity.cols; begin += columns)
         {
             const int end = std::min(begin + columns, disparity.cols);
-            if (!isAnyNearer(before + begin, row + begin, end - begin))
-                continue;
-            for (int x = begin; x < end; ++x)
+            ushort isAnyNearer = 0;
+            HDP_VECTORIZED for (int x = begin; x < end; ++x) isAnyNearer |=
+                (ushort)((ushort)(std::max(before[x], row[x]) - row[x]) >= minRise);
+            for (int x = begin; x < end && isAnyNearer; ++x)
                 if (before[x] - row[x] >= minRise && isInStructure(unfiltered, y, x))
                     row[x] = before[x];
         }
