@@ -32,6 +32,7 @@ inline void sortPair(short& a, short& b)
     a = first;
 }
 
+//! Moves the largest one to the end, and so on. Shorter networks would hardly save time.
 template <int count> CV_ALWAYS_INLINE void sort(short* v)
 {
     HDP_UNROLLED for (int i = 0; i < count - 1; ++i) sortPair(v[i], v[i + 1]);
