@@ -306,6 +306,7 @@ TEST(HDPStereo_StereoCalibration, refusesOtherModels)
     const auto replaced = [&](const std::string& from, const std::string& to) {
         Files others = files;
         others[0].fields = { { "all", std::regex_replace(files[0].text(), std::regex(from), to) } };
+        others[0].head.clear();
         return others;
     };
     expectRefused(replaced("pinhole", "omni"), Size(), "camchain.yaml", "cam0/camera_model");
@@ -315,6 +316,13 @@ TEST(HDPStereo_StereoCalibration, refusesOtherModels)
     expectRefused(replaced("- \\[0, 0, 0, 1\\]", "- [0, 0, 1, 1]"), Size(), "camchain.yaml", "cam1/T_cn_cnm1");
     expectRefused(replaced("resolution: \\[480", "resolution: [480.5"), Size(), "camchain.yaml", "cam0/resolution");
     EXPECT_EQ(0, cvtest::norm(read(replaced("radtan", "none"), Size()).distCoeffs1, NORM_INF));
+
+    files = inRosFiles(makeCalibration(5));
+    for (const char* side : { "image_width", "image_height" })
+    {
+        const std::string key = std::string(side) + ": ";
+        expectRefused({ replaced(key, key + "-")[0], files[1] }, Size(), "left.yaml", side);
+    }
 }
 
 //! A file of one program may have another one's name for a model: its coefficients count.

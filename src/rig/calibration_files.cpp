@@ -32,12 +32,13 @@ std::string nameOf(const Texts& texts, const std::string& path)
 
 Matx33d cameraMatrix(double fx, double fy, double cx, double cy) { return Matx33d(fx, 0, cx, 0, fy, cy, 0, 0, 1); }
 
-Size sizeOf(const CalibrationText& text, double width, double height, const std::string& path)
+//! The width or the height of images, from a field of the text
+int sideOf(const CalibrationText& text, double value, const std::string& path)
 {
-    const Size size(saturate_cast<int>(width), saturate_cast<int>(height));
-    if (!isPossible(size) || size.width != width || size.height != height)
-        text.fail(path, "whole numbers from 1 to 32766");
-    return size;
+    const int side = saturate_cast<int>(value);
+    if (!isPossible(Size(side, side)) || side != value)
+        text.fail(path, "whole, from 1 to 32766");
+    return side;
 }
 
 //! text, rotation, translation: what exceptions name
@@ -99,8 +100,9 @@ Camera readPinhole(const CalibrationText& text, const std::string& camera, const
     if (text.word(camera + "camera_model") != "pinhole")
         text.fail(camera + "camera_model", "pinhole, not '" + text.word(camera + "camera_model") + "'");
     Camera result;
-    const std::vector<double> size = text.numbers(camera + "resolution", 2);
-    result.size = sizeOf(text, size[0], size[1], camera + "resolution");
+    const std::string resolution = camera + "resolution";
+    const std::vector<double> size = text.numbers(resolution, 2);
+    result.size = Size(sideOf(text, size[0], resolution), sideOf(text, size[1], resolution));
     const std::vector<double> in = text.numbers(camera + "intrinsics", 4);
     result.matrix = cameraMatrix(in[0], in[1], in[2], in[3]);
     readDistortion(text, camera + "distortion_model", camera + coefficients, result);
@@ -145,7 +147,8 @@ StereoCalibration readRos(const Texts& texts)
     {
         const CalibrationText& text = texts[i];
         Camera& camera = cameras[i];
-        camera.size = sizeOf(text, text.number("image_width"), text.number("image_height"), "image_width");
+        camera.size.width = sideOf(text, text.number("image_width"), "image_width");
+        camera.size.height = sideOf(text, text.number("image_height"), "image_height");
         camera.matrix = Matx33d(text.numbers("camera_matrix/data", 9).data());
         readDistortion(text, "distortion_model", "distortion_coefficients/data", camera);
         R[i] = Matx33d(text.numbers("rectification_matrix/data", 9).data());
