@@ -134,6 +134,7 @@ TEST(HDPStereo_PredictionModel, bad_layer_is_rejected)
         { { { 0 }, { 1 }, { 1.1 } }, "weights" },
         { { { 0, 0 }, { 1, 1 }, { 1.5, -0.5 } }, "weights" },
         { { { 0, 0 }, { 1, 1 }, { 0, 0 } }, "weights" },
+        { { Numbers(1025, 0), Numbers(1025, 1), Numbers(1025, 1. / 1025) }, "means" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); ++i)
     {
@@ -142,6 +143,20 @@ TEST(HDPStereo_PredictionModel, bad_layer_is_rejected)
         expectRejected([&] { model->addLayer(m.means, m.sigmas, m.weights); }, cases[i].argument);
         expectEqualModels(*createTwoLayerModel(), *model);
     }
+}
+
+//! What a model can have, its file can have, too.
+TEST(HDPStereo_PredictionModel, largest_model)
+{
+    const int mostLayers = 64, most = 1024;
+    const Ptr<DisparityPredictionModel> model = DisparityPredictionModel::create();
+    for (int layer = 0; layer < mostLayers; ++layer)
+        model->addLayer(Numbers(most, 0), Numbers(most, 1), Numbers(most, 1. / most));
+    expectRejected([&] { model->addLayer({ 0 }, { 1 }, { 1 }); }, "64 layers");
+    expectRejected([&] { model->train(std::vector<Mat>(), std::vector<Mat>(), 1, 0); }, "64 layers");
+    const Ptr<DisparityPredictionModel> read = DisparityPredictionModel::create();
+    deserialize(serialized(*model), *read);
+    expectEqualModels(*model, *read);
 }
 
 TEST(HDPStereo_PredictionModel, layer_out_of_range_is_rejected)

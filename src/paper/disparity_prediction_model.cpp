@@ -12,13 +12,13 @@ using namespace hdp;
 
 namespace {
 
-const int fileVersion = 1, maxLayers = 64, maxFileComponents = 1024;
+const int fileVersion = 1, maxLayers = 64, maxGaussians = 1024; // of a mixture
 
 const GaussianMixture& checked(const GaussianMixture& mixture)
 {
     const std::vector<double>&means = mixture.means, &sigmas = mixture.sigmas, &weights = mixture.weights;
-    if (means.empty())
-        CV_Error(Error::StsBadArg, "means must not be empty");
+    if (means.empty() || means.size() > (size_t)maxGaussians)
+        CV_Error(Error::StsBadArg, format("means must have from 1 to %d elements", maxGaussians));
     if (sigmas.size() != means.size() || weights.size() != means.size())
         CV_Error(Error::StsBadSize, "means, sigmas and weights must have the same number of elements");
     double sum = 0;
@@ -37,6 +37,18 @@ const GaussianMixture& checked(const GaussianMixture& mixture)
     return mixture;
 }
 
+void requireRoom(const std::vector<GaussianMixture>& layers)
+{
+    if (layers.size() >= (size_t)maxLayers)
+        CV_Error(Error::StsOutOfRange, format("a model must have at most %d layers", maxLayers));
+}
+
+void append(const GaussianMixture& mixture, std::vector<GaussianMixture>& layers)
+{
+    requireRoom(layers);
+    layers.push_back(checked(mixture));
+}
+
 class DisparityPredictionModelImpl CV_FINAL : public DisparityPredictionModel
 {
 public:
@@ -45,7 +57,7 @@ public:
     void addLayer(const std::vector<double>& means, const std::vector<double>& sigmas,
                   const std::vector<double>& weights) CV_OVERRIDE
     {
-        layers_.push_back(checked({ means, sigmas, weights }));
+        append({ means, sigmas, weights }, layers_);
     }
 
     void getLayer(int layer, std::vector<double>& means, std::vector<double>& sigmas,
@@ -67,12 +79,13 @@ public:
             CV_Error(Error::StsOutOfRange, format("maxComponents must be in 1..64, not %d", maxComponents));
         if (seed < 0)
             CV_Error(Error::StsOutOfRange, format("seed must be >= 0, not %d", seed));
+        requireRoom(layers_);
         std::vector<Mat> maps, uppers;
         disparities.getMatVector(maps);
         upperDisparities.getMatVector(uppers);
         GaussianMixture mixture;
         const double likelihood = trainMixture(maps, uppers, maxComponents, seed, mixture);
-        layers_.push_back(checked(mixture));
+        append(mixture, layers_);
         return likelihood;
     }
 
@@ -97,15 +110,14 @@ public:
             CV_Error(Error::StsParseError, "name must be " + getDefaultName());
         if (!version.isInt() || (int)version != fileVersion)
             CV_Error(Error::StsParseError, format("version must be %d", fileVersion));
-        if (!layers.isSeq() || (int)layers.size() > maxLayers)
-            CV_Error(Error::StsParseError, format("layers must be a sequence of at most %d mixtures", maxLayers));
+        if (!layers.isSeq())
+            CV_Error(Error::StsParseError, "layers must be a sequence of mixtures");
         // A file that ends between two layers is well-formed.
         if (!fn["layerCount"].isInt() || (int)fn["layerCount"] != (int)layers.size())
             CV_Error(Error::StsParseError, "layerCount must be the number of layers");
         std::vector<GaussianMixture> read;
         for (const FileNode layer : layers)
-            read.push_back(
-                checked({ readNumbers(layer, "means"), readNumbers(layer, "sigmas"), readNumbers(layer, "weights") }));
+            append({ readNumbers(layer, "means"), readNumbers(layer, "sigmas"), readNumbers(layer, "weights") }, read);
         layers_.swap(read);
     }
 
@@ -115,9 +127,8 @@ private:
         const FileNode node = layer.isMap() ? layer[key] : FileNode();
         if (node.isInt() || node.isReal()) // a sequence of one number in XML
             return std::vector<double>(1, (double)node);
-        if (!node.isSeq() || (int)node.size() > maxFileComponents)
-            CV_Error(Error::StsParseError,
-                     format("%s must be a sequence of at most %d numbers", key, maxFileComponents));
+        if (!node.isSeq())
+            CV_Error(Error::StsParseError, format("%s must be a sequence of numbers", key));
         std::vector<double> numbers;
         for (const FileNode number : node)
         {

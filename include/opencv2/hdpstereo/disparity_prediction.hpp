@@ -36,8 +36,8 @@ public:
     /** @brief Number of layers that have a mixture. A matcher of L layers needs L - 1. */
     CV_WRAP virtual int getNumLayers() const = 0;
 
-    /** @brief Appends the mixture of layer getNumLayers().
-    @param means Means \f$\mu_l(k)\f$ in pixels of layer l + 1: vector of K >= 1 finite numbers.
+    /** @brief Appends the mixture of layer getNumLayers(), of at most 64.
+    @param means Means \f$\mu_l(k)\f$ in pixels of layer l + 1: vector of K finite numbers, K from 1 to 1024.
     @param sigmas Standard deviations \f$\sigma_l(k)\f$ in the same unit: K finite numbers > 0.
     @param weights Mixing coefficients \f$\pi_l(k)\f$: K numbers in [0, 1], their sum 1 within 0.001.
     @throws cv::Exception if an argument is invalid; the model is unchanged.
