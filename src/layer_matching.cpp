@@ -149,6 +149,7 @@ private:
         const DisparityForest& forest = shared_.forest;
         CostVolume& volume = shared_.volume;
         aggregateMeans(forest, TwoLayerCost(own_.census, in_.below), plan_.trees.gamma, shared_.aggregation, volume);
+        excludeBeyondRanges();
         if (plan_.checksLastFrame)
         {
             predictFromLastFrame();
@@ -170,11 +171,15 @@ private:
         return true;
     }
 
-    //! Winners of the volume; weights: see weighEdges()
-    void scanVolume(const Mat& weights)
+    void excludeBeyondRanges()
     {
         if (in_.pair.hasRanges)
             excludeCandidates(candidateIntervals(), shared_.volume);
+    }
+
+    //! Winners of the volume; weights: see weighEdges()
+    void scanVolume(const Mat& weights)
+    {
         aggregateVolume(shared_.volume, weights, plan_.volumePenalties, shared_.volumeSums, result_.winners);
     }
 
@@ -199,6 +204,7 @@ private:
         clock_.run("disparity prediction", [&] {
             const DisparityInterval all = { 0, (ushort)(plan_.numDisparities - 1) };
             shared_.volume.fill(TwoLayerCost(own_.census, in_.below), in_.images.guide.size(), all);
+            excludeBeyondRanges();
             if (!plan_.prefersLastFrame)
                 return;
             predictFromLastFrame();
