@@ -110,7 +110,8 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
     if (!mask.empty())
         fixedPoint.setTo(Scalar(invalid), mask == 0);
     const auto addRejected = [&](HDPTreeMatcher::Reason reason) {
-        rejected.push_back({ reason, fixedPoint == invalid });
+        rejected.push_back({ reason, Mat() });
+        compare(fixedPoint, Scalar(invalid), rejected.back().pixels, CMP_EQ);
     };
     if (missesAny)
         addRejected(HDPTreeMatcher::REASON_MASKED);
