@@ -19,7 +19,8 @@ void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk
     int* const pixels = grown(walk.pixels, tree.size);
     int* const parents = grown(walk.parents, tree.size);
     uchar* const edges = grown(walk.weights, tree.size);
-    TreeWalk::Step* pending = grown(walk.pending, 64);
+    size_t capacity = 64;
+    TreeWalk::Step* pending = grown(walk.pending, capacity);
     pending[0] = { tree.root, 0, 0 };
     size_t count = 1;
     for (int i = 0; count > 0; ++i)
@@ -32,8 +33,8 @@ void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk
         edges[i] = weights[2 * p + edgeOffsets[parentLink]];
 
         // All four neighbours are written and only children are counted: branches would often be mispredicted.
-        if (count + 4 > walk.pending.size())
-            pending = grown(walk.pending, 2 * walk.pending.size());
+        if (count + 4 > capacity)
+            pending = grown(walk.pending, capacity *= 2);
         const int children = links[p] & ~parentLink;
         pending[count] = { p - width, i, TreeLink::BELOW };
         count += (children / TreeLink::ABOVE) & 1;

@@ -77,18 +77,17 @@ ColorGradientImage ColorGradientCost::prepareImage(const Mat& image, bool mirror
     horizontalGradient(image, gradient_);
     color.create(planes_.count * rows, image.cols + 2 * radius + after, CV_8U);
     gradient.create(rows, color.cols, CV_16S);
-    const auto copyPlane = [=](Mat& plane, Mat bordered) {
+    parallelFor(planes_.count + 1, [&](int c) {
+        const bool isColor = c < planes_.count;
+        Mat plane, bordered = isColor ? color.rowRange(c * rows, (c + 1) * rows) : gradient;
+        if (isColor)
+            extractChannel(image, plane, c);
+        else
+            plane = gradient_;
         if (mirrored)
             flip(plane, plane, 1);
         copyMakeBorder(plane, bordered, radius, radius, radius, radius + after, BORDER_REPLICATE);
-    };
-    Mat plane;
-    for (int c = 0; c < planes_.count; ++c)
-    {
-        extractChannel(image, plane, c);
-        copyPlane(plane, color.rowRange(c * rows, (c + 1) * rows));
-    }
-    copyPlane(gradient_, gradient);
+    });
     return { color.ptr(), gradient.ptr<short>(), color.step, color.step * rows };
 }
 
