@@ -99,9 +99,10 @@ void excludeCandidates(const Mat& intervals, CostVolume& volume)
             const DisparityInterval& own = intervals.ptr<DisparityInterval>(y)[x];
             const CostVolume::Candidates all = volume.of(y * volume.size.width + x);
             uchar* const costs = volume.costs.data() + all.start();
-            for (int k = 0; k < all.interval.size(); ++k)
-                if (all.interval.first + k < own.first || all.interval.first + k > own.last)
-                    costs[k] = UCHAR_MAX;
+            const int count = all.interval.size(), before = clamped(own.first - all.interval.first, 0, count),
+                      end = clamped(own.last + 1 - all.interval.first, 0, count);
+            std::fill(costs, costs + before, (uchar)UCHAR_MAX);
+            std::fill(costs + end, costs + count, (uchar)UCHAR_MAX);
         }
     });
 }

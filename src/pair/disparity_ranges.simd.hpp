@@ -110,8 +110,12 @@ void intersectIntervals(const ushort* intervals, int width, ushort* others)
 
 void moveIntoIntervals(const ushort* intervals, int width, ushort* disparity)
 {
-    HDP_VECTORIZED for (int x = 0; x < width; ++x) disparity[x] =
-        (ushort)clamped<int>(disparity[x], intervals[2 * x] * subpixelScale, intervals[2 * x + 1] * subpixelScale);
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
+    {
+        const ushort first = (ushort)(intervals[2 * x] * subpixelScale),
+                     last = (ushort)(intervals[2 * x + 1] * subpixelScale);
+        disparity[x] = std::min(std::max(disparity[x], first), last);
+    }
 }
 
 void moveIntoRanges(const short* smallest, const short* largest, int width, short invalid, short* disparity)

@@ -52,19 +52,19 @@ void restrictRow(const ushort* upper, const ushort* lower, int width, int numDis
         const int first = std::min(std::min<int>(a[0], a[2]), std::min<int>(b[0], b[2])),
                   last = std::max(std::max<int>(a[1], a[3]), std::max<int>(b[1], b[3]));
         ushort* const window = windows + 4 * x;
-        const int runs[] = { (short)window[0], (short)window[1] }, predicted[] = { window[2], window[3] };
-        const int usesFirst = (int)(runs[0] <= last) & (int)(runs[0] + length > first),
-                  usesOther = (int)(runs[1] <= last) & (int)(runs[1] + length > first);
+        const int run = (short)window[0], otherRun = (short)window[1], predicted = window[2], other = window[3];
+        const int usesFirst = (int)(run <= last) & (int)(run + length > first),
+                  usesOther = (int)(otherRun <= last) & (int)(otherRun + length > first);
         const int usesBoth = usesFirst & usesOther, usesAny = usesFirst | usesOther;
 
-        const int surface = choose(usesOther, predicted[1], predicted[0]);
+        const int surface = choose(usesOther, other, predicted);
         const int centre = std::min(std::max(wholeDisparity(surface), first), last);
         const int begin = firstCandidate(centre, all, numDisparities);
         const int moved = choose(usesAny, surface, centre * subpixelScale);
-        window[0] = (ushort)choose(usesBoth, runs[0], begin);
-        window[1] = (ushort)choose(usesBoth, runs[1], begin + length);
-        window[2] = (ushort)choose(usesBoth, predicted[0], moved);
-        window[3] = (ushort)choose(usesBoth, predicted[1], moved);
+        window[0] = (ushort)choose(usesBoth, run, begin);
+        window[1] = (ushort)choose(usesBoth, otherRun, begin + length);
+        window[2] = (ushort)choose(usesBoth, predicted, moved);
+        window[3] = (ushort)choose(usesBoth, other, moved);
     }
 }
 
