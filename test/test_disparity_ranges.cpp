@@ -87,6 +87,66 @@ TEST(HDPStereo_DisparityRanges, of_all_disparities_are_none)
     }
 }
 
+//! What is made of ranges and of a prior is kept for the next pair, but not for one that needs something else.
+TEST(HDPStereo_DisparityRanges, follow_what_changes)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(200, 120), 40, 3), wide = makeSyntheticPair(Size(230, 120), 40, 4);
+    const Mat none, lowest(12, 20, CV_32FC1, Scalar(5.4)), highest(12, 20, CV_32FC1, Scalar(20.6)),
+        higher(12, 20, CV_32FC1, Scalar(70.6));
+    Mat prior(pair.truth.size(), CV_32FC1, Scalar(unlimited));
+    pair.truth(Rect(0, 0, 200, 60)).copyTo(prior(Rect(0, 0, 200, 60)));
+    typedef HDPTreeMatcher::Params Params;
+    Params quality(HDPTreeMatcher::PRESET_QUALITY), half(HDPTreeMatcher::PRESET_ULTRAFAST), whole,
+        paper(HDPTreeMatcher::PRESET_PAPER);
+    whole.useSubpixel = paper.useSubpixel = false;
+    const struct
+    {
+        const char* what;
+        SyntheticPair pair;
+        Params params;
+        int minDisparity, numDisparities;
+        Mat smallest, largest, prior;
+    } steps[] = {
+        { "first", pair, quality, 0, 40, lowest, highest, none },
+        { "largest", pair, quality, 0, 40, lowest, higher, none },
+        { "more layers", pair, Params(), 0, 40, lowest, higher, none },
+        { "whole disparities", pair, whole, 0, 40, lowest, higher, none },
+        { "no fractions of layers", pair, paper, 0, 40, lowest, higher, none },
+        { "minDisparity", pair, paper, 1, 40, lowest, higher, none },
+        { "minDisparity < 0", pair, paper, -8, 40, lowest, higher, none },
+        { "numDisparities", pair, paper, -8, 33, lowest, higher, none },
+        { "width", wide, paper, -8, 33, lowest, higher, none },
+        { "height and width", { wide.left.t(), wide.right.t(), Mat(), Mat() }, paper, -8, 33, lowest, higher, none },
+        { "a prior", pair, half, 0, 40, lowest, higher, prior },
+        { "finest layer", pair, Params(), 0, 40, lowest, higher, prior },
+        { "a prior alone", pair, Params(), 0, 40, none, none, prior },
+        { "none", pair, Params(), 0, 40, none, none, none },
+        { "first again", pair, quality, 0, 40, lowest, highest, none },
+    };
+    const Ptr<HDPTreeMatcher> kept = HDPTreeMatcher::create();
+    Mat largest, lastPrior; // that it has
+    for (const auto& step : steps)
+    {
+        SCOPED_TRACE(step.what);
+        const Ptr<HDPTreeMatcher> fresh = HDPTreeMatcher::create();
+        for (const Ptr<HDPTreeMatcher>& matcher : { kept, fresh })
+        {
+            matcher->setParams(step.params);
+            matcher->setMinDisparity(step.minDisparity);
+            matcher->setNumDisparities(step.numDisparities);
+            if (matcher == fresh || step.largest.data != largest.data)
+                matcher->setDisparityRange(step.smallest, step.largest);
+            if (matcher == fresh || step.prior.data != lastPrior.data)
+                matcher->setPriorDisparity(step.prior, 0.5);
+        }
+        largest = step.largest;
+        lastPrior = step.prior;
+        const Mat expected = match(*fresh, step.pair.left, step.pair.right).clone();
+        expectIdentical(expected, match(*kept, step.pair.left, step.pair.right));
+        expectIdentical(expected, match(*kept, step.pair.left, step.pair.right));
+    }
+}
+
 //! With a range around the truth the map is nearer to it.
 TEST(HDPStereo_DisparityRanges, improve_maps)
 {

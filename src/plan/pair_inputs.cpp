@@ -51,6 +51,7 @@ void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inp
         CV_Error(Error::StsOutOfRange, format("largest must not be less than smallest, as it is in %d pixels", less));
     smallest.convertTo(inputs.smallest, CV_32F);
     largest.convertTo(inputs.largest, CV_32F);
+    ++inputs.changes;
 }
 
 void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inputs)
@@ -68,6 +69,7 @@ void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inpu
         CV_Error(Error::StsOutOfRange, "sigma must be finite and >= 0 where there is a disparity");
     inputs.prior = disparity;
     inputs.sigma = sigma;
+    ++inputs.changes;
 }
 
 void checkInputs(const PairInputs& inputs, Size size)
@@ -85,6 +87,12 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
 {
     const OutputPlan& output = plan.output;
     const int first = output.minDisparity, numDisparities = plan.alignment.numDisparities;
+    const std::vector<int> key = { inputs.changes,   plan.size.width,    plan.size.height, first,
+                                   numDisparities,   output.extension,   output.isWhole,   plan.top().hasFractions,
+                                   plan.top().layer, plan.finest().layer };
+    if (known.key == key)
+        return;
+    known.key.clear();
     std::vector<int> counts;
     for (int layer = 0; layer <= plan.top().layer; ++layer)
         counts.push_back(layerDisparities(numDisparities, layer, plan.top().hasFractions));
@@ -96,6 +104,7 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
         for (const LayerPlan& layer : plan.layers)
             pointsOfLayer(inputs.prior, inputs.sigma, first, output.extension, layer.layer, counts[layer.layer],
                           known.points[layer.layer]);
+    known.key = key;
 }
 
 }}} // namespace cv::stereo::hdp

@@ -17,6 +17,7 @@ struct PairInputs
     Mat leftMask, rightMask; // CV_8UC1, 0 where there is no data; empty: there is everywhere
     Mat smallest, largest;   // CV_32FC1, disparities of the pixels; empty: there are no ranges
     Mat prior, sigma;        // CV_32FC1, disparities that are about known; empty: none are
+    int changes = 0;         // of the ranges or of the prior
 
     bool hasMasks() const { return !leftMask.empty() || !rightMask.empty(); }
     bool hasRanges() const { return !smallest.empty(); }
@@ -38,8 +39,10 @@ struct KnownDisparities
     std::vector<Mat> intervals;                  // of the layers, if there are ranges
     std::vector<std::vector<PriorPoint>> points; // of the layers, if there is a prior
     std::vector<Mat> units;                      // memory of buildIntervals(), kept from pair to pair
+    std::vector<int> key;                        // what takeKnown() has made it from
 };
 
+//! Nothing is done again for pairs that differ in nothing but their images.
 void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities& known);
 
 }}} // namespace cv::stereo::hdp
