@@ -114,8 +114,10 @@ Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
         buffer.create(image.size(), CV_8UC1);
         parallelFor(image.rows, std::vector<ushort>(image.cols), [&](int y, std::vector<ushort>& levels) {
             greyRow(image, y, times, curve, levels.data());
+            const int width = image.cols; // local, as stores of bytes may alias all else
+            const ushort* const row = levels.data();
             uchar* const bytes = buffer.ptr(y);
-            HDP_VECTORIZED for (int x = 0; x < image.cols; ++x) bytes[x] = (uchar)(levels[x] / greyScale);
+            HDP_VECTORIZED for (int x = 0; x < width; ++x) bytes[x] = (uchar)(row[x] / greyScale);
         });
         return buffer;
     }
