@@ -52,8 +52,8 @@ struct JoinerParams
 };
 
 /** Builds the forest of a layer by Kruskal's algorithm: tries one edge after the other in the order of Rule 1, and
-joins the trees at its ends if Rule 2 and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the image side
-by side; the trees and their roots are those of trying one edge after the other, for any number of stripes.
+joins the trees at its ends if Rule 2 and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the
+image side by side; the trees and their roots are those of trying one edge after the other, for any number of stripes.
 @param image CV_8UC1 or CV_8UC3, the image that gives the edge weights.
 @param pixelIntv CV_16UC2 of its size.
 @param strategy Rule 1 and Rule 2.
@@ -63,7 +63,7 @@ by side; the trees and their roots are those of trying one edge after the other,
 CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy,
                             const JoinerParams& params, ForestBuffers& buffers, DisparityForest& forest);
 
-//! One of the library's strategies with default parameters, or an empty pointer if none has this name; see tree_strategy.
+//! One of the library's strategies with default parameters, or an empty pointer if none has this name
 Ptr<TreeStrategy> createTreeStrategy(const String& name);
 
 //! R_l of the paper's Table 1: mean over the pixels of |TreeIntv| / numDisparities.

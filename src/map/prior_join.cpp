@@ -181,8 +181,8 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    //! The disparity that the points around a pixel propose: its winner, if they speak for it. Returns whether some speak
-    //! against it.
+    //! The disparity that the points around a pixel propose: its winner, if they speak for it. Returns whether some
+    //! speak against it.
     bool propose(Point place, int maxDisparity, std::vector<Neighbour>& found, ushort& proposed) const
     {
         const ushort own = winners_.ptr<ushort>(place.y)[place.x];

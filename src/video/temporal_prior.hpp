@@ -29,7 +29,7 @@ another one is much better.
 @param predicted The disparities; those of such pixels are taken away. */
 CV_EXPORTS bool refusesLastFrame(const CostVolume& volume, Mat& predicted);
 
-//! P(D_t | D_(t-1)): raises the costs of disparities other than the predicted one, see preferDisparity() and hasPrior().
+//! P(D_t | D_(t-1)): raises the costs of disparities other than the predicted one, see preferDisparity().
 CV_EXPORTS void preferPredicted(const Mat& predicted, CostVolume& volume);
 
 /** What the winners will be, without scanlines: the predicted disparities, and the lowest costs beside them.
