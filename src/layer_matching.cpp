@@ -285,7 +285,7 @@ private:
             findOtherSurfaces(upper, unfiltered, own_.surfaceBuffers, own_.others);
             predictWindows(upper, own_.others, plan_.numDisparities, own_.windows);
             if (in_.pair.hasRanges)
-                restrictWindows(intervals(), plan_.numDisparities, own_.windows);
+                restrictWindows(in_.known.hulls[plan_.layer], plan_.numDisparities, own_.windows);
         });
     }
 

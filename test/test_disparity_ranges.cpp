@@ -264,7 +264,9 @@ TEST(HDPStereo_DisparityRanges, windows_have_candidates_of_their_pixels)
                 window.predicted[run] = (ushort)(16 * (window.first[run] + 3));
         }
     const Mat before = windows.clone();
-    hdp::restrictWindows(intervals, numDisparities, windows);
+    Mat hulls;
+    hdp::halveIntervals(intervals, hulls);
+    hdp::restrictWindows(hulls, numDisparities, windows);
     for (int y = 0; y < windows.rows; ++y)
         for (int x = 0; x < windows.cols; ++x)
         {

@@ -60,6 +60,15 @@ void expandRanges(const Mat& smallest, const Mat& largest, Size size, Range disp
     expandLimits(largest, disparities.end * subpixelScale, isWhole, true, size, ranges.largest);
 }
 
+void halveIntervals(const Mat& intervals, Mat& hulls)
+{
+    hulls.create(intervals.rows / 2, intervals.cols / 2, CV_16UC2);
+    parallelFor(hulls.rows, [&](int y) {
+        dispatched::halveIntervals(intervals.ptr<ushort>(2 * y), intervals.ptr<ushort>(2 * y + 1), hulls.cols,
+                                   hulls.ptr<ushort>(y));
+    });
+}
+
 void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, const std::vector<int>& numDisparities,
                     std::vector<Mat>& units, std::vector<Mat>& intervals)
 {
@@ -82,14 +91,7 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
     {
         Mat& exact = units[layer];
         if (layer > 0)
-        {
-            const Mat& above = units[layer - 1];
-            exact.create(above.rows / 2, above.cols / 2, CV_16UC2);
-            parallelFor(exact.rows, [&](int y) {
-                dispatched::halveIntervals(above.ptr<ushort>(2 * y), above.ptr<ushort>(2 * y + 1), exact.cols,
-                                           exact.ptr<ushort>(y));
-            });
-        }
+            halveIntervals(units[layer - 1], exact);
         Mat& ofLayer = intervals[layer];
         ofLayer.create(exact.size(), CV_16UC2);
         parallelFor(exact.rows, [&](int y) {

@@ -39,6 +39,9 @@ CV_EXPORTS void buildIntervals(const PixelRanges& ranges, int minDisparity, int 
                                const std::vector<int>& numDisparities, std::vector<Mat>& units,
                                std::vector<Mat>& intervals);
 
+//! The hulls of 2 x 2 intervals each
+CV_EXPORTS void halveIntervals(const Mat& intervals, Mat& hulls);
+
 //! The intervals of a layer in candidates of the layer below, of which there are so many
 CV_EXPORTS void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled);
 

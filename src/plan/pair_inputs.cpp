@@ -99,6 +99,9 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
     expandRanges(inputs.smallest, inputs.largest, plan.size, Range(first, first + numDisparities - 1), output.isWhole,
                  known.ranges);
     buildIntervals(known.ranges, first, output.extension, counts, known.units, known.intervals);
+    known.hulls.resize(known.intervals.size());
+    for (size_t layer = 0; layer < known.hulls.size(); ++layer)
+        halveIntervals(known.intervals[layer], known.hulls[layer]);
     known.points.resize(counts.size());
     if (plan.hasPrior)
         for (const LayerPlan& layer : plan.layers)

@@ -37,6 +37,7 @@ struct KnownDisparities
 {
     PixelRanges ranges;
     std::vector<Mat> intervals;                  // of the layers, if there are ranges
+    std::vector<Mat> hulls;                      // of those of 2 x 2 pixels, for windows
     std::vector<std::vector<PriorPoint>> points; // of the layers, if there is a prior
     std::vector<Mat> units;                      // memory of buildIntervals(), kept from pair to pair
     std::vector<int> key;                        // what takeKnown() has made it from

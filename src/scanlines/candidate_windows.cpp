@@ -27,10 +27,9 @@ void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat
 
 void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows)
 {
-    CV_DbgAssert(intervals.cols >= 2 * windows.cols && intervals.rows >= 2 * windows.rows);
+    CV_DbgAssert(intervals.size() == windows.size());
     parallelFor(windows.rows, [&](int y) {
-        dispatched::restrictRow(intervals.ptr<ushort>(2 * y), intervals.ptr<ushort>(2 * y + 1), windows.cols,
-                                numDisparities, windows.ptr<ushort>(y));
+        dispatched::restrictRow(intervals.ptr<ushort>(y), windows.cols, numDisparities, windows.ptr<ushort>(y));
     });
 }
 

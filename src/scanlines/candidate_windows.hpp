@@ -42,7 +42,7 @@ nothing, and there are some only if this range has less than CandidateWindow::ca
 CV_EXPORTS void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat& windows);
 
 /** Leaves runs out of windows that have no candidate which a pixel may have: the other run's window is whole then.
-@param intervals A DisparityInterval per pixel of the layer.
+@param intervals A DisparityInterval per window, the hull of those of its pixels.
 @param numDisparities Of the layer.
 @param windows From predictWindows(), changed. */
 CV_EXPORTS void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows);

@@ -13,8 +13,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 //! A row of predictWindows(): of so many pixels of the layer above. windows: receives a CandidateWindow each.
 void predictRow(const ushort* upper, const ushort* others, int width, int numDisparities, ushort* windows);
 
-//! A row of restrictWindows(). upper and lower: the first and the last candidates of the two rows of pixels below
-void restrictRow(const ushort* upper, const ushort* lower, int width, int numDisparities, ushort* windows);
+//! A row of restrictWindows()
+void restrictRow(const ushort* intervals, int width, int numDisparities, ushort* windows);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -43,14 +43,12 @@ void predictRow(const ushort* upper, const ushort* others, int width, int numDis
     }
 }
 
-void restrictRow(const ushort* upper, const ushort* lower, int width, int numDisparities, ushort* windows)
+void restrictRow(const ushort* intervals, int width, int numDisparities, ushort* windows)
 {
     const int length = CandidateWindow::runLength, all = CandidateWindow::candidates;
     HDP_VECTORIZED for (int x = 0; x < width; ++x) // without branches, so that it can be
     {
-        const ushort *const a = upper + 4 * x, *const b = lower + 4 * x;
-        const int first = std::min(std::min<int>(a[0], a[2]), std::min<int>(b[0], b[2])),
-                  last = std::max(std::max<int>(a[1], a[3]), std::max<int>(b[1], b[3]));
+        const int first = intervals[2 * x], last = intervals[2 * x + 1];
         ushort* const window = windows + 4 * x;
         const int run = (short)window[0], otherRun = (short)window[1], predicted = window[2], other = window[3];
         const int usesFirst = (int)(run <= last) & (int)(run + length > first),
