@@ -90,7 +90,8 @@ TEST(HDPStereo_DisparityRanges, of_all_disparities_are_none)
 //! What is made of ranges and of a prior is kept for the next pair, but not for one that needs something else.
 TEST(HDPStereo_DisparityRanges, follow_what_changes)
 {
-    const SyntheticPair pair = makeSyntheticPair(Size(200, 120), 40, 3), wide = makeSyntheticPair(Size(230, 120), 40, 4);
+    const SyntheticPair pair = makeSyntheticPair(Size(200, 120), 40, 3),
+                        wide = makeSyntheticPair(Size(230, 120), 40, 4);
     const Mat none, lowest(12, 20, CV_32FC1, Scalar(5.4)), highest(12, 20, CV_32FC1, Scalar(20.6)),
         higher(12, 20, CV_32FC1, Scalar(70.6));
     Mat prior(pair.truth.size(), CV_32FC1, Scalar(unlimited));
