@@ -100,8 +100,9 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
                  known.ranges);
     buildIntervals(known.ranges, first, output.extension, counts, known.units, known.intervals);
     known.hulls.resize(known.intervals.size());
-    for (size_t layer = 0; layer < known.hulls.size(); ++layer)
-        halveIntervals(known.intervals[layer], known.hulls[layer]);
+    if (inputs.hasRanges())
+        for (const LayerPlan& layer : plan.layers)
+            halveIntervals(known.intervals[layer.layer], known.hulls[layer.layer]);
     known.points.resize(counts.size());
     if (plan.hasPrior)
         for (const LayerPlan& layer : plan.layers)
