@@ -125,7 +125,7 @@ TEST(HDPStereo_TemporalPrior, contradiction)
     for (bool areMeans : { false, true })
     {
         CostVolume volume = flatVolume(layerSize / side);
-        volume.costs[15] = (uchar)(flatCost - contradiction - 1);
+        volume.costs[15] = (uchar)(flatCost - CostVolume::contradiction - 1);
         const std::vector<uchar> before = volume.costs;
         prefer(video, areMeans, volume);
         for (int k = 0; k < candidates; ++k)
@@ -147,7 +147,7 @@ TEST(HDPStereo_TemporalPrior, contradicted_frame)
         predictDisparities(video.last, video.next, side, volume.size, predicted);
         return refusesLastFrame(volume, predicted);
     };
-    const int rise = contradiction + 1;
+    const int rise = CostVolume::contradiction + 1;
     EXPECT_FALSE(contradicts(0, rise, false));
     EXPECT_FALSE(contradicts(9, rise, false));
     EXPECT_TRUE(contradicts(10, rise, false));
@@ -239,9 +239,9 @@ TEST(HDPStereo_CostVolume, contradicts)
     const DisparityInterval none = { 1, 0 };
     volume.candidates[1].interval = none;
     uchar* const costs = &volume.costs[0];
-    costs[15] = (uchar)(flatCost - contradiction);
+    costs[15] = (uchar)(flatCost - CostVolume::contradiction);
     EXPECT_FALSE(isContradicted(0, 7.25f, volume));
-    costs[15] = (uchar)(flatCost - contradiction - 1);
+    costs[15] = (uchar)(flatCost - CostVolume::contradiction - 1);
     EXPECT_TRUE(isContradicted(0, 7.25f, volume));
     EXPECT_TRUE(isContradicted(0, 1e6, volume)) << "beyond the candidates";
     EXPECT_TRUE(isContradicted(0, -1e6, volume)) << "beyond the candidates";

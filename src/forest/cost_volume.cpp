@@ -109,6 +109,7 @@ void excludeCandidates(const Mat& intervals, CostVolume& volume)
 
 void preferDisparity(int pixel, float disparity, int limit, CostVolume& volume)
 {
+    CV_DbgAssert(0 <= limit && limit <= UCHAR_MAX);
     const CostVolume::Candidates own = volume.of(pixel);
     uchar* costs = volume.costs.data() + own.start();
     // In whole numbers from the first candidate on
@@ -134,7 +135,8 @@ bool isContradicted(int pixel, float disparity, const CostVolume& volume)
     if (count <= 0)
         return false;
     const uchar cost = volume.costs[own.start() + clamped(nearest, 0, count - 1)];
-    return cost > contradiction && cost - volume.lowestOf(own) > contradiction; // most are not
+    const int most = CostVolume::contradiction;
+    return cost > most && cost - volume.lowestOf(own) > most; // most are not
 }
 
 }}} // namespace cv::stereo::hdp

@@ -15,7 +15,8 @@ struct CV_EXPORTS CostVolume
     enum
     {
         scale = TwoLayerCost::scale, // of the costs, for their fractions
-        row = 16                     // costs that are stored together
+        row = 16,                    // costs that are stored together
+        contradiction = 3 * scale    // see isContradicted()
     };
     struct Candidates // of a pixel
     {
@@ -74,10 +75,8 @@ CV_EXPORTS void excludeCandidates(const Mat& intervals, CostVolume& volume);
 //! CostVolume::scale, per candidate of distance, up to a limit in units of the volume.
 CV_EXPORTS void preferDisparity(int pixel, float disparity, int limit, CostVolume& volume);
 
-const int contradiction = 3 * CostVolume::scale;
-
-//! Whether the cost of a disparity, in pixels, exceeds the lowest one of the pixel by more than the contradiction. A
-//! disparity beyond the candidates counts as the nearest of them.
+//! Whether the cost of a disparity, in pixels, exceeds the lowest one of the pixel by more than
+//! CostVolume::contradiction. A disparity beyond the candidates counts as the nearest of them.
 CV_EXPORTS bool isContradicted(int pixel, float disparity, const CostVolume& volume);
 
 }}} // namespace cv::stereo::hdp

@@ -213,8 +213,7 @@ void joinTrees(const TreeStrategy& strategy, const Mat& pixelIntv, const JoinerP
     // The number of threads decides how fast it goes, not what comes out. Other orders are not those of a stripe.
     const int maxCount = strategy.ordersByWeight() ? std::min(getNumThreads(), +maxStripes) : 1;
     const int count = std::max(std::min(maxCount, height / minStripeRows), 1);
-    if ((int)stripes.size() < count + 1) // a small layer leaves the memory of the large ones
-        stripes.resize(count + 1);
+    grown(stripes, (size_t)count + 1); // a small layer leaves the memory of the large ones
     parallelFor(count, [&](int s) {
         Stripe& stripe = stripes[s];
         const Range rows((int)((int64)height * s / count), (int)((int64)height * (s + 1) / count));
