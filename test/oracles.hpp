@@ -154,17 +154,17 @@ public:
     {
     }
 
-    int operator()(int y, int x, int disparity) const
+    int operator()(int y, int x, int disparity) const { return count(y, x, disparity, 0, 1); }
+
+    //! Of each pixel of the checkerboard whose number has this remainder when divided by planes
+    int count(int y, int x, int disparity, int plane, int planes) const
     {
         const int matched = clamped(x - disparity, left_.cols);
-        int count = 0;
+        int count = 0, number = 0;
         for (int dy = -radius_; dy <= radius_; ++dy)
             for (int dx = -radius_; dx <= radius_; ++dx)
-            {
-                const bool isCompared = std::abs(dx) % 2 != std::abs(dy) % 2;
-                if (isCompared && isDarker(left_, y, x, dy, dx) != isDarker(right_, y, matched, dy, dx))
-                    ++count;
-            }
+                if (std::abs(dx) % 2 != std::abs(dy) % 2 && number++ % planes == plane)
+                    count += isDarker(left_, y, x, dy, dx) != isDarker(right_, y, matched, dy, dx);
         return count;
     }
 
@@ -919,12 +919,19 @@ private:
     {
         const CensusCost census(left, right, blockSize);
         Mat_<int> all(weights.size().area(), candidates, 255);
+        const int planes = blockSize / 2;
+        const Point parts[] = { Point(0, 0), Point(1, 1), Point(1, 0) };
         const auto ofBelow = [&](int y, int x, int h) {
-            const int cost = census(y, x, h);
-            if (masks.isEmpty())
-                return cost;
-            const bool hasMatch = masks.right.at<uchar>(y, clamped(x - h, right.cols)) >= 128;
-            return masks.left.at<uchar>(y, x) < 128 ? 0 : hasMatch ? cost : std::min(cost, +hdp::CostLimits::ordinary);
+            int bits = 0, most = INT_MAX;
+            for (int i = 0; i < 3; ++i)
+            {
+                const Point q = Point(2 * x, 2 * y) + parts[i];
+                if (masks.isEmpty() || masks.left.at<uchar>(q) >= 128)
+                    bits += census.count(q.y, q.x, h, i % planes, planes);
+                if (!masks.isEmpty() && masks.right.at<uchar>(q.y, clamped(q.x - h, right.cols)) < 128)
+                    most = hdp::CostLimits::ordinary;
+            }
+            return std::min(bits, most);
         };
         for (int y = 0; y < weights.rows; ++y)
             for (int x = 0; x < weights.cols; ++x)
@@ -934,7 +941,7 @@ private:
                 const Vec2w own = intervals.empty() ? Vec2w(0, (ushort)(candidates - 1)) : intervals.at<Vec2w>(y, x);
                 for (int h = own[0]; h <= own[1]; ++h)
                     all(y * weights.cols + x, h) =
-                        ofBelow(2 * y, 2 * x, h) + ofBelow(2 * y + 1, 2 * x + 1, h) +
+                        2 * ofBelow(y, x, h) +
                         std::min(std::abs(h - predicted) / penalties.priorDistance, penalties.maxPrior);
             }
         return all;

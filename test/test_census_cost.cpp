@@ -7,8 +7,7 @@
 #include "oracles.hpp"
 #include "../src/base/units.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using hdp::CensusCost;
 
@@ -90,7 +89,8 @@ TEST_P(HDPStereo_CensusCost, largest_cost)
     testCost(left, right, 4, blockSize);
 }
 
-//! The rows of bytes that others compare: as many bits differ as the cost tells; and grey levels, in whole ones.
+//! The rows of bytes that others compare: in each plane as many bits differ as of its comparisons; and grey levels, in
+//! whole ones.
 //! There are 32 bytes more than candidates.
 TEST_P(HDPStereo_CensusCost, planes)
 {
@@ -107,18 +107,19 @@ TEST_P(HDPStereo_CensusCost, planes)
             for (int x = 0; x < size.width; ++x)
                 for (int d = 0; d < candidates + behind; ++d)
                 {
-                    int different = 0;
-                    for (int plane = 0; plane < cost.planes(); ++plane)
+                    for (int plane = 0; plane < cost.planes() && d < candidates; ++plane)
                     {
                         const int differences =
                             cost.leftPixels(y)[4 * x + plane] ^ cost.rightPlane(plane, y)[size.width - 1 - x + d];
+                        int different = 0;
                         for (int bit = 0; bit < 8; ++bit)
                             different += differences >> bit & 1;
+                        ASSERT_EQ(formula.count(y, x, d, plane, cost.planes()), different)
+                            << "y " << y << " x " << x << " candidate " << d << " plane " << plane;
                     }
                     const int level = cost.rightPlane(cost.planes(), y)[size.width - 1 - x + d];
                     if (d < candidates)
                     {
-                        ASSERT_EQ(formula(y, x, d), different) << "y " << y << " x " << x << " candidate " << d;
                         ASSERT_EQ(right.at<ushort>(y, std::max(x - d, 0)) / 4, level) << "y " << y << " x " << x - d;
                         ASSERT_EQ(left.at<ushort>(y, x) / 4, cost.leftPixels(y)[4 * x + CensusCost::greyByte]);
                     }
@@ -203,5 +204,4 @@ TEST(HDPStereo_CensusCostInput, of_disparities)
     }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -41,19 +41,23 @@ void censusRow(const CensusWindow& window, const short* grey, bool mirrored, int
 {
     const int radius = window.radius, block = 256;
     const short tolerance = (short)window.tolerance;
-    // Bits of the last plane that compare nothing stand for the centre, which is not darker than itself.
+    // Bits that compare nothing stand for the centre, which is not darker than itself.
     ptrdiff_t offsets[24] = { 0 };
+    const int planes = radius;
     int bits = 0;
     for (int dy = -radius; dy <= radius; ++dy)
         for (int dx = -radius; dx <= radius; ++dx)
             if ((dx + dy) % 2 != 0)
-                offsets[bits++] = dy * window.step + (mirrored ? -dx : dx);
+            {
+                offsets[bits % planes * 8 + bits / planes] = dy * window.step + (mirrored ? -dx : dx);
+                ++bits;
+            }
     short words[block]; // of a byte: without this memory the compiler narrows each comparison
-    for (int bit = 0; bit < bits; bit += 8, row += planeSize)
+    for (int plane = 0; plane < planes; ++plane, row += planeSize)
         for (int begin = 0; begin < cols; begin += block)
         {
             const int count = std::min(block, cols - begin);
-            const ptrdiff_t* const offset = offsets + bit;
+            const ptrdiff_t* const offset = offsets + 8 * plane;
             const short* const own = grey + begin;
             const short *p0 = own + offset[0], *p1 = own + offset[1], *p2 = own + offset[2], *p3 = own + offset[3],
                         *p4 = own + offset[4], *p5 = own + offset[5], *p6 = own + offset[6], *p7 = own + offset[7];

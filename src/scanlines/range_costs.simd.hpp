@@ -81,11 +81,16 @@ template <int count> class RangeCosts
 public:
     typedef RangeLanes<count> Lanes;
     typedef typename Lanes::Pixel Pixel;
+    enum
+    {
+        parts = 3 // of a cost, one of each of three pixels below
+    };
 
     //! What gives those of a row of pixels
     struct Row
     {
-        const uchar *left[2], *right[2], *leftLimits[2], *rightLimits[2]; // of the first pixel of two rows below
+        // Of the first pixel's parts
+        const uchar *left[parts], *right[parts], *leftLimits[parts], *rightLimits[parts];
         const ushort* upper;
         const DisparityInterval* intervals;
     };
@@ -98,14 +103,15 @@ public:
         row.intervals = p_.intervals.empty() ? nullptr : p_.intervals.ptr<DisparityInterval>(y);
         const CensusCost& below = p_.below;
         const int last = below.size().width - 1;
-        for (int i = 0; i < 2; ++i)
+        for (int i = 0; i < parts; ++i)
         {
-            row.left[i] = below.leftPixels(2 * y + i);
-            row.right[i] = below.rightPlane(0, 2 * y + i) + last;
+            const int plane = i % below.planes(), dx = i > 0, yBelow = 2 * y + (i == 1);
+            row.left[i] = below.leftPixels(yBelow) + 4 * dx + plane;
+            row.right[i] = below.rightPlane(plane, yBelow) + last - dx;
             if (below.limits().isEmpty())
                 continue;
-            row.leftLimits[i] = below.limits().left(2 * y + i);
-            row.rightLimits[i] = below.limits().right(2 * y + i) + last;
+            row.leftLimits[i] = below.limits().left(yBelow) + dx;
+            row.rightLimits[i] = below.limits().right(yBelow) + last - dx;
         }
         row.upper = p_.upper.ptr<ushort>(std::min(y / 2, p_.upper.rows - 1));
         return row;
@@ -114,14 +120,11 @@ public:
     //! Those of a pixel
     CV_ALWAYS_INLINE void of(const Row& row, int x, Pixel& costs) const
     {
+        lanes_.load(prior(row, x), costs);
         if (row.leftLimits[0])
-            ofMasked(row, x, costs);
+            addLimitedBits(row, x, costs);
         else
-        {
-            lanes_.load(prior(row, x), costs);
-            addCensus(row, 0, x, costs);
-            addCensus(row, 1, x, costs);
-        }
+            addBits(row, x, costs);
         if (row.intervals)
             excludeOthers(row.intervals[x], costs);
         lanes_.closeTail(costs);
@@ -136,49 +139,39 @@ private:
         return p_.priors.data() + p_.candidates - std::min(predicted, p_.candidates);
     }
 
-    //! C'(q, .) of the pixel q of row number i below, added to the costs
-    CV_ALWAYS_INLINE void addCensus(const Row& row, int i, int x, Pixel& costs) const
+    //! Where part i of the census of a pixel differs, for some candidates from number k on
+    CV_ALWAYS_INLINE ByteLanes differences(const Row& row, int i, int x, int k) const
     {
-        const int n = lanes_.vectors(), xBelow = 2 * x + i, planes = p_.below.planes();
-        const size_t stride = p_.below.planeStride();
-        const uchar *const left = row.left[i] + 4 * xBelow, *const right = row.right[i] - xBelow;
-        if (planes == 3)
+        return ByteLanes::repeat(row.left[i][8 * x]) ^ ByteLanes::load(row.right[i] - 2 * x + k);
+    }
+
+    CV_ALWAYS_INLINE void addBits(const Row& row, int x, Pixel& costs) const
+    {
+        const int n = lanes_.vectors();
+        HDP_UNROLLED for (int k = 0; k < n; ++k)
         {
-            const ByteLanes first = ByteLanes::repeat(left[0]), second = ByteLanes::repeat(left[1]),
-                            third = ByteLanes::repeat(left[2]);
-            HDP_UNROLLED for (int k = 0; k < n; ++k)
-            {
-                const uchar* const from = right + k * Lanes::vector;
-                costs.of[k] = costs.of[k] + ByteLanes::countBits(first ^ ByteLanes::load(from),
-                                                                 second ^ ByteLanes::load(from + stride),
-                                                                 third ^ ByteLanes::load(from + 2 * stride));
-            }
-            return;
-        }
-        for (int plane = 0; plane < planes; ++plane)
-        {
-            const ByteLanes census = ByteLanes::repeat(left[plane]);
-            const uchar* const from = right + plane * stride;
-            HDP_UNROLLED for (int k = 0; k < n; ++k) costs.of[k] =
-                costs.of[k] + (census ^ ByteLanes::load(from + k * Lanes::vector)).countBits();
+            const int at = k * Lanes::vector;
+            const ByteLanes bits = ByteLanes::countBits(differences(row, 0, x, at), differences(row, 1, x, at),
+                                                        differences(row, 2, x, at));
+            costs.of[k] = costs.of[k] + (bits + bits);
         }
     }
 
     //! Where some pixels have no data
-    void ofMasked(const Row& row, int x, Pixel& costs) const
+    void addLimitedBits(const Row& row, int x, Pixel& costs) const
     {
-        const int n = lanes_.vectors();
-        lanes_.load(prior(row, x), costs);
-        for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < lanes_.vectors(); ++k)
         {
-            Pixel below;
-            std::fill_n(below.of, n, ByteLanes::repeat(0));
-            addCensus(row, i, x, below);
-            const ByteLanes left = ByteLanes::repeat(row.leftLimits[i][2 * x + i]);
-            const uchar* const right = row.rightLimits[i] - (2 * x + i);
-            for (int k = 0; k < n; ++k)
-                below.of[k] = below.of[k].min(left).min(ByteLanes::load(right + k * Lanes::vector));
-            lanes_.add(below, costs);
+            const int at = k * Lanes::vector;
+            ByteLanes bits = ByteLanes::repeat(0), limit = ByteLanes::repeat(CostLimits::none);
+            for (int i = 0; i < parts; ++i)
+            {
+                const ByteLanes hasData = ByteLanes::repeat(row.leftLimits[i][2 * x]);
+                bits = bits + (differences(row, i, x, at).countBits() & hasData);
+                limit = limit.min(ByteLanes::load(row.rightLimits[i] - 2 * x + at));
+            }
+            bits = bits.min(limit);
+            costs.of[k] = costs.of[k] + (bits + bits);
         }
     }
 

@@ -91,12 +91,15 @@ private:
 typedef TLSData<RangeScratch> RangeBuffers;
 
 /** Semi-global matching over all candidates of a layer, those of the layer below, twice as large: from the left, from
-the right, from above and from below. Costs are computed where they are needed, so there is no volume of them. With the
-census cost C' of the layer below, candidate h, a disparity of h / 2 pixels, of pixel (x, y) costs
+the right, from above and from below. Costs are computed where they are needed, so there is no volume of them. Each is of one
+plane of the census of three pixels below: their noise differs, so these tell as much as all planes of two. With b_i the
+bits that differ in plane i, modulo the number of planes, candidate h, a disparity of h / 2 pixels, of pixel (x, y) costs
 
-C(p, h) = C'((2 x, 2 y), h) + C'((2 x + 1, 2 y + 1), h) + min(floor(|h - predicted| / priorDistance), maxPrior),
+C(p, h) = 2 (b_0((2 x, 2 y), h) + b_1((2 x + 1, 2 y + 1), h) + b_2((2 x + 1, 2 y), h))
+          + min(floor(|h - predicted| / priorDistance), maxPrior),
 
-predicted being the candidate next to what the layer above has found; 255 if h is not in the pixel's interval. With
+predicted being the candidate next to what the layer above has found; 255 if h is not in the pixel's interval. Pixels
+below without data limit the bits, see CostLimits: of the left image each its own, of the right one their sum. With
 E(p, h) of a direction and q the pixel before p,
 
 L(p, h) = C(p, h) + min(E(q, h), E(q, h - 1) + small, E(q, h + 1) + small, large(p, q)),
