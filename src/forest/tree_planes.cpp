@@ -39,7 +39,7 @@ public:
         costs_.resize(count_ * candidates);
         for (int group = 0, sample = 0; group < groups; ++group)
         {
-            minRise_[group] = 0;
+            lowest_[group] = before_[group] = 0;
             firsts_[group] = sample;
             for (int i = group * step; i < tree.size; i += groups * step, ++sample)
             {
@@ -50,9 +50,9 @@ public:
                 x_.push_back((float)(pixel % volume.size.width));
                 y_.push_back((float)(pixel / volume.size.width));
                 disparity_.push_back(winners[pixel] / (float)subpixelScale);
-                cost_.push_back(costs[candidateAt(disparity_.back())]);
+                before_[group] += costs[candidateAt(disparity_.back())];
                 const uchar lowest = volume.lowestOf(own);
-                minRise_[group] += lowest - cost_.back();
+                lowest_[group] += lowest;
                 haveContrast_ = haveContrast_ || std::count(costs, costs + candidates, lowest) < candidates;
             }
         }
@@ -94,7 +94,7 @@ public:
     {
         int sum = 0;
         for (int group = 0; group < groups; ++group)
-            sum += riseOf(plane, group);
+            sum += costsOf(plane, group) - before_[group];
         return sum / (double)count_;
     }
 
@@ -127,20 +127,18 @@ private:
         return (int)(std::min(std::max(steps_ * disparity, first), last) - first + 0.5f);
     }
 
-    //! By how much the plane raises the costs of a group, in sum
-    int riseOf(const Plane& plane, int group) const
+    //! The costs of a group on the plane, in sum
+    int costsOf(const Plane& plane, int group) const
     {
-        const int begin = firsts_[group], end = firsts_[group + 1], stride = interval_.size();
+        const int begin = firsts_[group], count = firsts_[group + 1] - begin, stride = interval_.size();
         const float offset = (float)plane[0], slopeX = (float)plane[1], slopeY = (float)plane[2];
-        const float *const x = x_.data(), *const y = y_.data();
-        const uchar* const costs = costs_.data() + begin * stride;
-        const int* const cost = cost_.data() + begin;
+        const float *const x = &x_[begin], *const y = &y_[begin];
         int* const at = at_.data();
-        HDP_VECTORIZED for (int i = begin; i < end; ++i) at[i - begin] =
-            (i - begin) * stride + candidateAt(offset + slopeX * x[i] + slopeY * y[i]);
+        HDP_VECTORIZED for (int i = 0; i < count; ++i) at[i] = candidateAt(offset + slopeX * x[i] + slopeY * y[i]);
+        const uchar* costs = &costs_[begin * stride];
         int sum = 0;
-        for (int i = 0; i < end - begin; ++i)
-            sum += costs[at[i]] - cost[i];
+        for (int i = 0; i < count; ++i, costs += stride)
+            sum += costs[at[i]];
         return sum;
     }
 
@@ -149,11 +147,11 @@ private:
     double score(const Plane& plane, double limit) const
     {
         const double tilt = tiltCost * (std::abs(plane[1]) * extentX_ + std::abs(plane[2]) * extentY_);
-        int sum = std::accumulate(minRise_, minRise_ + groups, 0);
+        int sum = std::accumulate(lowest_, lowest_ + groups, 0) - std::accumulate(before_, before_ + groups, 0);
         double least = 0;
         for (int group = 0; group < groups; ++group)
         {
-            sum += riseOf(plane, group) - minRise_[group];
+            sum += costsOf(plane, group) - lowest_[group];
             least = sum / (double)count_ + tilt;
             if (least >= limit)
                 break;
@@ -196,12 +194,12 @@ private:
     double extentX_, extentY_;
     int count_;
     int firsts_[groups + 1]; // samples of the groups
-    int minRise_[groups];    // the lowest that riseOf() may be
+    int before_[groups];     // their costs without a plane, in sum
+    int lowest_[groups];     // the lowest that costsOf() may be
     bool haveContrast_ = false;
     std::vector<uchar> costs_; // of the candidates of each sample
     std::vector<float> x_, y_, disparity_;
-    std::vector<int> cost_;       // of the disparity
-    mutable std::vector<int> at_; // memory of riseOf()
+    mutable std::vector<int> at_; // memory of costsOf()
 };
 
 void prefer(const Plane& plane, const int* pixels, int count, CostVolume& volume)
