@@ -46,8 +46,8 @@ inline int countCensusBits(unsigned bits)
 
 /** The census cost: the number of pixels, of every second one in the window as on a checkerboard, that are clearly
 darker than the centre in one image and not in the other. The census of a pixel has a bit for each of them, in planes of
-8 bits: 3 for a window of 7 x 7 pixels, 2 for 5, 1 for 3. Row by row they are in these in turns, so each plane sees all of
-the window. */
+8 bits: 3 for a window of 7 x 7 pixels, 2 for 5, 1 for 3. Pixel by pixel these take turns, so each plane sees all of the
+window. */
 class CV_EXPORTS CensusCost CV_FINAL : public MatchingCost
 {
 public:

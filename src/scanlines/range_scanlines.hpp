@@ -91,9 +91,10 @@ private:
 typedef TLSData<RangeScratch> RangeBuffers;
 
 /** Semi-global matching over all candidates of a layer, those of the layer below, twice as large: from the left, from
-the right, from above and from below. Costs are computed where they are needed, so there is no volume of them. Each is of one
-plane of the census of three pixels below: their noise differs, so these tell as much as all planes of two. With b_i the
-bits that differ in plane i, modulo the number of planes, candidate h, a disparity of h / 2 pixels, of pixel (x, y) costs
+the right, from above and from below. Costs are computed where they are needed, so there is no volume of them. They
+compare one plane of the census of three pixels below: the noise of these differs, so they tell as much as all planes of
+two. With b_i the number of bits that differ in plane i, modulo the number of planes, candidate h of pixel (x, y), a
+disparity of h / 2 pixels, costs
 
 C(p, h) = 2 (b_0((2 x, 2 y), h) + b_1((2 x + 1, 2 y + 1), h) + b_2((2 x + 1, 2 y), h))
           + min(floor(|h - predicted| / priorDistance), maxPrior),
