@@ -42,7 +42,7 @@ void CensusCost::prepare(const Mat& left, const Mat& right, int numDisparities, 
 {
     limits_.prepare(masks, numDisparities);
     planes_.width = left.cols;
-    planes_.count = (blockSize * blockSize / 2 + 7) / 8;
+    planes_.count = blockSize / 2; // as the radius
     prepareImage(left, blockSize / 2, tolerance, false, 0);
     prepareImage(right, blockSize / 2, tolerance, true, numDisparities + costPadding);
     planes_.left = left_.ptr() + 4 * censusMargin;

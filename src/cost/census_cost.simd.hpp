@@ -39,11 +39,10 @@ void censusCostOfRow(const CensusPlanes& planes, int y, const ushort* disparity,
 
 void censusRow(const CensusWindow& window, const short* grey, bool mirrored, int cols, uchar* row, size_t planeSize)
 {
-    const int radius = window.radius, block = 256;
+    const int radius = window.radius, planes = radius, block = 256;
     const short tolerance = (short)window.tolerance;
     // Bits that compare nothing stand for the centre, which is not darker than itself.
     ptrdiff_t offsets[24] = { 0 };
-    const int planes = radius;
     int bits = 0;
     for (int dy = -radius; dy <= radius; ++dy)
         for (int dx = -radius; dx <= radius; ++dx)

@@ -39,7 +39,7 @@ public:
         costs_.resize(count_ * candidates);
         for (int group = 0, sample = 0; group < groups; ++group)
         {
-            lowest_[group] = before_[group] = 0;
+            lowest_[group] = 0;
             firsts_[group] = sample;
             for (int i = group * step; i < tree.size; i += groups * step, ++sample)
             {
@@ -50,7 +50,7 @@ public:
                 x_.push_back((float)(pixel % volume.size.width));
                 y_.push_back((float)(pixel / volume.size.width));
                 disparity_.push_back(winners[pixel] / (float)subpixelScale);
-                before_[group] += costs[candidateAt(disparity_.back())];
+                before_ += costs[candidateAt(disparity_.back())];
                 const uchar lowest = volume.lowestOf(own);
                 lowest_[group] += lowest;
                 haveContrast_ = haveContrast_ || std::count(costs, costs + candidates, lowest) < candidates;
@@ -92,9 +92,9 @@ public:
     //! By how much the plane raises the mean of the costs
     double rise(const Plane& plane) const
     {
-        int sum = 0;
+        int sum = -before_;
         for (int group = 0; group < groups; ++group)
-            sum += costsOf(plane, group) - before_[group];
+            sum += costsOf(plane, group);
         return sum / (double)count_;
     }
 
@@ -132,10 +132,10 @@ private:
     {
         const int begin = firsts_[group], count = firsts_[group + 1] - begin, stride = interval_.size();
         const float offset = (float)plane[0], slopeX = (float)plane[1], slopeY = (float)plane[2];
-        const float *const x = &x_[begin], *const y = &y_[begin];
+        const float *const x = x_.data() + begin, *const y = y_.data() + begin;
         int* const at = at_.data();
         HDP_VECTORIZED for (int i = 0; i < count; ++i) at[i] = candidateAt(offset + slopeX * x[i] + slopeY * y[i]);
-        const uchar* costs = &costs_[begin * stride];
+        const uchar* costs = costs_.data() + begin * stride;
         int sum = 0;
         for (int i = 0; i < count; ++i, costs += stride)
             sum += costs[at[i]];
@@ -147,7 +147,7 @@ private:
     double score(const Plane& plane, double limit) const
     {
         const double tilt = tiltCost * (std::abs(plane[1]) * extentX_ + std::abs(plane[2]) * extentY_);
-        int sum = std::accumulate(lowest_, lowest_ + groups, 0) - std::accumulate(before_, before_ + groups, 0);
+        int sum = std::accumulate(lowest_, lowest_ + groups, -before_);
         double least = 0;
         for (int group = 0; group < groups; ++group)
         {
@@ -194,8 +194,8 @@ private:
     double extentX_, extentY_;
     int count_;
     int firsts_[groups + 1]; // samples of the groups
-    int before_[groups];     // their costs without a plane, in sum
     int lowest_[groups];     // the lowest that costsOf() may be
+    int before_ = 0;         // the costs of all without a plane, in sum
     bool haveContrast_ = false;
     std::vector<uchar> costs_; // of the candidates of each sample
     std::vector<float> x_, y_, disparity_;

@@ -83,7 +83,7 @@ public:
     typedef typename Lanes::Pixel Pixel;
     enum
     {
-        parts = 3 // of a cost, one of each of three pixels below
+        parts = 3 // of a cost, of pixels (0, 0), (1, 1) and (1, 0) of the four below
     };
 
     //! What gives those of a row of pixels
