@@ -350,7 +350,9 @@ private:
         if (plan_.votesAtEdges)
             filterWhereData(1, [&](const Mat& map) { voteAtEdges(in_.images.guide, map, result_.disparity); });
         if (plan_.smoothsSurfaces)
-            filterWhereData(0, [&](const Mat& map) { smoothSurfaces(map, result_.disparity); });
+            filterWhereData(0, [&](const Mat& map) {
+                smoothSurfaces(in_.images.left, plan_.noise, plan_.layer, map, own_.smoothing, result_.disparity);
+            });
     }
 
     const LayerInput& in_;

@@ -351,6 +351,8 @@ TEST(HDPStereo_Plan, adapts_to_noise)
     EXPECT_LT(0, some.finest().passes[0].edgeNoise);
     EXPECT_LT(some.finest().passes[0].edgeNoise, much.finest().passes[0].edgeNoise);
     EXPECT_EQ(255, hdp::adapt(plan, withNoise(1e4), single).finest().passes[0].edgeNoise);
+    EXPECT_EQ(2, some.finest().noise) << "for surfaces that are smoothed";
+    EXPECT_EQ(0, some.top().noise);
     EXPECT_EQ(hdp::CensusCost::mostTolerance + 0, hdp::adapt(plan, withNoise(1e4), single).finest().cost.tolerance);
 
     MatcherParameters p = parametersOf(M::PRESET_FAST);

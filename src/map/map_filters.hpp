@@ -21,15 +21,30 @@ image, had about the same disparity.
 @param disparity The map after the median. */
 CV_EXPORTS void restoreThinStructures(const Mat& unfiltered, Mat& disparity);
 
-const int smoothingRadius = 4; // pixels
+//! Memory of smoothSurfaces(), kept from map to map. All three have a frame of zeros.
+struct SmoothingBuffers
+{
+    Mat precisions, maps[2];
+};
 
-/** Smooths each surface by itself: the noise of a disparity's fraction is that of a single pixel. It is a sigma filter
-@cite Lee1983Sigma over pairs of pixels: each pixel becomes the mean of the 16 that are up to 4 pixels away in its row
-and its column. Two that are opposite to one another count if both differ from it by one pixel at most, so that slopes
-and outlines stay as they are; otherwise it counts itself in their place. Borders are replicated.
-@param disparity CV_16UC1. USHRT_MAX changes no pixel beside it.
+/** Smooths each surface by itself. The variance of a disparity's fraction is that of the noise over the sum of the
+squared slopes around it @cite Kanade1994Adaptive: a pixel with texture stays as it is, one without takes over what
+is on both sides of it. The precision of a pixel is the sum over 7 x 7 pixels of (slope / noise)^2 - 1/2, the slope
+being half the difference of the grey levels to the left and to the right, and the half what noise alone has; 1 at
+least.
+
+Each pixel becomes a mean of itself and pairs of opposite pixels, as in a sigma filter @cite Lee1983Sigma: those 1, 2
+and 4 pixels away in the row, if both differ from it by one pixel of the image at most, so that slopes and outlines stay
+as they are. It has its precision for a weight, both of a pair the lower one of theirs, at most 64 over the square of
+the distance. The same follows in the columns, and both again for pixels 3, 6 and 12 away. There are none beyond the
+map.
+@param levels Grey levels, CV_16UC1 in 1 / greyScale.
+@param noise Standard deviation of the grey levels; half a level at least counts.
+@param layer Of the map, 0 for that of the image.
+@param disparity CV_16UC1; at most 4094 pixels. USHRT_MAX changes no other pixel.
 @param smoothed Receives the map; another one. */
-CV_EXPORTS void smoothSurfaces(const Mat& disparity, Mat& smoothed);
+CV_EXPORTS void smoothSurfaces(const Mat& levels, double noise, int layer, const Mat& disparity,
+                               SmoothingBuffers& buffers, Mat& smoothed);
 
 }}} // namespace cv::stereo::hdp
 

@@ -237,7 +237,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
     plan.restoresThinStructures = plan.isFinest && !hasTreeSums(p) && plan.medianSize > 0;
     plan.votesAtEdges = layer == 0 && plan.cost.isCensus && plan.medianSize > 0;
-    plan.smoothsSurfaces = layer == 0 && plan.restoresThinStructures && plan.hasFractions;
+    plan.smoothsSurfaces = plan.restoresThinStructures && plan.hasFractions && plan.cost.isCensus;
     return plan;
 }
 
@@ -319,6 +319,8 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
             layer.cost.tolerance = censusTolerance(layer, findings.noise, video.hasPrior);
         for (ScanlinePenalties& penalties : layer.passes)
             penalties.edgeNoise = saturate_cast<uchar>(edgeNoise * findings.noise.ofLayer(layer.layer));
+        if (layer.smoothsSurfaces)
+            layer.noise = findings.noise.ofLayer(layer.layer);
         layer.smoothsGuide |= layer.method != WINDOW_SCANLINES && plan.alignment.isNoisy(findings.noise);
     }
     LayerPlan& top = adapted.layers.front();

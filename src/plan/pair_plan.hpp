@@ -85,6 +85,7 @@ struct LayerPlan
     bool restoresThinStructures = false;
     bool votesAtEdges = false;
     bool smoothsSurfaces = false;
+    double noise = 0; // of the images, in levels of 255, if it smooths surfaces
 
     //! Candidates per pixel of disparity
     int steps() const { return seesBelow ? 2 : 1; }
