@@ -349,9 +349,10 @@ private:
             restoreThinStructures(result_.winners, result_.disparity);
         if (plan_.votesAtEdges)
             filterWhereData(1, [&](const Mat& map) { voteAtEdges(in_.images.guide, map, result_.disparity); });
-        if (plan_.smoothsSurfaces)
+        if (plan_.surfaceDifference > 0)
             filterWhereData(0, [&](const Mat& map) {
-                smoothSurfaces(in_.images.left, plan_.noise, plan_.layer, map, own_.smoothing, result_.disparity);
+                smoothSurfaces(in_.images.left, plan_.noise, plan_.surfaceDifference, map, own_.smoothing,
+                               result_.disparity);
             });
     }
 

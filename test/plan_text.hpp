@@ -31,7 +31,7 @@ inline std::string textOf(const hdp::LayerPlan& p)
              << " prior " << pass.prior << " nearer " << pass.nearer << " noise " << pass.edgeNoise << "]";
     text << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
          << p.fillsOcclusions << " median " << p.medianSize << " thin structures " << p.restoresThinStructures
-         << " votes " << p.votesAtEdges << " smooths " << p.smoothsSurfaces << "\n";
+         << " votes " << p.votesAtEdges << " smooths " << p.surfaceDifference << " noise " << p.noise << "\n";
     return text.str();
 }
 

@@ -353,6 +353,8 @@ TEST(HDPStereo_Plan, adapts_to_noise)
     EXPECT_EQ(255, hdp::adapt(plan, withNoise(1e4), single).finest().passes[0].edgeNoise);
     EXPECT_EQ(2, some.finest().noise) << "for surfaces that are smoothed";
     EXPECT_EQ(0, some.top().noise);
+    EXPECT_EQ(20, some.finest().surfaceDifference) << "1.25 pixels";
+    EXPECT_EQ(0, some.top().surfaceDifference) << "planes of trees";
     EXPECT_EQ(hdp::CensusCost::mostTolerance + 0, hdp::adapt(plan, withNoise(1e4), single).finest().cost.tolerance);
 
     MatcherParameters p = parametersOf(M::PRESET_FAST);

@@ -34,16 +34,16 @@ being half the difference of the grey levels to the left and to the right, and t
 least.
 
 Each pixel becomes a mean of itself and pairs of opposite pixels, as in a sigma filter @cite Lee1983Sigma: those 1, 2
-and 4 pixels away in the row, if both differ from it by one pixel of the image at most, so that slopes and outlines stay
+and 4 pixels away in the row, if neither differs from it by more than a surface's do, so that slopes and outlines stay
 as they are. It has its precision for a weight, both of a pair the lower one of theirs, at most 64 over the square of
 the distance. The same follows in the columns, and both again for pixels 3, 6 and 12 away. There are none beyond the
 map.
 @param levels Grey levels, CV_16UC1 in 1 / greyScale.
 @param noise Standard deviation of the grey levels; half a level at least counts.
-@param layer Of the map, 0 for that of the image.
+@param mostDifference Of the disparities of a surface.
 @param disparity CV_16UC1; at most 4094 pixels. USHRT_MAX changes no other pixel.
 @param smoothed Receives the map; another one. */
-CV_EXPORTS void smoothSurfaces(const Mat& levels, double noise, int layer, const Mat& disparity,
+CV_EXPORTS void smoothSurfaces(const Mat& levels, double noise, int mostDifference, const Mat& disparity,
                                SmoothingBuffers& buffers, Mat& smoothed);
 
 }}} // namespace cv::stereo::hdp

@@ -12,8 +12,6 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(double, mostDifference, 1, "pixels",
-            "of the image, on a surface: less leaves its noise, more rounds small steps");
 HDP_TUNABLE(double, leastNoise, 0.5, "grey levels", "less is below the rounding of the levels");
 HDP_TUNABLE(int, mostWeight, 64, "noise^-2",
             "of a pixel beside another: more helps surfaces with little texture, less keeps details");
@@ -61,7 +59,7 @@ void findPrecisions(const Mat& levels, double noise, const Mat& disparity, Mat& 
 }
 
 //! In the rows, or in the columns
-SmoothingPairs pairsAt(int distance, ptrdiff_t step, int layer)
+SmoothingPairs pairsAt(int distance, ptrdiff_t step, int mostDifference)
 {
     SmoothingPairs pairs;
     pairs.step = step * distance;
@@ -70,14 +68,14 @@ SmoothingPairs pairsAt(int distance, ptrdiff_t step, int layer)
         limit = (ushort)std::max(cvRound((double)mostWeight / (distance * distance)), 1);
         distance *= 2;
     }
-    pairs.like = (ushort)((int)(mostDifference * subpixelScale) >> layer);
+    pairs.like = (ushort)mostDifference;
     return pairs;
 }
 
 } // namespace
 
-void smoothSurfaces(const Mat& levels, double noise, int layer, const Mat& disparity, SmoothingBuffers& buffers,
-                    Mat& smoothed)
+void smoothSurfaces(const Mat& levels, double noise, int mostDifference, const Mat& disparity,
+                    SmoothingBuffers& buffers, Mat& smoothed)
 {
     const Size size = disparity.size();
     Mat precisions = insideOf(buffers.precisions, size);
@@ -92,8 +90,9 @@ void smoothSurfaces(const Mat& levels, double noise, int layer, const Mat& dispa
     };
     for (int round = 0; round < rounds; ++round)
     {
-        pass(pairsAt(firstDistances[round], 1, layer), rough, smoother);
-        pass(pairsAt(firstDistances[round], rough.step1(), layer), smoother, round == rounds - 1 ? smoothed : rough);
+        pass(pairsAt(firstDistances[round], 1, mostDifference), rough, smoother);
+        pass(pairsAt(firstDistances[round], rough.step1(), mostDifference), smoother,
+             round == rounds - 1 ? smoothed : rough);
     }
 }
 

@@ -68,6 +68,9 @@ HDP_TUNABLE(int, firstPrior, 1, "bits per 2 pixels",
             "from the layer above, which may be wrong: more cannot be repaired, less loses bare surfaces");
 HDP_TUNABLE(int, laterPrior, 2, "bits per 2 pixels", "from the pass before, which knows more than the layer above");
 
+HDP_TUNABLE(double, surfaceDifference, 1.25, "pixels",
+            "of the disparities of a surface: less leaves its noise, more rounds small steps");
+
 // The functions get parameters that plan() has completed.
 
 //! The paper's winners, of sums over trees, whatever the layer
@@ -237,7 +240,10 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
     plan.restoresThinStructures = plan.isFinest && !hasTreeSums(p) && plan.medianSize > 0;
     plan.votesAtEdges = layer == 0 && plan.cost.isCensus && plan.medianSize > 0;
-    plan.smoothsSurfaces = plan.restoresThinStructures && plan.hasFractions && plan.cost.isCensus;
+    // On the finest layer in pixels of the image, which it is the map of; others only predict.
+    if (plan.medianSize > 0 && !hasTreeSums(p) && plan.hasFractions && plan.cost.isCensus &&
+        (plan.isFinest || !plan.isTop))
+        plan.surfaceDifference = (int)(surfaceDifference * subpixelScale) >> (plan.isFinest ? layer : 0);
     return plan;
 }
 
@@ -319,7 +325,7 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
             layer.cost.tolerance = censusTolerance(layer, findings.noise, video.hasPrior);
         for (ScanlinePenalties& penalties : layer.passes)
             penalties.edgeNoise = saturate_cast<uchar>(edgeNoise * findings.noise.ofLayer(layer.layer));
-        if (layer.smoothsSurfaces)
+        if (layer.surfaceDifference > 0)
             layer.noise = findings.noise.ofLayer(layer.layer);
         layer.smoothsGuide |= layer.method != WINDOW_SCANLINES && plan.alignment.isNoisy(findings.noise);
     }

@@ -84,8 +84,8 @@ struct LayerPlan
     int medianSize = 0; // of the median over the winners; 0: none
     bool restoresThinStructures = false;
     bool votesAtEdges = false;
-    bool smoothsSurfaces = false;
-    double noise = 0; // of the images, in levels of 255, if it smooths surfaces
+    int surfaceDifference = 0; // most of the disparities of a surface, which are smoothed; 0: they are not
+    double noise = 0;          // of the images, in levels of 255, if surfaces are smoothed
 
     //! Candidates per pixel of disparity
     int steps() const { return seesBelow ? 2 : 1; }
