@@ -14,11 +14,12 @@
 #include "evaluation/methods.hpp"
 #include "evaluation/scores.hpp"
 #include "evaluation/tables.hpp"
+#include "evaluation/tunables.hpp"
 
 using namespace cv;
 using namespace hdp_tools;
 
-static const char* const KEYS =
+static const String KEYS =
     "{help h ? | | print this and exit }"
     "{methods  | ultrafast,fast,quality,tree,sgbm,sgbm-3way,sgbm-hh4 | names as of hdp_evaluate }"
     "{textures | natural,fine | natural: as much contrast in each octave; fine: of single pixels; separated by commas }"
@@ -193,6 +194,8 @@ static Table measure(const String& texture, double noise, const std::vector<Meth
 
 static int run(const CommandLineParser& parser)
 {
+    if (useTunables(parser))
+        return 0;
     setThreads(parser);
     const std::vector<Method> methods = selectMethods("methods", parser.get<String>("methods"));
     const std::vector<String> textures = splitList(parser.get<String>("textures"));
@@ -208,7 +211,7 @@ static int run(const CommandLineParser& parser)
 int main(int argc, char** argv)
 {
     return runProgram(
-        argc, argv, KEYS,
+        argc, argv, KEYS + TUNABLE_KEYS,
         "Errors of stereo matchers by the fraction of the true disparity, on generated slanted planes.\n"
         "bias: between the largest and the smallest mean error of a fraction of one pixel, or of two pixels.\n"
         "whole disparities: how often they are found, 1 if as often as any other sixteenth of a pixel.\n"
