@@ -351,8 +351,7 @@ private:
             filterWhereData(1, [&](const Mat& map) { voteAtEdges(in_.images.guide, map, result_.disparity); });
         if (plan_.surfaceDifference > 0)
             filterWhereData(0, [&](const Mat& map) {
-                smoothSurfaces(in_.images.left, plan_.noise, plan_.surfaceDifference, map, own_.smoothing,
-                               result_.disparity);
+                smoothSurfaces(in_.images.left, plan_.noise, plan_.surfaceDifference, map, result_.disparity);
             });
     }
 

@@ -6,7 +6,6 @@
 
 #include "base/stage_clock.hpp"
 #include "forest/forest_aggregation.hpp"
-#include "map/map_filters.hpp"
 #include "paper/support_points.hpp"
 #include "plan/pair_plan.hpp"
 #include "scanlines/candidate_windows.hpp"
@@ -49,7 +48,6 @@ struct LayerScratch
     Mat others, windows;                 // what the windows of scanlines are predicted from; the windows
     Mat filtered, halved, halvedWinners; // what a pass of scanlines leaves to the next one
     Mat masked;                          // disparities without those of pixels without data, of a pair with masks
-    SmoothingBuffers smoothing;          // memory of smoothSurfaces()
     Mat residual;                        // costs of the winners
     Mat stable, refined;                 // pixels that pass the left-right check, and their refined disparities
 

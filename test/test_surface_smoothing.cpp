@@ -75,8 +75,7 @@ Mat smoothedMap(const Mat& levels, double noise, int like, const Mat& disparity)
 TEST(HDPStereo_SurfaceSmoothing, oracle)
 {
     RNG rng(97);
-    hdp::SmoothingBuffers buffers;
-    for (const Size& size : { Size(1, 1), Size(1, 9), Size(9, 1), Size(2, 3), Size(61, 40), Size(20, 150) })
+    for (const Size& size : { Size(1, 1), Size(1, 9), Size(9, 1), Size(2, 3), Size(61, 40), Size(20, 300) })
         for (int disparities : { 5, 30, 65504 })
             for (double noise : { 0., 1.7, 12. })
             {
@@ -91,7 +90,7 @@ TEST(HDPStereo_SurfaceSmoothing, oracle)
                 missing = missing == 0;
                 disparity.setTo(Scalar(USHRT_MAX), missing);
                 Mat expected = smoothedMap(levels, noise, like, disparity);
-                hdp::smoothSurfaces(levels, noise, like, disparity, buffers, smoothed);
+                hdp::smoothSurfaces(levels, noise, like, disparity, smoothed);
                 expected.setTo(Scalar(0), missing);
                 smoothed.setTo(Scalar(0), missing);
                 expectIdentical(expected, smoothed);
@@ -119,8 +118,7 @@ TEST(HDPStereo_SurfaceSmoothing, noise_of_slopes_but_not_steps)
             truth.at<ushort>(y, x) = (ushort)(x < 40 ? 400 + x / 2 + y / 3 : 900 - x / 2);
     rng.fill(noise, RNG::NORMAL, 0, 2.5);
     cv::add(truth, noise, noisy, noArray(), CV_16U);
-    hdp::SmoothingBuffers buffers;
-    hdp::smoothSurfaces(textured(rng, truth.size(), 0), 1, 20, noisy, buffers, smoothed);
+    hdp::smoothSurfaces(textured(rng, truth.size(), 0), 1, 20, noisy, smoothed);
     EXPECT_LT(cv::norm(smoothed, truth, NORM_L2), 0.4 * cv::norm(noisy, truth, NORM_L2));
     EXPECT_LT(cv::norm(smoothed, truth, NORM_INF), 20) << "of pixels beside the step, too";
 }
@@ -132,10 +130,9 @@ TEST(HDPStereo_SurfaceSmoothing, texture_keeps_its_details)
     for (int y = 0; y < truth.rows; ++y)
         for (int x = 0; x < truth.cols; ++x)
             truth.at<ushort>(y, x) = (ushort)cvRound(300 + 4 * std::sin(x * 0.6));
-    hdp::SmoothingBuffers buffers;
-    hdp::smoothSurfaces(textured(rng, truth.size(), 40), 1, 20, truth, buffers, smoothed);
+    hdp::smoothSurfaces(textured(rng, truth.size(), 40), 1, 20, truth, smoothed);
     EXPECT_LT(cv::norm(smoothed, truth, NORM_INF), 2);
-    hdp::smoothSurfaces(textured(rng, truth.size(), 0), 1, 20, truth, buffers, smoothed);
+    hdp::smoothSurfaces(textured(rng, truth.size(), 0), 1, 20, truth, smoothed);
     EXPECT_LT(2, cv::norm(smoothed, truth, NORM_INF)) << "nothing tells waves from noise";
 }
 
@@ -147,8 +144,7 @@ TEST(HDPStereo_SurfaceSmoothing, bare_gap_in_texture)
     const Rect gap(34, 0, 12, size.height), bare(37, 0, 6, size.height); // whose windows are in the gap
     textured(rng, size, 0)(gap).copyTo(levels(gap));
     disparity(bare).setTo(Scalar(326)); // 3/8 pixels off
-    hdp::SmoothingBuffers buffers;
-    hdp::smoothSurfaces(levels, 1, 20, disparity, buffers, smoothed);
+    hdp::smoothSurfaces(levels, 1, 20, disparity, smoothed);
     EXPECT_LT(cv::mean(smoothed(bare))[0], 324);
     const Rect left(0, 0, 34, size.height);
     EXPECT_LT(cv::norm(smoothed(left), disparity(left), NORM_INF), 2) << "texture knows better";

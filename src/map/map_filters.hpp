@@ -21,12 +21,6 @@ image, had about the same disparity.
 @param disparity The map after the median. */
 CV_EXPORTS void restoreThinStructures(const Mat& unfiltered, Mat& disparity);
 
-//! Memory of smoothSurfaces(), kept from map to map. All three have a frame of zeros.
-struct SmoothingBuffers
-{
-    Mat precisions, maps[2];
-};
-
 /** Smooths each surface by itself. The variance of a disparity's fraction is that of the noise over the sum of the
 squared slopes around it @cite Kanade1994Adaptive: a pixel with texture stays as it is, one without takes over what
 is on both sides of it. The precision of a pixel is the sum over 7 x 7 pixels of (slope / noise)^2 - 1/2, the slope
@@ -44,7 +38,7 @@ map.
 @param disparity CV_16UC1; at most 4094 pixels. USHRT_MAX changes no other pixel.
 @param smoothed Receives the map; another one. */
 CV_EXPORTS void smoothSurfaces(const Mat& levels, double noise, int mostDifference, const Mat& disparity,
-                               SmoothingBuffers& buffers, Mat& smoothed);
+                               Mat& smoothed);
 
 }}} // namespace cv::stereo::hdp
 

@@ -16,46 +16,21 @@ HDP_TUNABLE(double, leastNoise, 0.5, "grey levels", "less is below the rounding 
 HDP_TUNABLE(int, mostWeight, 64, "noise^-2",
             "of a pixel beside another: more helps surfaces with little texture, less keeps details");
 
-const int rounds = 2, firstDistances[rounds] = { 1, 3 }; // pixels
+// Distances of the first pairs of both rounds, and of the last ones: twice as far, and twice again, see SmoothingPairs
+constexpr int first[] = { 1, 3 }, last[] = { 4 * first[0], 4 * first[1] };
 
-// Around the buffers: the largest distance
-const int frame = firstDistances[rounds - 1] << (SmoothingPairs::count - 1);
-
-// Rows of a thread whose precisions share the sums of windows
-const int stripe = 64;
+// Rows that are smoothed at once, in memory that stays in the caches: fewer compute those between stripes more often
+const int stripe = 128;
 
 HDP_DISPATCH(squareSlopes)
 HDP_DISPATCH(precisionRow)
 HDP_DISPATCH(smoothRow)
 
-//! The part of a buffer inside of its frame
-Mat insideOf(Mat& buffer, Size size)
+SlopeScale slopeScale(double noise)
 {
-    const Size framed(size.width + 2 * frame, size.height + 2 * frame);
-    if (buffer.size() != framed)
-        buffer = Mat::zeros(framed, CV_16U);
-    return buffer(Rect(Point(frame, frame), size));
-}
-
-void findPrecisions(const Mat& levels, double noise, const Mat& disparity, Mat& precisions)
-{
-    const int width = levels.cols, height = levels.rows, radius = precisionSide / 2;
     // The difference of the pixels beside one is twice the slope.
     const double change = 2. * greyScale * noise / SlopeScale::perNoise; // that is counted as one
-    const SlopeScale scale = { saturate_cast<ushort>(cvFloor(SlopeScale::most * change)),
-                               saturate_cast<ushort>(cvFloor(256 / change)) };
-    parallel_for_(Range(0, (height + stripe - 1) / stripe), [&](const Range& range) {
-        std::vector<ushort> squares(precisionSide * width), sums(width + precisionSide);
-        for (int y = range.start * stripe - radius; y < std::min(range.end * stripe, height) + radius; ++y)
-        {
-            ushort* const row = &squares[(y + precisionSide) % precisionSide * width];
-            dispatched::squareSlopes(levels.ptr<ushort>(clamped(y, 0, height - 1)), width, scale, row);
-            const int middle = y - radius;
-            if (middle >= range.start * stripe)
-                dispatched::precisionRow(squares.data(), width, sums.data(), disparity.ptr<ushort>(middle),
-                                         precisions.ptr<ushort>(middle));
-        }
-    });
+    return { saturate_cast<ushort>(cvFloor(SlopeScale::most * change)), saturate_cast<ushort>(cvFloor(256 / change)) };
 }
 
 //! In the rows, or in the columns
@@ -72,28 +47,88 @@ SmoothingPairs pairsAt(int distance, ptrdiff_t step, int mostDifference)
     return pairs;
 }
 
+//! A stripe of a map, and what its rows depend on: memory of a thread
+class SmoothingStripe
+{
+public:
+    SmoothingStripe(const Mat& levels, const SlopeScale& scale, int mostDifference, const Mat& disparity)
+        : levels_(levels), disparity_(disparity), scale_(scale), mostDifference_(mostDifference),
+          squares_(precisionSide * disparity.cols), sums_(disparity.cols + precisionSide)
+    {
+        const int rows = std::min(disparity.rows, stripe + 2 * (last[0] + last[1]));
+        for (Mat& mat : framed_)
+            mat = Mat::zeros(rows + 2 * frame, disparity.cols + 2 * frame, CV_16U);
+    }
+
+    void smooth(const Range& rows, Mat& smoothed)
+    {
+        const Range second = grown(rows, last[1]), seen = grown(second, last[0]);
+        const Rect inside(frame, frame, disparity_.cols, seen.size());
+        framed_[0].rowRange(frame + seen.size(), framed_[0].rows).setTo(Scalar(0)); // of the stripe before
+        precisions_ = framed_[0](inside);
+        Mat rough = framed_[1](inside), smoother = framed_[2](inside);
+        findPrecisions(seen);
+        disparity_.rowRange(seen).copyTo(rough);
+        const Range own = rows - seen.start, ofSecond = second - seen.start;
+        pass(first[0], 1, Range(0, seen.size()), rough, smoother);
+        pass(first[0], (ptrdiff_t)rough.step1(), ofSecond, smoother, rough);
+        pass(first[1], 1, ofSecond, rough, smoother);
+        pass(first[1], (ptrdiff_t)rough.step1(), own, smoother, rough);
+        rough.rowRange(own).copyTo(smoothed.rowRange(rows));
+    }
+
+private:
+    enum
+    {
+        frame = last[1]
+    };
+
+    Range grown(const Range& rows, int by) const
+    {
+        return Range(std::max(rows.start - by, 0), std::min(rows.end + by, disparity_.rows));
+    }
+
+    void findPrecisions(const Range& rows)
+    {
+        const int width = disparity_.cols, radius = precisionSide / 2;
+        for (int y = rows.start - radius; y < rows.end + radius; ++y)
+        {
+            ushort* const row = &squares_[(y + precisionSide) % precisionSide * width];
+            dispatched::squareSlopes(levels_.ptr<ushort>(clamped(y, 0, levels_.rows - 1)), width, scale_, row);
+            const int middle = y - radius;
+            if (middle >= rows.start)
+                dispatched::precisionRow(squares_.data(), width, sums_.data(), disparity_.ptr<ushort>(middle),
+                                         precisions_.ptr<ushort>(middle - rows.start));
+        }
+    }
+
+    void pass(int distance, ptrdiff_t step, const Range& rows, const Mat& from, Mat& to) const
+    {
+        const SmoothingPairs pairs = pairsAt(distance, step, mostDifference_);
+        for (int y = rows.start; y < rows.end; ++y)
+            dispatched::smoothRow(from.ptr<ushort>(y), precisions_.ptr<ushort>(y), from.cols, pairs, to.ptr<ushort>(y));
+    }
+
+    const Mat &levels_, &disparity_;
+    SlopeScale scale_;
+    int mostDifference_;
+    std::vector<ushort> squares_, sums_;
+    Mat framed_[3];  // precisions and two maps, in a frame of zeros: what is beyond the map has no weight
+    Mat precisions_; // without it
+};
+
 } // namespace
 
-void smoothSurfaces(const Mat& levels, double noise, int mostDifference, const Mat& disparity,
-                    SmoothingBuffers& buffers, Mat& smoothed)
+void smoothSurfaces(const Mat& levels, double noise, int mostDifference, const Mat& disparity, Mat& smoothed)
 {
-    const Size size = disparity.size();
-    Mat precisions = insideOf(buffers.precisions, size);
-    Mat rough = insideOf(buffers.maps[0], size), smoother = insideOf(buffers.maps[1], size);
-    findPrecisions(levels, std::max(noise, +leastNoise), disparity, precisions);
-    disparity.copyTo(rough);
-    smoothed.create(size, CV_16U);
-    const auto pass = [&](const SmoothingPairs& pairs, const Mat& from, Mat& to) {
-        parallelFor(size.height, [&](int y) {
-            dispatched::smoothRow(from.ptr<ushort>(y), precisions.ptr<ushort>(y), size.width, pairs, to.ptr<ushort>(y));
-        });
-    };
-    for (int round = 0; round < rounds; ++round)
-    {
-        pass(pairsAt(firstDistances[round], 1, mostDifference), rough, smoother);
-        pass(pairsAt(firstDistances[round], rough.step1(), mostDifference), smoother,
-             round == rounds - 1 ? smoothed : rough);
-    }
+    const int rows = disparity.rows;
+    const SlopeScale scale = slopeScale(std::max(noise, +leastNoise));
+    smoothed.create(disparity.size(), CV_16U);
+    parallel_for_(Range(0, (rows + stripe - 1) / stripe), [&](const Range& range) {
+        SmoothingStripe own(levels, scale, mostDifference, disparity);
+        for (int i = range.start; i < range.end; ++i)
+            own.smooth(Range(i * stripe, std::min((i + 1) * stripe, rows)), smoothed);
+    });
 }
 
 }}} // namespace cv::stereo::hdp
