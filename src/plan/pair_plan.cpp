@@ -238,11 +238,11 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.fillsOcclusions = p.fillOcclusions;
     // As in the authors' program; the paper says that nothing is refined.
     plan.medianSize = p.disparityMedianSize != M::AUTO ? p.disparityMedianSize : p.usePrediction ? 7 : 5;
-    plan.restoresThinStructures = plan.isFinest && !hasTreeSums(p) && plan.medianSize > 0;
-    plan.votesAtEdges = layer == 0 && plan.cost.isCensus && plan.medianSize > 0;
+    const bool isFiltered = plan.medianSize > 0, isOfScanlines = isFiltered && !hasTreeSums(p);
+    plan.restoresThinStructures = plan.isFinest && isOfScanlines;
+    plan.votesAtEdges = layer == 0 && plan.cost.isCensus && isFiltered;
     // On the finest layer in pixels of the image, which it is the map of; others only predict.
-    if (plan.medianSize > 0 && !hasTreeSums(p) && plan.hasFractions && plan.cost.isCensus &&
-        (plan.isFinest || !plan.isTop))
+    if (isOfScanlines && plan.cost.isCensus && (plan.isFinest || !plan.isTop))
         plan.surfaceDifference = (int)(surfaceDifference * subpixelScale) >> (plan.isFinest ? layer : 0);
     return plan;
 }
