@@ -235,20 +235,31 @@ private:
         if (plan_.hasFractions && plan_.layer > 0)
             min(result_.winners, plan_.maxDisparity, result_.winners);
         correctWinners();
+        findResidual();
         if (plan_.fillsOcclusions)
-            clock_.run("occlusions", [&] {
-                own_.census.ofDisparities(result_.winners, own_.residual);
-                fillOcclusions();
+            fillOcclusions(result_.residual);
+    }
+
+    void findResidual()
+    {
+        if (plan_.cost.isCensus)
+            clock_.run("matching cost", [&] {
+                own_.census.ofDisparities(result_.winners, result_.residual);
+                leaveWithoutData(result_.residual);
             });
     }
 
-    //! Pixels without data hide none from the right image.
-    void fillOcclusions()
+    void leaveWithoutData(Mat& residual) const
     {
-        const PairMasks& masks = in_.images.masks;
-        if (!masks.isEmpty())
-            own_.residual.setTo(Scalar(UCHAR_MAX), pixelsWithData(masks.left) == 0);
-        fillOccluded(result_.winners, own_.residual, in_.images.right, masks.right);
+        if (!in_.images.masks.isEmpty())
+            residual.setTo(Scalar(UCHAR_MAX), pixelsWithData(in_.images.masks.left) == 0);
+    }
+
+    //! residual: of the winners. Pixels without data hide none from the right image.
+    void fillOcclusions(const Mat& residual)
+    {
+        clock_.run("occlusions",
+                   [&] { fillOccluded(result_.winners, residual, in_.images.right, in_.images.masks.right); });
     }
 
     //! Scanlines over windows of candidates. The first pass takes them from the layer above, each other one from the
@@ -257,17 +268,25 @@ private:
     {
         const double windowed = std::min<double>(CandidateWindow::candidates, plan_.numDisparities);
         result_.searchRatio = windowed / plan_.numDisparities;
-        clock_.run("cost aggregation", [&] { weighEdges(guide(), own_.edgeWeights); });
+        clock_.run("cost aggregation", [&] {
+            weighEdges(guide(), own_.edgeWeights);
+            weighSmoothness(in_.upper->disparity, in_.upper->residual, own_.census.comparisons(), shared_.smoothness,
+                            own_.smoothness);
+        });
         for (const ScanlinePenalties& penalties : plan_.passes)
         {
             predictPass(&penalties == &plan_.passes.front());
             clock_.run("cost aggregation", [&] {
                 aggregateScanlines(own_.census, own_.edgeWeights, plan_.frame, plan_.numDisparities, plan_.maxDisparity,
-                                   own_.windows, penalties, shared_.scanlines, result_.winners, own_.residual);
+                                   own_.windows, own_.smoothness, penalties, shared_.scanlines, result_.winners,
+                                   own_.passResidual);
+                leaveWithoutData(own_.passResidual);
             });
             correctWinners();
+            if (!plan_.isFinest)
+                findResidual(); // without priors, for the layer below
             if (plan_.fillsOcclusions)
-                clock_.run("occlusions", [&] { fillOcclusions(); });
+                fillOcclusions(own_.passResidual);
         }
     }
 

@@ -10,6 +10,7 @@
 #include "plan/pair_plan.hpp"
 #include "scanlines/candidate_windows.hpp"
 #include "scanlines/other_surfaces.hpp"
+#include "scanlines/smoothness_weights.hpp"
 #include "video/temporal_join.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -19,6 +20,7 @@ struct LayerResult
 {
     Mat disparity;             // CV_16UC1, a disparity map
     Mat winners;               // the same before the median
+    Mat residual;              // their matching costs before occlusions were filled, UCHAR_MAX without data
     double searchRatio = 0;    // R_l of the paper's Table 1
     std::vector<double> prior; // P(D_l) up to a factor; empty if the layer was not predicted from one
 };
@@ -46,9 +48,10 @@ struct LayerScratch
     Mat candidateIntervals;              // of the pixels, if the candidates are those of the layer below
     SurfaceBuffers surfaceBuffers;       // memory of findOtherSurfaces()
     Mat others, windows;                 // what the windows of scanlines are predicted from; the windows
+    Mat smoothness;                      // weights of the penalties in these windows
     Mat filtered, halved, halvedWinners; // what a pass of scanlines leaves to the next one
     Mat masked;                          // disparities without those of pixels without data, of a pair with masks
-    Mat residual;                        // costs of the winners
+    Mat passResidual;                    // what a pass of scanlines over windows leaves of costs, and of priors
     Mat stable, refined;                 // pixels that pass the left-right check, and their refined disparities
 
     const MatchingCost& cost(const CostPlan& plan) const
@@ -67,6 +70,7 @@ struct SharedScratch
     std::vector<DisparityInterval> intervals;
     ForestBuffers forestBuffers;
     AggregationBuffers aggregation;
+    SmoothnessBuffers smoothness;
     ScanlineBuffers scanlines;
     CostVolume volume;
     std::vector<short> volumeSums;

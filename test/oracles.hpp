@@ -668,12 +668,14 @@ inline double fraction(int before, int after, double blunt, double sharp)
 class Scanlines
 {
 public:
-    //! left, right: grey levels in quarters; windows: CandidateWindow, one for every 2 x 2 pixels.
+    //! left, right: grey levels in quarters; windows and smoothness: a CandidateWindow and a weight in 64ths, one for
+    //! every 2 x 2 pixels.
     Scanlines(const Mat& left, const Mat& right, const Mat& weights, int blockSize, int numDisparities, int largest,
-              const Mat& windows, const hdp::ScanlinePenalties& penalties,
+              const Mat& windows, const Mat& smoothness, const hdp::ScanlinePenalties& penalties,
               const hdp::PairMasks& masks = hdp::PairMasks())
         : left_(left), right_(right), weights_(weights), census_(left, right, blockSize), size_(left.size()),
-          numDisparities_(numDisparities), largest_(largest), windows_(windows), penalties_(penalties), masks_(masks)
+          numDisparities_(numDisparities), largest_(largest), windows_(windows), smoothness_(smoothness),
+          penalties_(penalties), masks_(masks)
     {
     }
 
@@ -720,6 +722,14 @@ private:
         return windows_.ptr<hdp::CandidateWindow>(clamped(p.y / 2, windows_.rows))[clamped(p.x / 2, windows_.cols)];
     }
 
+    double weight(Point p) const
+    {
+        return smoothness_.at<uchar>(clamped(p.y / 2, smoothness_.rows), clamped(p.x / 2, smoothness_.cols)) / 64.;
+    }
+
+    //! With the weight of the pixel
+    int weighed(int penalty, Point p) const { return std::min((int)std::floor(weight(p) * penalty + 0.5), 100); }
+
     std::vector<int> candidates(Point p) const
     {
         std::vector<int> result;
@@ -737,7 +747,7 @@ private:
         const int difference =
             left_.at<ushort>(p) / 4 - right_.at<ushort>(p.y, clamped(p.x - d, size_.width)) / 4; // of whole levels
         return limited(p, d, census_(p.y, p.x, d) + std::min(std::abs(difference), 23) / 4) +
-               (int)std::floor(penalties_.prior * std::abs(d - w.predicted[run] / 16.) / 2) +
+               (int)std::floor(weight(p) * penalties_.prior * std::abs(d - w.predicted[run] / 16.) / 2) +
                (run == 1 && w.first[1] > w.first[0] + 8 ? penalties_.nearer : 0);
     }
 
@@ -760,7 +770,7 @@ private:
             return result;
         const std::vector<int> theirs = candidates(q);
         const int m = *std::min_element(before.begin(), before.end());
-        const int small = penalties_.small, large = largePenalty(p, q);
+        const int small = weighed(penalties_.small, p), large = largePenalty(p, q);
         const auto costBefore = [&](int d) {
             const size_t i = (size_t)(std::find(theirs.begin(), theirs.end(), d) - theirs.begin());
             return i < theirs.size() ? before[i] : m + large;
@@ -782,10 +792,12 @@ private:
     {
         const Point first(std::min(p.x, q.x), std::min(p.y, q.y));
         const int weight = weights_.at<Vec2b>(first)[p.x == q.x];
-        const hdp::CandidateWindow& w = window(p.x == q.x ? q : first);
+        const Point own = p.x == q.x ? q : first;
+        const hdp::CandidateWindow& w = window(own);
+        const int small = weighed(penalties_.small, own), large = weighed(penalties_.large, own);
         const int slope = w.first[1] == w.first[0] + 8 ? penalties_.edgeSlope : penalties_.borderSlope;
         const double fall = std::floor(slope * std::max(weight - penalties_.edgeNoise, 0) / 2.);
-        return std::max(std::min(penalties_.small, penalties_.large), penalties_.large - (int)fall);
+        return std::max(std::min(small, large), large - (int)fall);
     }
 
     ushort winner(Point p, const std::vector<Costs>& directions, uchar& residual) const
@@ -801,7 +813,7 @@ private:
         residual = (uchar)pixelCost(p, d[i]);
         double offset = 0;
         if (i > 0 && i + 1 < d.size() && d[i - 1] == d[i] - 1 && d[i + 1] == d[i] + 1)
-            offset = fraction(sums[i - 1] - sums[i], sums[i + 1] - sums[i], 60, 100);
+            offset = fraction(sums[i - 1] - sums[i], sums[i + 1] - sums[i], 52, 88);
         return (ushort)std::min(std::max(16 * d[i] + cvRound(16 * offset), 0), largest_);
     }
 
@@ -809,7 +821,7 @@ private:
     CensusCost census_;
     Size size_;
     int numDisparities_, largest_;
-    Mat windows_;
+    Mat windows_, smoothness_;
     const hdp::ScanlinePenalties penalties_;
     const hdp::PairMasks masks_;
 };

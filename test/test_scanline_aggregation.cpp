@@ -13,10 +13,10 @@ namespace opencv_test { namespace {
 
 const int scale = 16;
 
-//! A layer: grey levels, weights of edges, and windows for them
+//! A layer: grey levels, weights of edges, windows for them, and weights of smoothness in these
 struct Layer
 {
-    Mat left, right, weights, windows;
+    Mat left, right, weights, windows, smoothness;
     int numDisparities, blockSize;
     hdp::PairMasks masks;
 
@@ -49,6 +49,8 @@ struct Layer
         Mat others;
         hdp::findOtherSurfaces(upper, upper, buffers, others);
         hdp::predictWindows(upper, others, numDisparities, windows);
+        smoothness.create(upper.size(), CV_8UC1);
+        rng.fill(smoothness, RNG::UNIFORM, +hdp::SmoothnessWeight::min, hdp::SmoothnessWeight::max + 1);
     }
 
     //! Some pixels have no data, and some only a part of it.
@@ -77,9 +79,9 @@ struct Layer
     Mat expected(const hdp::ScanlinePenalties& penalties) const
     {
         Mat residual;
-        const Mat disparity =
-            oracle::Scanlines(left, right, weights, blockSize, numDisparities, largest(), windows, penalties, masks)
-                .match(residual);
+        const Mat disparity = oracle::Scanlines(left, right, weights, blockSize, numDisparities, largest(), windows,
+                                                smoothness, penalties, masks)
+                                  .match(residual);
         return beside(disparity, residual);
     }
 
@@ -96,7 +98,7 @@ Mat aggregate(const Layer& layer, const hdp::ScanlinePenalties& penalties, hdp::
 {
     Mat disparity, residual;
     hdp::aggregateScanlines(layer.cost(), layer.weights, hdp::ImageFrame(layer.left.size()), layer.numDisparities,
-                            layer.largest(), layer.windows, penalties, buffers, disparity, residual);
+                            layer.largest(), layer.windows, layer.smoothness, penalties, buffers, disparity, residual);
     return Layer::beside(disparity, residual);
 }
 
@@ -174,8 +176,10 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
             if (numDisparities > 5)
                 layer.mask(rng);
             const hdp::CensusCost cost = layer.cost();
+            const float blunt = 52, sharp = 88;
             const hdp::ScanlineProblem problem = {
-                &cost, &layer.weights, size, numDisparities, layer.largest(), &layer.windows, usualPenalties, 60, 100
+                &cost,          &layer.weights,    size,           numDisparities, layer.largest(),
+                &layer.windows, &layer.smoothness, usualPenalties, blunt,          sharp
             };
             const hdp::ScanlineStripe stripe = { Range(0, size.height), Range(0, size.height) };
             std::vector<uchar> stored((size.height + 1) * hdp::ScanlineScratch::storedBytes(size.width));

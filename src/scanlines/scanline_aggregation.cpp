@@ -11,9 +11,9 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_TUNABLE(int, stripeHeight, 128, "rows", "about: fewer rows are more warm-up, more leave threads without work");
-HDP_TUNABLE(double, bluntSlope, 15, "bits per direction",
+HDP_TUNABLE(double, bluntSlope, 13, "bits per direction",
             "of a minimum's steeper side: up to it the fraction is mostly noise, and the tip of two lines is better");
-HDP_TUNABLE(double, sharpSlope, 25, "bits per direction",
+HDP_TUNABLE(double, sharpSlope, 22, "bits per direction",
             "from which on the tip is too near to whole disparities, and its root is better");
 
 HDP_DISPATCH(aggregateStripe)
@@ -29,16 +29,19 @@ void ScanlineScratch::prepare(int width, int numDisparities)
         stored->resize(upperColumns * CandidateWindow::candidates);
     isContiguous.assign(upperColumns, 0);
     const int length = CandidateWindow::runLength, farthest = numDisparities + CandidateWindow::candidates;
+    small.resize(upperColumns + 16); // some more to read
+    nearer.resize(pairs);
     for (int run = 0; run < CandidateWindow::runs; ++run)
     {
         first[run].assign(upperColumns, 0); // of the margins' candidates, too, the addresses are valid
-        priorRow[run].resize(upperColumns);
+        distance[run].resize(upperColumns);
         firstOfColumn[run].resize(2 * pairs);
         orders[run].assign(2 * (farthest + length), 255);
         for (int i = 0; i < length; ++i)
             orders[run][farthest + length + i] = (uchar)(run * length + i);
     }
-    slopes.resize(width + 1);            // pairs of columns
+    for (std::vector<uchar>* ofColumn : { &slopes, &large, &least })
+        ofColumn->resize(2 * pairs);
     edges.resize(2 * blockColumns + 16); // some more to read
     winners.resize(blockColumns);
     winnerCosts.resize(blockColumns);
@@ -46,13 +49,13 @@ void ScanlineScratch::prepare(int width, int numDisparities)
 }
 
 void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageFrame& frame, int numDisparities,
-                        int maxDisparity, const Mat& windows, const ScanlinePenalties& penalties,
+                        int maxDisparity, const Mat& windows, const Mat& smoothness, const ScanlinePenalties& penalties,
                         ScanlineBuffers& buffers, Mat& disparity, Mat& residual)
 {
     const Size size = weights.size();
     const float blunt = 4 * (float)bluntSlope, sharp = 4 * (float)sharpSlope; // of sums of four directions
-    const ScanlineProblem problem = { &cost,    &weights,  size,  numDisparities, maxDisparity,
-                                      &windows, penalties, blunt, sharp };
+    const ScanlineProblem problem = { &cost,    &weights,    size,      numDisparities, maxDisparity,
+                                      &windows, &smoothness, penalties, blunt,          sharp };
     const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, stripeHeight);
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);

@@ -7,6 +7,7 @@
 #include "candidate_windows.hpp"
 #include "../cost/census_cost.hpp"
 #include "scanline_stripes.hpp"
+#include "smoothness_weights.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -16,7 +17,7 @@ struct ScanlinePenalties
     int small, large; // for a step of one disparity and for a larger one between neighbours of one colour, 0..max
     int edgeSlope;    // halves of a bit by which large falls per grey level of an edge's weight, 0..64
     int borderSlope;  // the same where a window has two runs: surfaces end there
-    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..4: costs have 8 bits
+    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 0..4: costs have 8 bits
     int nearer;       // for candidates of another surface that is nearer, 0..4
     int edgeNoise;    // grey levels that an edge's weight may have by noise, 0..255
     enum
@@ -33,7 +34,7 @@ struct ScanlineProblem
     Size size;
     int numDisparities;
     int maxDisparity; // of a map
-    const Mat* windows;
+    const Mat *windows, *smoothness;
     ScanlinePenalties penalties;
     float blunt, sharp; // of sums of the directions, see winnerFraction()
 
@@ -63,17 +64,18 @@ struct ScanlineScratch
     CV_EXPORTS void prepare(int width, int numDisparities);
 
     std::vector<uchar> vertical; // CandidateWindow::candidates per column
-    // By column of the layer above: the first candidate of each run, and where its prior is in a table; whether
-    // there is one run, and so there is for the other rows of the block in the same step
-    std::vector<short> first[CandidateWindow::runs], priorRow[CandidateWindow::runs];
-    std::vector<uchar> isContiguous;
+    // By column of the layer above: the first candidate of each run, and how far it is from what was predicted; whether
+    // there is one run, and so there is for the other rows of the block in the same step; small penalties, and what
+    // the second run costs more
+    std::vector<short> first[CandidateWindow::runs], distance[CandidateWindow::runs];
+    std::vector<uchar> isContiguous, small, nearer;
     std::vector<uchar> priors, intoSide, intoNext;           // CandidateWindow::candidates per such column
     std::vector<short> firstOfColumn[CandidateWindow::runs]; // by column of the layer
     // Which lanes have the candidates of a run that begins i disparities after one of these, in the middle and i on:
     // 255 for those that it does not have
     std::vector<uchar> orders[CandidateWindow::runs];
-    std::vector<uchar> slopes; // of edges, by column of the layer
-    std::vector<uchar> edges;  // large penalties of a block, two per pixel
+    std::vector<uchar> slopes, large, least; // of edges, by column of the layer
+    std::vector<uchar> edges;                // large penalties of a block, two per pixel
     // The winners of a block: their lanes, their sums with those of the lanes before and behind, and their costs
     std::vector<uchar> winners, winnerCosts;
     std::vector<unsigned> winnerSums;
@@ -84,20 +86,23 @@ typedef std::vector<ScanlineScratch> ScanlineBuffers; // of the stripes
 /** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching from the
 left and from below, in a sweep upward, and from the right and from above, in one downward. The cost of candidate d is
 
-C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 23) / 4) + floor(prior * |d - predicted| / 2) + nearer,
+C(p, d) = census cost + floor(min(|I(p) - I'(p - d)|, 23) / 4) + floor(s(p) * prior * |d - predicted| / 2) + nearer,
 
-the first two together no more than CostLimits allows, I being whole grey levels, and predicted the disparity that the
-candidate's run was predicted for; nearer is 0 but for candidates of a second run beyond the first one.
+the first two together no more than CostLimits allows, I being whole grey levels, s(p) the weight of smoothness in the
+window of p, and predicted the disparity that the candidate's run was predicted for; nearer is 0 but for candidates of a
+second run beyond the first one.
 
 With L(p, d) of a direction and q the pixel before p,
-L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
-large(p, q) = max(min(small, large), large - floor(slope * max(w(p, q) - edgeNoise, 0) / 2)),
-slope being borderSlope if the window of q, or of p in the direction from the right, has two runs, and else edgeSlope;
-candidates that q does not have count m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d
-in the window of p: those that p does not have are left out, and the last one of its first run and the first one of the
-second count as neighbours even if they are further apart. The winner has the lowest sum of the directions, each less
-its own minimum, at most 255, the first of them if there are several; its sum and those of the candidates beside it, if
-p has disparities d - 1 and d + 1, give the sub-pixel part, see winnerFraction().
+L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small(p), L(q, d + 1) + small(p), m + large(p, q)) - m,
+m = min_k L(q, k), small(p) = s(p) * small,
+large(p, q) = max(min(small(r), s(r) * large), s(r) * large - floor(slope * max(w(p, q) - edgeNoise, 0) / 2)),
+r being q, or p in the direction from the right, and slope borderSlope if its window has two runs, and else edgeSlope.
+Penalties with their weight are rounded, and at most ScanlinePenalties::max. Candidates that q does not have count
+m + large(p, q). d - 1 and d + 1 stand for the candidates before and after d in the window of p: those that p does not
+have are left out, and the last one of its first run and the first one of the second count as neighbours even if they
+are further apart. The winner has the lowest sum of the directions, each less its own minimum, at most 255, the first of
+them if there are several; its sum and those of the candidates beside it, if p has disparities d - 1 and d + 1, give the
+sub-pixel part, see winnerFraction().
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
 start anew some rows before each of them. A tile has those of the image that it lies in.
@@ -108,12 +113,13 @@ start anew some rows before each of them. A tile has those of the image that it 
 @param maxDisparity That of a map of the layer. The winner may be beyond the ends of the range;
 its disparity is not.
 @param windows From predictWindows().
+@param smoothness s, from weighSmoothness().
 @param penalties The penalties.
 @param buffers Memory to work in.
 @param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
 CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageFrame& frame,
-                                   int numDisparities, int maxDisparity, const Mat& windows,
+                                   int numDisparities, int maxDisparity, const Mat& windows, const Mat& smoothness,
                                    const ScanlinePenalties& penalties, ScanlineBuffers& buffers, Mat& disparity,
                                    Mat& residual);
 

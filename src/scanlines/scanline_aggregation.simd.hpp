@@ -42,8 +42,8 @@ H(q, d) = max(m + large(p, q) - L(q, d), 0), which is also right, 0, for candida
 As min(x, m + large(p, q)) = m + large(p, q) - max(m + large(p, q) - x, 0) for any x,
 min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m = large(p, q) - gain(d) with
 gain(d) = max(H(q, d), H(q, d - 1) - small, H(q, d + 1) - small, 0).
-Only differences between the candidates of a pixel count, so large may stand for large(p, q) here:
-L(p, d) = (C(p, d) + large) - gain(d), and with its minimum m' over the candidates of p and the pixel r after it
+Only differences between the candidates of a pixel count, so the largest penalty, K, may stand for large(p, q) here:
+L(p, d) = (C(p, d) + K) - gain(d), and with its minimum m' over the candidates of p and the pixel r after it
 H(p, d) = max(large(p, r) - (L(p, d) - m'), 0).
 
 All of these are bytes, and the differences saturate at 0 by themselves. What aggregateScanlines() says, step by step,
@@ -62,9 +62,9 @@ class Sweep
 public:
     Sweep(const ScanlineProblem& problem, bool isUpward, ScanlineScratch& scratch)
         : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
-          planeStride_(problem.cost->planeStride()), small_(ByteLanes::repeat(problem.penalties.small)),
-          zero_(ByteLanes::repeat(0)), vertical_(alignPtr(scratch.vertical.data(), ScanlineScratch::alignment) +
-                                                 ScanlineScratch::margin * Window::candidates),
+          planeStride_(problem.cost->planeStride()), zero_(ByteLanes::repeat(0)),
+          vertical_(alignPtr(scratch.vertical.data(), ScanlineScratch::alignment) +
+                    ScanlineScratch::margin * Window::candidates),
           tables_(problem, isUpward, groups, scratch), windows_(0), upperRow_(-1), entersUpperRow_(false),
           isUpward_(isUpward)
     {
@@ -104,9 +104,11 @@ public:
         ByteLanes before[2] = { zero_, zero_ };
         for (int t = steps_ - 1; t >= 0; --t)
         {
+            const ByteLanes small = smallPenalty(t);
             const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
             for (int column = 1; column >= 0; --column)
-                fromAbove(ByteLanes::load(stored + storedAt(t, column)), toNext[column], t, column, before[column]);
+                fromAbove(ByteLanes::load(stored + storedAt(t, column)), small, toNext[column], t, column,
+                          before[column]);
         }
     }
 
@@ -143,7 +145,7 @@ private:
             const Window* before = windows_;
             windows_ = p_.windows->ptr<Window>(upperRow);
             upperRow_ = upperRow;
-            tables_.enter(windows_, before);
+            tables_.enter(windows_, p_.smoothness->ptr(upperRow), before);
         }
         const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
         for (int r = 0; r < groups; ++r)
@@ -157,8 +159,8 @@ private:
                 leftLimits_[r] = p_.cost->limits().left(row);
                 rightLimits_[r] = p_.cost->limits().right(row) + width_ - 1;
             }
-            weighScanlineEdges(p_.weights->ptr(row), p_.weights->ptr(edgeRow), tables_.slopes(), width_, p_.penalties,
-                               edges_[r]);
+            weighScanlineEdges(p_.weights->ptr(row), p_.weights->ptr(edgeRow), tables_.edgePenalties(), width_,
+                               p_.penalties.edgeNoise, edges_[r]);
             if (isUpward_ && inBlock > lastRow) // nothing comes from there
                 std::memset(edges_[r], 0, 2 * (size_t)width_);
         }
@@ -173,7 +175,16 @@ private:
         return ByteLanes::repeatByte<at>(edges);
     }
 
-    //! The candidates' costs C(p, d) + large at both columns of a step
+    //! small(p) of a step
+    CV_ALWAYS_INLINE ByteLanes smallPenalty(int step) const
+    {
+        const uchar* small[groups];
+        for (int r = 0; r < groups; ++r)
+            small[r] = tables_.small(step - r);
+        return ByteLanes::repeatByte<0>(small);
+    }
+
+    //! The candidates' costs C(p, d) + ScanlinePenalties::max at both columns of a step
     template <int layout> CV_ALWAYS_INLINE void costs(int step, ByteLanes (&cost)[2]) const
     {
         const int planes = layout & (hasLimits - 1);
@@ -239,11 +250,12 @@ private:
         return contrast + ByteLanes::countBits(first, second, third);
     }
 
-    //! L(p, d) - m of a direction; cost: C(p, d) + large; h: H of the pixel before, which becomes that of this one;
-    //! large: to the pixel after.
-    ByteLanes advance(ByteLanes& h, const ByteLanes& cost, const ByteLanes& large) const
+    //! L(p, d) - m of a direction; cost: C(p, d) + ScanlinePenalties::max; h: H of the pixel before, which becomes that
+    //! of this one; large: to the pixel after.
+    static CV_ALWAYS_INLINE ByteLanes advance(ByteLanes& h, const ByteLanes& cost, const ByteLanes& small,
+                                              const ByteLanes& large)
     {
-        const ByteLanes gain = h.max(h.toNext().max(h.toPrevious()) - small_);
+        const ByteLanes gain = h.max(h.toNext().max(h.toPrevious()) - small);
         const ByteLanes sum = cost - gain;
         const ByteLanes aboveMinimum = sum - sum.minimum();
         h = large - aboveMinimum;
@@ -273,12 +285,13 @@ private:
         for (int t = 0; t < steps_; ++t)
         {
             costs<layout>(t, cost);
+            const ByteLanes small = smallPenalty(t);
             ByteLanes sum[2] = { zero_, zero_ };
             if (upwardStep != STORE_COSTS)
             {
                 const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
                 for (int column = 0; column < 2; ++column)
-                    sum[column] = fromBelow(cost[column], toNext[column], t, column, before[column]);
+                    sum[column] = fromBelow(cost[column], small, toNext[column], t, column, before[column]);
             }
             if (upwardStep == FOLLOW)
                 continue;
@@ -287,7 +300,7 @@ private:
                 const ByteLanes toRight[2] = { largePenalty<2>(t), largePenalty<4>(t) };
                 h = h.permute(ByteLanes::load(tables_.intoSide(t)));
                 for (int column = 0; column < 2; ++column)
-                    sum[column] = sum[column] + advance(h, cost[column], toRight[column]);
+                    sum[column] = sum[column] + advance(h, cost[column], small, toRight[column]);
                 if (t + 1 < groups)
                     h = clearOutside(h, t, 1);
             }
@@ -305,17 +318,18 @@ private:
         for (int t = steps_ - 1; t >= 0; --t)
         {
             h = h.permute(ByteLanes::load(tables_.intoSide(t)));
+            const ByteLanes small = smallPenalty(t);
             const ByteLanes toLeft[2] = { largePenalty<0>(t), largePenalty<2>(t) };
             const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
             for (int column = 1; column >= 0; --column)
             {
                 const uchar* const costs = stored + storedAt(t, column);
                 const ByteLanes cost = ByteLanes::load(costs);
-                const ByteLanes fromRight = advance(h, cost, toLeft[column]);
+                const ByteLanes fromRight = advance(h, cost, small, toLeft[column]);
                 if (t + 1 >= pairs_)
                     h = clearOutside(h, t, column);
                 const ByteLanes sum = ByteLanes::load(costs + lanes) + fromRight +
-                                      fromAbove(cost, toNext[column], t, column, before[column]);
+                                      fromAbove(cost, small, toNext[column], t, column, before[column]);
                 takeWinners(sum, t, column, costs);
             }
         }
@@ -328,23 +342,25 @@ private:
     }
 
     //! The direction from below: before holds H of the last step's columns; large: to the next row
-    ByteLanes fromBelow(const ByteLanes& cost, const ByteLanes& large, int t, int column, ByteLanes& before)
+    ByteLanes fromBelow(const ByteLanes& cost, const ByteLanes& small, const ByteLanes& large, int t, int column,
+                        ByteLanes& before)
     {
         before = ByteLanes::shiftInFirst(verticalAt(0, t, column), before);
         if (entersUpperRow_) // only the row that the block begins with may
             before = before.permute(ByteLanes::first(tables_.intoNext(t)));
-        const ByteLanes direction = advance(before, cost, large);
+        const ByteLanes direction = advance(before, cost, small, large);
         before.storeLast(verticalAt(groups - 1, t, column));
         return direction;
     }
 
     //! The same from above
-    ByteLanes fromAbove(const ByteLanes& cost, const ByteLanes& large, int t, int column, ByteLanes& before)
+    ByteLanes fromAbove(const ByteLanes& cost, const ByteLanes& small, const ByteLanes& large, int t, int column,
+                        ByteLanes& before)
     {
         before = ByteLanes::shiftInLast(before, verticalAt(groups - 1, t, column));
         if (entersUpperRow_)
             before = before.permute(ByteLanes::last(tables_.intoNext(t - groups + 1)));
-        const ByteLanes direction = advance(before, cost, large);
+        const ByteLanes direction = advance(before, cost, small, large);
         before.storeFirst(verticalAt(0, t, column));
         return direction;
     }
@@ -378,7 +394,7 @@ private:
     void finishRow(int group, ushort* disparity, uchar* residual) const
     {
         const float blunt = p_.blunt, sharp = p_.sharp;
-        const int last = p_.validCandidates() - 1, large = p_.penalties.large, maxDisparity = p_.maxDisparity;
+        const int last = p_.validCandidates() - 1, maxDisparity = p_.maxDisparity;
         const short *firstOfLow = tables_.firstOfColumn(0), *firstOfHigh = tables_.firstOfColumn(1);
         const uchar *winners = winners_[group], *costs = costs_[group];
         const unsigned* sums = sums_[group];
@@ -397,13 +413,13 @@ private:
             const int tip = whole * subpixelScale + subpixelUnits(winnerFraction(rise, slope, blunt, sharp));
             disparity[x] = (ushort)clamped(tip, 0, maxDisparity);
         }
-        HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - large);
+        HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - ScanlinePenalties::max);
     }
 
     const ScanlineProblem& p_;
     const int width_, pairs_, steps_; // columns, pairs of them, and steps over all groups
     const size_t planeStride_;        // from a plane of the cost to the next
-    const ByteLanes small_, zero_;
+    const ByteLanes zero_;
     // The scratch memory, from column 0 on
     uchar* const vertical_; // H of the row before the block
     uchar *winners_[groups], *costs_[groups], *edges_[groups];

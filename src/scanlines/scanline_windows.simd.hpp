@@ -12,31 +12,37 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
+//! Of the pixels of a row, what large(p, q) depends on: the slope, large(p) and the least of it
+struct EdgePenalties
+{
+    const uchar *slope, *large, *least;
+};
+
 /** large(p, q) between each pixel of a row and its neighbours to the right and in the next row.
 @param row Weights of the row's edges, of which those to the right are read.
 @param toNext Weights of those between it and the next row, which are those below of the upper one.
-@param slopes Of the row's pixels.
+@param pixels Of the row.
 @param edges Receives two penalties per pixel. */
-inline void weighScanlineEdges(const uchar* row, const uchar* toNext, const uchar* slopes, int width,
-                               const ScanlinePenalties& penalties, uchar* edges)
+inline void weighScanlineEdges(const uchar* row, const uchar* toNext, const EdgePenalties& pixels, int width,
+                               int edgeNoise, uchar* edges)
 {
-    const ushort large = (ushort)penalties.large, min = std::min((ushort)penalties.small, large);
-    const ushort noise = (ushort)penalties.edgeNoise;
-    const auto penalty = [&](ushort weight, ushort slope) {
-        const ushort fall = (ushort)((ushort)((ushort)(std::max(weight, noise) - noise) * slope) / 2);
-        return (uchar)std::max((ushort)(std::max(large, fall) - fall), min);
+    const uchar *const slopes = pixels.slope, *const large = pixels.large, *const least = pixels.least;
+    const ushort noise = (ushort)edgeNoise;
+    const auto penalty = [&](ushort weight, int x) {
+        const ushort fall = (ushort)((ushort)((ushort)(std::max(weight, noise) - noise) * slopes[x]) / 2);
+        return (uchar)std::max((ushort)(std::max<ushort>(large[x], fall) - fall), (ushort)least[x]);
     };
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        edges[2 * x] = penalty(row[2 * x], slopes[x]);
-        edges[2 * x + 1] = penalty(toNext[2 * x + 1], slopes[x]);
+        edges[2 * x] = penalty(row[2 * x], x);
+        edges[2 * x + 1] = penalty(toNext[2 * x + 1], x);
     }
     edges[2 * width - 2] = 0; // there is no pixel
 }
 
 /** What scanlines need to know of the windows of a row of the layer above, from column to column: where the candidates
-begin, their prior, and which lane of the window before has the same disparity. A step is two columns of the layer, a
-column of the layer above. */
+begin, their prior and penalties, and which lane of the window before has the same disparity. A step is two columns of
+the layer, a column of the layer above. */
 class ScanlineWindows
 {
 public:
@@ -45,26 +51,27 @@ public:
     //! groups: rows of a block
     ScanlineWindows(const ScanlineProblem& problem, bool isUpward, int groups, ScanlineScratch& scratch)
         : p_(problem), isUpward_(isUpward), groups_(groups), pairs_((problem.size.width + 1) / 2),
-          isContiguous_(scratch.isContiguous.data() + margin), slopes_(scratch.slopes.data()),
-          priors_(firstStep(scratch.priors)), intoSide_(firstStep(scratch.intoSide)),
+          isContiguous_(scratch.isContiguous.data() + margin), small_(scratch.small.data() + margin),
+          nearer_(scratch.nearer.data()), slopes_(scratch.slopes.data()), large_(scratch.large.data()),
+          least_(scratch.least.data()), priors_(firstStep(scratch.priors)), intoSide_(firstStep(scratch.intoSide)),
           intoNext_(firstStep(scratch.intoNext))
     {
         for (int run = 0; run < Window::runs; ++run)
         {
             first_[run] = scratch.first[run].data() + margin;
-            priorRow_[run] = scratch.priorRow[run].data();
+            distance_[run] = scratch.distance[run].data();
             firstOfColumn_[run] = scratch.firstOfColumn[run].data();
             orders_[run] = scratch.orders[run].data() + scratch.orders[run].size() / 2;
         }
-        preparePriorTable();
     }
 
-    //! Enters a row of windows. before: that of the sweep before, if there is one
-    void enter(const Window* row, const Window* before)
+    //! Enters a row of windows, and its weights. before: that of the sweep before, if there is one
+    void enter(const Window* row, const uchar* weights, const Window* before)
     {
         enterColumns(row);
+        enterPenalties(weights);
         if (isUpward_)
-            enterPriors();
+            enterPriors(weights);
         enterSide(row);
         if (before)
             enterNext(row, before);
@@ -75,9 +82,11 @@ public:
     bool isContiguous(int step) const { return isContiguous_[step] != 0; }
     //! The first disparity of a run, by column of the layer
     const short* firstOfColumn(int run) const { return firstOfColumn_[run]; }
-    //! Of edges, by column of the layer
-    const uchar* slopes() const { return slopes_; }
-    //! With the large penalty, which is a part of all costs in a sweep
+    //! By column of the layer
+    EdgePenalties edgePenalties() const { return { slopes_, large_, least_ }; }
+    //! The small penalty in the row of a block that is this number of rows behind
+    const uchar* small(int step) const { return small_ + step; }
+    //! With ScanlinePenalties::max, which is a part of all costs in a sweep
     const uchar* prior(int step) const { return ofStep(priors_, step); }
     //! Orders of lanes, 255 for candidates that the window before does not have: from the left in a sweep upward, from
     //! the right in one downward, and from the row before
@@ -88,23 +97,8 @@ private:
     enum
     {
         margin = ScanlineScratch::margin,
-        priorRange = 3 * Window::candidates / 2 * subpixelScale, // of distances, both ways
-        distances = 2 * priorRange
+        mostDistance = 3 * Window::candidates / 2 * subpixelScale // of a candidate from its prediction
     };
-
-    //! The prior of a run, by the distance of its first candidate from the predicted disparity, once more for nearer
-    //! surfaces; with the large penalty, which is a part of all costs in a sweep.
-    void preparePriorTable()
-    {
-        for (int distance = -priorRange; distance < priorRange; ++distance)
-            for (int i = 0; i < Window::runLength; ++i)
-            {
-                const int prior = p_.penalties.prior * std::abs(distance + i * subpixelScale) / (2 * subpixelScale);
-                const int row = distance + priorRange, cost = p_.penalties.large + prior;
-                priorTable_[row][i] = (uchar)cost;
-                priorTable_[row + distances][i] = (uchar)(cost + p_.penalties.nearer);
-            }
-    }
 
     // Bytes may alias everything but what is local.
 
@@ -126,18 +120,16 @@ private:
         const short* const members = windows->first; // first, then predicted
         for (int run = 0; run < Window::runs; ++run)
         {
-            short *const first = first_[run], *const priorRow = priorRow_[run];
+            short *const first = first_[run], *const distance = distance_[run];
             HDP_VECTORIZED for (int x = 0; x < columns; ++x)
             {
                 const short begin = members[4 * x + run];
                 const int predicted = (ushort)members[4 * x + Window::runs + run];
                 first[x] = begin;
-                const bool isNearer = begin > members[4 * x] + length;
-                priorRow[x] = (short)(clamped(begin * subpixelScale - predicted, -priorRange, priorRange - 1) +
-                                      priorRange + (isNearer ? distances : 0));
+                distance[x] = (short)clamped(begin * subpixelScale - predicted, -mostDistance, mostDistance - 1);
             }
             std::fill(first + columns, first + pairs, first[columns - 1]);
-            std::fill(priorRow + columns, priorRow + pairs, priorRow[columns - 1]);
+            std::fill(distance + columns, distance + pairs, distance[columns - 1]);
             short* const firstOfColumn = firstOfColumn_[run];
             HDP_VECTORIZED for (int x = 0; x < pairs; ++x) firstOfColumn[2 * x] = firstOfColumn[2 * x + 1] = first[x];
         }
@@ -146,27 +138,71 @@ private:
         const bool isSingle = groups_ == 1;
         HDP_VECTORIZED for (int x = 0; x < pairs; ++x) isContiguous[x] =
             (uchar)((high[x] - low[x] == length) & ((isSingle) | (high[x - 1] - low[x - 1] == length)));
-        uchar* const slopes = slopes_;
+        uchar *const slopes = slopes_, *const nearer = nearer_;
         const uchar edgeSlope = (uchar)p_.penalties.edgeSlope, borderSlope = (uchar)p_.penalties.borderSlope;
-        HDP_VECTORIZED for (int x = 0; x < pairs; ++x) slopes[2 * x] = slopes[2 * x + 1] =
-            high[x] - low[x] == length ? edgeSlope : borderSlope;
+        const uchar ofNearer = (uchar)p_.penalties.nearer;
+        HDP_VECTORIZED for (int x = 0; x < pairs; ++x)
+        {
+            slopes[2 * x] = slopes[2 * x + 1] = high[x] - low[x] == length ? edgeSlope : borderSlope;
+            nearer[x] = high[x] - low[x] > length ? ofNearer : 0;
+        }
     }
 
-    void enterPriors() const
+    //! small(p) and large(p); weights: SmoothnessWeight by column of the layer above
+    void enterPenalties(const uchar* weights) const
+    {
+        const int pairs = pairs_, columns = std::min(pairs, p_.windows->cols);
+        uchar *const small = small_, *const large = large_, *const least = least_;
+        const ushort ofSmall = (ushort)p_.penalties.small, ofLarge = (ushort)p_.penalties.large;
+        const auto weighed = [](ushort penalty, ushort weight) {
+            const ushort product = (ushort)(penalty * weight + SmoothnessWeight::one / 2);
+            return (uchar)std::min<ushort>(product / SmoothnessWeight::one, ScanlinePenalties::max);
+        };
+        HDP_VECTORIZED for (int x = 0; x < columns; ++x) small[x] = weighed(ofSmall, weights[x]);
+        std::fill(small + columns, small + pairs, small[columns - 1]);
+        HDP_VECTORIZED for (int x = 0; x < columns; ++x)
+        {
+            const uchar own = weighed(ofLarge, weights[x]);
+            large[2 * x] = large[2 * x + 1] = own;
+            least[2 * x] = least[2 * x + 1] = std::min(small[x], own);
+        }
+        std::fill(large + 2 * columns, large + 2 * pairs, large[2 * columns - 1]);
+        std::fill(least + 2 * columns, least + 2 * pairs, least[2 * columns - 1]);
+    }
+
+    void enterPriors(const uchar* weights) const
     {
         uchar* const priors = priors_;
-        const short *const low = priorRow_[0], *const high = priorRow_[1];
-        const int lanesUsed = p_.validCandidates();
-        for (int x = 0; x < pairs_; ++x)
+        const uchar* const nearer = nearer_;
+        const short *const low = distance_[0], *const high = distance_[1];
+        const int pairs = pairs_, lanesUsed = p_.validCandidates(), lastColumn = p_.windows->cols - 1;
+        const ushort ofPrior = (ushort)p_.penalties.prior;
+        for (int x = 0; x < pairs; ++x)
         {
+            const ushort slope = (ushort)(ofPrior * weights[std::min(x, lastColumn)]);
             uchar* const prior = priors - (ptrdiff_t)x * Window::candidates;
-            std::memcpy(prior, priorTable_[low[x]], Window::runLength);
-            std::memcpy(prior + Window::runLength, priorTable_[high[x]], Window::runLength);
+            enterPrior(low[x], slope, 0, prior);
+            enterPrior(high[x], slope, nearer[x], prior + Window::runLength);
         }
         if (lanesUsed < Window::candidates)
-            for (int x = 0; x < pairs_; ++x)
+            for (int x = 0; x < pairs; ++x)
                 std::fill_n(priors - (ptrdiff_t)x * Window::candidates + lanesUsed, Window::candidates - lanesUsed,
                             (uchar)255);
+    }
+
+    //! Of a run whose first candidate is so far from what was predicted; slope: of the prior, with its weight
+    static CV_ALWAYS_INLINE void enterPrior(short distance, ushort slope, uchar nearer, uchar* prior)
+    {
+        const int unit = 2 * subpixelScale * SmoothnessWeight::one, shifted = (1 << 16) / unit;
+        const uchar ofAll = (uchar)(ScanlinePenalties::max + nearer);
+        ushort lanes[Window::runLength];
+        HDP_VECTORIZED for (int i = 0; i < Window::runLength; ++i)
+        {
+            const short away = (short)(distance + i * subpixelScale);
+            const ushort shiftedAway = (ushort)((ushort)std::max(away, (short)-away) * shifted);
+            lanes[i] = (ushort)(((unsigned)shiftedAway * slope) >> 16);
+        }
+        HDP_VECTORIZED for (int i = 0; i < Window::runLength; ++i) prior[i] = (uchar)(ofAll + lanes[i]);
     }
 
     //! The lanes of a window
@@ -239,10 +275,10 @@ private:
     const bool isUpward_;
     const int groups_, pairs_; // pairs of columns
     // The scratch memory, from column or step 0 on
-    short *first_[Window::runs], *priorRow_[Window::runs], *firstOfColumn_[Window::runs];
-    uchar *const isContiguous_, *const slopes_, *const priors_, *const intoSide_, *const intoNext_;
+    short *first_[Window::runs], *distance_[Window::runs], *firstOfColumn_[Window::runs];
+    uchar *const isContiguous_, *const small_, *const nearer_, *const slopes_, *const large_, *const least_;
+    uchar *const priors_, *const intoSide_, *const intoNext_;
     const uchar* orders_[Window::runs]; // of a run, by the distance of the candidates
-    uchar priorTable_[2 * distances][Window::runLength];
 };
 
 } // namespace
