@@ -3,10 +3,11 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "light_alignment.hpp"
+#include "light_alignment.simd.hpp"
+#include "pair/light_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "image_levels.hpp"
 #include "../base/robust_fit.hpp"
-#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -23,6 +24,8 @@ HDP_TUNABLE(double, maxRestShare, 0.7, "share", "of that difference before the m
 HDP_TUNABLE(double, deviation, 0.3, "factor, or of white", "exposures differ by half a stop, and all else by no more");
 HDP_TUNABLE(double, rimDeviation, 1, "factor per fourth power of the width",
             "vignetting of the corners, where it is steep");
+
+HDP_DISPATCH(relightRow)
 
 typedef LightModel::Coefficients Coefficients;
 typedef FitSample<LightModel::terms> LevelPair; // a match: the basis of the right level, the left level
@@ -72,22 +75,22 @@ bool estimateLight(const CoarseMatches& coarse, LightModel& model)
 void alignLight(Mat& levels, const LightModel& model, const ImageFrame& frame)
 {
     const Coefficients& c = model.coefficients;
-    const float offset = (float)(c[7] * white), square = (float)(c[8] / white), cube = (float)(c[9] / (white * white));
-    const float step = 1.f / frame.whole.width, first = 0.5f * step - 0.5f, largest = (float)white;
-    const int origin = frame.origin.x, cols = levels.cols;
-    parallelFor(levels.rows, [=, &levels](int i) {
-        ushort* const row = levels.ptr<ushort>(i);
+    RowLight ofAll = RowLight();
+    ofAll.offset = (float)(c[7] * white);
+    ofAll.square = (float)(c[8] / white);
+    ofAll.cube = (float)(c[9] / (white * white));
+    ofAll.largest = (float)white;
+    ofAll.step = 1.f / frame.whole.width;
+    ofAll.first = 0.5f * ofAll.step - 0.5f;
+    ofAll.origin = frame.origin.x;
+    parallelFor(levels.rows, [&](int i) {
         const double y = (i + frame.origin.y + 0.5) / frame.whole.height - 0.5, y2 = y * y;
-        const float g0 = (float)(c[0] + c[2] * y + c[5] * y2 + c[6] * y2 * y2), g1 = (float)(c[1] + c[4] * y),
-                    g2 = (float)(c[3] + 2 * c[6] * y2), g4 = (float)c[6]; // of powers of x
-        HDP_VECTORIZED for (int k = 0; k < cols; ++k)
-        {
-            const float x = first + step * (float)(origin + k), r = (float)row[k];
-            const float x2 = x * x, gain = g0 + g1 * x + x2 * (g2 + g4 * x2);
-            const float value = offset + r * (gain + r * (square + r * cube)) + 0.5f;
-            const float low = value < 0 ? 0.f : value;
-            row[k] = (ushort)(int)(low > largest ? largest : low);
-        }
+        RowLight light = ofAll;
+        light.gain[0] = (float)(c[0] + c[2] * y + c[5] * y2 + c[6] * y2 * y2);
+        light.gain[1] = (float)(c[1] + c[4] * y);
+        light.gain[2] = (float)(c[3] + 2 * c[6] * y2);
+        light.gain[3] = (float)c[6];
+        dispatched::relightRow(light, levels.cols, levels.ptr<ushort>(i));
     });
 }
 

@@ -41,6 +41,15 @@ struct LightModel
     }
 };
 
+//! What gives a row of grey levels other light: of a level r at x = first + step * (origin + column), offset +
+//! r (gain[0] + gain[1] x + gain[2] x^2 + gain[3] x^4 + square r + cube r^2), at most largest
+struct RowLight
+{
+    float first, step;
+    int origin;
+    float gain[4], offset, square, cube, largest;
+};
+
 /** Finds how the light of the right image differs from that of the left one, from the mean levels around the matched
 corners of matchCoarsely().
 @param model Receives the model, the identity if the matches do not tell.
