@@ -10,6 +10,7 @@
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "../base/byte_lanes.simd.hpp"
 #include "scanline_windows.simd.hpp"
+#include "window_costs.simd.hpp"
 #endif
 
 namespace cv { namespace stereo { namespace hdp {
@@ -31,9 +32,6 @@ void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& strip
 namespace {
 
 typedef CandidateWindow Window;
-
-// Grey levels, four of which count as a bit: larger differences are other light or another surface
-const int maxContrast = 23;
 
 /** A sweep over a stripe. With the notation of aggregateScanlines(), and m the minimum of L(q, k) over k, a direction
 carries what a candidate saves against the large penalty, instead of its cost:
@@ -62,7 +60,7 @@ class Sweep
 public:
     Sweep(const ScanlineProblem& problem, bool isUpward, ScanlineScratch& scratch)
         : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), steps_(pairs_ + groups - 1),
-          planeStride_(problem.cost->planeStride()), zero_(ByteLanes::repeat(0)),
+          pixelCosts_(*problem.cost, width_), zero_(ByteLanes::repeat(0)),
           vertical_(alignPtr(scratch.vertical.data(), ScanlineScratch::alignment) +
                     ScanlineScratch::margin * Window::candidates),
           tables_(problem, isUpward, groups, scratch), windows_(0), upperRow_(-1), entersUpperRow_(false),
@@ -91,6 +89,7 @@ public:
     {
         enterRows(y);
         typedef void (Sweep::*Method)(UpwardStep, uchar*);
+        const int hasLimits = WindowCosts::hasLimits;
         static const Method all[] = { &Sweep::upward<1>, &Sweep::upward<2>, &Sweep::upward<3> };
         static const Method limited[] = { &Sweep::upward<hasLimits + 1>, &Sweep::upward<hasLimits + 2>,
                                           &Sweep::upward<hasLimits + 3> };
@@ -130,8 +129,7 @@ private:
     {
         groups = ByteLanes::groups,
         lanes = groups * Window::candidates,
-        margin = ScanlineScratch::margin,
-        hasLimits = 4 // a layout of the costs: the number of planes, and this if they are limited
+        margin = ScanlineScratch::margin
     };
     static_assert(groups <= (int)ScanlineScratch::maxBlock, "the scratch memory is for larger blocks");
 
@@ -152,13 +150,7 @@ private:
         {
             const int inBlock = y + groups - 1 - r, row = std::min(inBlock, lastRow);
             const int edgeRow = std::max(std::min(row, row + forward), 0); // its edges below lead to the next row
-            left_[r] = p_.cost->leftPixels(row);
-            right_[r] = p_.cost->rightPlane(0, row) + width_ - 1;
-            if (!p_.cost->limits().isEmpty())
-            {
-                leftLimits_[r] = p_.cost->limits().left(row);
-                rightLimits_[r] = p_.cost->limits().right(row) + width_ - 1;
-            }
+            pixelCosts_.enterRow(r, row);
             weighScanlineEdges(p_.weights->ptr(row), p_.weights->ptr(edgeRow), tables_.edgePenalties(), width_,
                                p_.penalties.edgeNoise, edges_[r]);
             if (isUpward_ && inBlock > lastRow) // nothing comes from there
@@ -182,72 +174,6 @@ private:
         for (int r = 0; r < groups; ++r)
             small[r] = tables_.small(step - r);
         return ByteLanes::repeatByte<0>(small);
-    }
-
-    //! The candidates' costs C(p, d) + ScanlinePenalties::max at both columns of a step
-    template <int layout> CV_ALWAYS_INLINE void costs(int step, ByteLanes (&cost)[2]) const
-    {
-        const int planes = layout & (hasLimits - 1);
-        const uchar *left[groups], *low[groups];
-        for (int r = 0; r < groups; ++r)
-        {
-            const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
-            left[r] = left_[r] + 4 * x;
-            low[r] = right_[r] - x + tables_.first(0, step - r);
-        }
-        const ByteLanes prior = ByteLanes::load(tables_.prior(step));
-        if (tables_.isContiguous(step))
-        {
-            const auto load = [&](ptrdiff_t offset) { return ByteLanes::load(low, offset); };
-            cost[0] = costs<planes, 0>(left, load);
-            cost[1] = costs<planes, 1>(left, load);
-        }
-        else
-        {
-            const uchar* high[groups];
-            for (int r = 0; r < groups; ++r)
-                high[r] = right_[r] - 2 * (ptrdiff_t)(step - r) + tables_.first(1, step - r);
-            const auto load = [&](ptrdiff_t offset) { return ByteLanes::loadHalves(low, high, offset); };
-            cost[0] = costs<planes, 0>(left, load);
-            cost[1] = costs<planes, 1>(left, load);
-        }
-        if (layout & hasLimits)
-            limit(step, cost);
-        cost[0] = prior + cost[0];
-        cost[1] = prior + cost[1];
-    }
-
-    //! Limits the costs at both columns of a step, see CostLimits.
-    CV_ALWAYS_INLINE void limit(int step, ByteLanes (&cost)[2]) const
-    {
-        const uchar *left[groups], *low[groups], *high[groups];
-        for (int r = 0; r < groups; ++r)
-        {
-            const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
-            left[r] = leftLimits_[r] + x;
-            low[r] = rightLimits_[r] - x + tables_.first(0, step - r);
-            high[r] = rightLimits_[r] - x + tables_.first(1, step - r);
-        }
-        cost[0] = cost[0].min(ByteLanes::repeatByte<0>(left)).min(ByteLanes::loadHalves(low, high, 0));
-        cost[1] = cost[1].min(ByteLanes::repeatByte<1>(left)).min(ByteLanes::loadHalves(low, high, -1));
-    }
-
-    //! At one column, but for the prior; load: gives the candidates of a plane.
-    template <int planes, int column, class Load>
-    CV_ALWAYS_INLINE ByteLanes costs(const uchar* const (&left)[groups], const Load& load) const
-    {
-        const int at = 4 * column;
-        const auto ofPlane = [&](int plane) { return load((ptrdiff_t)(plane * planeStride_) - column); };
-        const ByteLanes grey = ByteLanes::repeatByte<at + CensusCost::greyByte>(left), candidates = ofPlane(planes);
-        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(maxContrast)).quarter();
-        const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ofPlane(0);
-        if (planes == 1)
-            return contrast + first.countBits();
-        const ByteLanes second = ByteLanes::repeatByte<at + 1>(left) ^ ofPlane(1);
-        if (planes == 2)
-            return contrast + first.countBits() + second.countBits();
-        const ByteLanes third = ByteLanes::repeatByte<at + 2>(left) ^ ofPlane(2);
-        return contrast + ByteLanes::countBits(first, second, third);
     }
 
     //! L(p, d) - m of a direction; cost: C(p, d) + ScanlinePenalties::max; h: H of the pixel before, which becomes that
@@ -284,7 +210,7 @@ private:
         ByteLanes h = zero_, before[2] = { zero_, zero_ }, cost[2];
         for (int t = 0; t < steps_; ++t)
         {
-            costs<layout>(t, cost);
+            pixelCosts_.of<layout>(tables_, t, cost);
             const ByteLanes small = smallPenalty(t);
             ByteLanes sum[2] = { zero_, zero_ };
             if (upwardStep != STORE_COSTS)
@@ -418,7 +344,7 @@ private:
 
     const ScanlineProblem& p_;
     const int width_, pairs_, steps_; // columns, pairs of them, and steps over all groups
-    const size_t planeStride_;        // from a plane of the cost to the next
+    WindowCosts pixelCosts_;
     const ByteLanes zero_;
     // The scratch memory, from column 0 on
     uchar* const vertical_; // H of the row before the block
@@ -429,7 +355,6 @@ private:
     int upperRow_;          // that row
     bool entersUpperRow_;   // whether it is not that of the block before
     const bool isUpward_;
-    const uchar *left_[groups], *right_[groups], *leftLimits_[groups], *rightLimits_[groups];
 };
 
 } // namespace

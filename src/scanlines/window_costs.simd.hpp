@@ -1,0 +1,122 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set, as the *.simd.hpp that include it: no include guard.
+#include "scanline_aggregation.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+namespace {
+
+// Grey levels, four of which count as a bit: larger differences are other light or another surface
+const int maxContrast = 23;
+
+//! C(p, d) of aggregateScanlines() for the pixels of a block of rows, as a Sweep enters them
+class WindowCosts
+{
+public:
+    enum
+    {
+        hasLimits = 4 // a layout of the costs: the number of planes, and this if they are limited
+    };
+
+    WindowCosts(const CensusCost& cost, int width)
+        : cost_(cost), planeStride_(cost.planeStride()), lastColumn_(width - 1)
+    {
+    }
+
+    //! The row of a group
+    void enterRow(int group, int row)
+    {
+        left_[group] = cost_.leftPixels(row);
+        right_[group] = cost_.rightPlane(0, row) + lastColumn_;
+        if (cost_.limits().isEmpty())
+            return;
+        leftLimits_[group] = cost_.limits().left(row);
+        rightLimits_[group] = cost_.limits().right(row) + lastColumn_;
+    }
+
+    //! Those of the candidates at both columns of a step, and ScanlinePenalties::max
+    template <int layout> CV_ALWAYS_INLINE void of(const ScanlineWindows& windows, int step, ByteLanes (&cost)[2]) const
+    {
+        const int planes = layout & (hasLimits - 1);
+        const uchar *left[groups], *low[groups];
+        for (int r = 0; r < groups; ++r)
+        {
+            const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
+            left[r] = left_[r] + 4 * x;
+            low[r] = right_[r] - x + windows.first(0, step - r);
+        }
+        const ByteLanes prior = ByteLanes::load(windows.prior(step));
+        if (windows.isContiguous(step))
+        {
+            const auto load = [&](ptrdiff_t offset) { return ByteLanes::load(low, offset); };
+            cost[0] = costs<planes, 0>(left, load);
+            cost[1] = costs<planes, 1>(left, load);
+        }
+        else
+        {
+            const uchar* high[groups];
+            for (int r = 0; r < groups; ++r)
+                high[r] = right_[r] - 2 * (ptrdiff_t)(step - r) + windows.first(1, step - r);
+            const auto load = [&](ptrdiff_t offset) { return ByteLanes::loadHalves(low, high, offset); };
+            cost[0] = costs<planes, 0>(left, load);
+            cost[1] = costs<planes, 1>(left, load);
+        }
+        if (layout & hasLimits)
+            limit(windows, step, cost);
+        cost[0] = prior + cost[0];
+        cost[1] = prior + cost[1];
+    }
+
+private:
+    enum
+    {
+        groups = ByteLanes::groups
+    };
+
+    //! Limits the costs at both columns of a step, see CostLimits.
+    CV_ALWAYS_INLINE void limit(const ScanlineWindows& windows, int step, ByteLanes (&cost)[2]) const
+    {
+        const uchar *left[groups], *low[groups], *high[groups];
+        for (int r = 0; r < groups; ++r)
+        {
+            const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
+            left[r] = leftLimits_[r] + x;
+            low[r] = rightLimits_[r] - x + windows.first(0, step - r);
+            high[r] = rightLimits_[r] - x + windows.first(1, step - r);
+        }
+        cost[0] = cost[0].min(ByteLanes::repeatByte<0>(left)).min(ByteLanes::loadHalves(low, high, 0));
+        cost[1] = cost[1].min(ByteLanes::repeatByte<1>(left)).min(ByteLanes::loadHalves(low, high, -1));
+    }
+
+    //! At one column, but for the prior; load: gives the candidates of a plane.
+    template <int planes, int column, class Load>
+    CV_ALWAYS_INLINE ByteLanes costs(const uchar* const (&left)[groups], const Load& load) const
+    {
+        const int at = 4 * column;
+        const auto ofPlane = [&](int plane) { return load((ptrdiff_t)(plane * planeStride_) - column); };
+        const ByteLanes grey = ByteLanes::repeatByte<at + CensusCost::greyByte>(left), candidates = ofPlane(planes);
+        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(maxContrast)).quarter();
+        const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ofPlane(0);
+        if (planes == 1)
+            return contrast + first.countBits();
+        const ByteLanes second = ByteLanes::repeatByte<at + 1>(left) ^ ofPlane(1);
+        if (planes == 2)
+            return contrast + first.countBits() + second.countBits();
+        const ByteLanes third = ByteLanes::repeatByte<at + 2>(left) ^ ofPlane(2);
+        return contrast + ByteLanes::countBits(first, second, third);
+    }
+
+    const CensusCost& cost_;
+    const size_t planeStride_; // from a plane of the cost to the next
+    const int lastColumn_;
+    const uchar *left_[groups], *right_[groups], *leftLimits_[groups], *rightLimits_[groups];
+};
+
+} // namespace
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}}} // namespace cv::stereo::hdp
