@@ -322,6 +322,7 @@ TEST(HDPStereo_Plan, whole_range_of_coarse_layers)
             const hdp::LayerPlan followed = hdp::adapt(plan, hdp::PairFindings(), { hdp::CONTINUED, true }).layers[i];
             EXPECT_EQ(isWhole, layer.rangePenalties.maxPrior < followed.rangePenalties.maxPrior)
                 << "many frames know more";
+            EXPECT_EQ(isWhole, layer.leastSmoothness == followed.leastSmoothness) << "likewise";
         }
     }
 }
@@ -402,6 +403,7 @@ TEST(HDPStereo_Plan, adapts_to_a_video)
             {
                 adapted.layers[i].cost.tolerance = alone.layers[i].cost.tolerance;
                 adapted.layers[i].rangePenalties.maxPrior = alone.layers[i].rangePenalties.maxPrior;
+                adapted.layers[i].leastSmoothness = alone.layers[i].leastSmoothness;
             }
             EXPECT_EQ(textOf(alone), textOf(adapted)) << "else as a single frame";
         }

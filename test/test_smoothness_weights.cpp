@@ -33,11 +33,11 @@ double expectedWeight(const Mat& upper, const Mat& residual, Point p)
     return std::min(std::max(-std::log(std::min(q + 0.001, 1.)) / (7.3 * evidence), 0.4), 1.8);
 }
 
-Mat weightsOf(const Mat& upper, const Mat& residual)
+Mat weightsOf(const Mat& upper, const Mat& residual, int least = hdp::SmoothnessWeight::min)
 {
     hdp::SmoothnessBuffers buffers;
     Mat weights;
-    hdp::weighSmoothness(upper, residual, bits, buffers, weights);
+    hdp::weighSmoothness(upper, residual, bits, least, buffers, weights);
     EXPECT_EQ(upper.size(), weights.size());
     EXPECT_EQ(CV_8UC1, weights.type());
     return weights;
@@ -87,6 +87,7 @@ TEST(HDPStereo_SmoothnessWeights, rise_with_residuals_and_fall_with_steps)
     EXPECT_LT(weightOf(3), weightOf(4));
     EXPECT_DOUBLE_EQ(+hdp::SmoothnessWeight::max / 64., weightOf(12)); // chance
     const Mat residual(60, 60, CV_8UC1, Scalar(3));
+    EXPECT_EQ(100, weightsOf(Mat(9, 9, CV_16UC1, Scalar(0)), Mat(9, 9, CV_8UC1, Scalar(0)), 100).at<uchar>(4, 4));
     Mat upper(60, 60, CV_16UC1, Scalar(160));
     int last = weightsOf(upper, residual).at<uchar>(30, 30);
     for (int columns : { 20, 12, 7, 4 }) // between steps

@@ -319,8 +319,11 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
     PairPlan adapted = plan;
     for (LayerPlan& layer : adapted.layers)
     {
+        // With what the last frame predicts, the layer above has its disparities from many frames.
         if (video.hasPrior && layer.method == RANGE_SCANLINES)
-            layer.rangePenalties.maxPrior = RangePenalties::maxMaxPrior; // the layer above has it from many frames
+            layer.rangePenalties.maxPrior = RangePenalties::maxMaxPrior;
+        if (video.hasPrior && layer.method == WINDOW_SCANLINES)
+            layer.leastSmoothness = SmoothnessWeight::one;
         if (layer.cost.isCensus)
             layer.cost.tolerance = censusTolerance(layer, findings.noise, video.hasPrior);
         for (ScanlinePenalties& penalties : layer.passes)

@@ -51,7 +51,8 @@ void tabulateInverseEvidence(int bits, std::vector<ushort>& inverseEvidence)
 
 } // namespace
 
-void weighSmoothness(const Mat& upper, const Mat& residual, int bits, SmoothnessBuffers& buffers, Mat& weights)
+void weighSmoothness(const Mat& upper, const Mat& residual, int bits, int least, SmoothnessBuffers& buffers,
+                     Mat& weights)
 {
     buffers.matched.create(upper.size(), CV_8U);
     buffers.breaks.create(upper.size(), CV_8U);
@@ -72,8 +73,7 @@ void weighSmoothness(const Mat& upper, const Mat& residual, int bits, Smoothness
         for (int x = 0; x < upper.cols; ++x)
         {
             const int product = stepCosts[breaks[x]] * inverseEvidence[matched[x] >> sumBits];
-            weight[x] = (uchar)clamped(product / (productUnit / SmoothnessWeight::one), +SmoothnessWeight::min,
-                                       +SmoothnessWeight::max);
+            weight[x] = (uchar)clamped(product / (productUnit / SmoothnessWeight::one), least, +SmoothnessWeight::max);
         }
     });
 }
