@@ -35,8 +35,8 @@ double expectedWeight(const Mat& upper, const Mat& residual, Point p)
 
 Mat weightsOf(const Mat& upper, const Mat& residual, int least = hdp::SmoothnessWeight::min)
 {
-    hdp::SmoothnessBuffers buffers;
     Mat weights;
+    hdp::SmoothnessBuffers buffers;
     hdp::weighSmoothness(upper, residual, bits, least, buffers, weights);
     EXPECT_EQ(upper.size(), weights.size());
     EXPECT_EQ(CV_8UC1, weights.type());

@@ -5,7 +5,6 @@
 #include "smoothness_weights.hpp"
 #include "smoothness_weights.simd.hpp"
 #include "scanlines/smoothness_weights.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/window_sums.hpp"
 
 #include <cmath>
 
@@ -22,58 +21,82 @@ HDP_TUNABLE(double, leastShare, 0.001, "share of neighbours",
 
 HDP_DISPATCH(findTermsOfRow)
 
+const int stripeHeight = 64; // rows that are in the caches at once: fewer find the rows between stripes more often
+
 // Units of the tables: residuals in the sum of a window, parts of what is in them
 const int sumBits = 7, stepUnit = 256, evidenceUnit = 4096, productUnit = stepUnit * evidenceUnit;
 
 int windowSide() { return 2 * windowRadius + 1; }
 
 //! What a step costs, -ln(q + least), by the number of breaks in a window
-void tabulateStepCosts(std::vector<ushort>& stepCosts)
+std::vector<ushort> stepCosts()
 {
     const int edges = 2 * windowSide() * windowSide();
-    stepCosts.resize(edges + 1);
+    std::vector<ushort> costs(edges + 1);
     for (int breaks = 0; breaks <= edges; ++breaks)
-        stepCosts[breaks] =
-            saturate_cast<ushort>(stepUnit * -std::log(std::min((double)breaks / edges + leastShare, 1.)));
+        costs[breaks] = saturate_cast<ushort>(stepUnit * -std::log(std::min((double)breaks / edges + leastShare, 1.)));
+    return costs;
 }
 
 //! 1 / (typical * evidence(r)), by the sum of the residuals in a window
-void tabulateInverseEvidence(int bits, std::vector<ushort>& inverseEvidence)
+std::vector<ushort> inverseEvidence(int bits)
 {
     const double pixels = windowSide() * windowSide(), half = 1 << (sumBits - 1);
-    inverseEvidence.resize((int)(pixels * (bits / 2)) / (1 << sumBits) + 1);
-    for (size_t i = 0; i < inverseEvidence.size(); ++i)
+    std::vector<ushort> inverse((int)(pixels * (bits / 2)) / (1 << sumBits) + 1);
+    for (size_t i = 0; i < inverse.size(); ++i)
     {
         const double r = std::min((i * (1 << sumBits) + half) / (pixels * bits), 0.45); // of chance, nearly
-        inverseEvidence[i] = saturate_cast<ushort>(evidenceUnit / (typical * (0.5 - r) * std::log((1 - r) / r)));
+        inverse[i] = saturate_cast<ushort>(evidenceUnit / (typical * (0.5 - r) * std::log((1 - r) / r)));
     }
+    return inverse;
 }
+
+//! The costs and the breaks of a layer in the windows around some of its rows
+struct WindowTerms
+{
+    Mat matchedSums, breakSums;
+
+    WindowTerms(const Mat& upper, const Mat& residual, int bits, const Range& rows, SmoothnessScratch& scratch)
+    {
+        const Range seen(std::max(rows.start - windowRadius, 0), std::min(rows.end + windowRadius, upper.rows));
+        const int cols = upper.cols;
+        Mat matched(seen.size(), cols, CV_8U, grown(scratch.matched, (size_t)seen.size() * cols));
+        Mat breaks(seen.size(), cols, CV_8U, grown(scratch.breaks, (size_t)seen.size() * cols));
+        for (int y = seen.start; y < seen.end; ++y)
+            dispatched::findTermsOfRow(upper.ptr<ushort>(y), upper.ptr<ushort>(std::min(y + 1, upper.rows - 1)),
+                                       residual.ptr(y), cols, bits, matched.ptr(y - seen.start),
+                                       breaks.ptr(y - seen.start));
+        const Range own = rows - seen.start; // the filter finds those beside it
+        matchedSums = Mat(own.size(), cols, CV_16U, grown(scratch.matchedSums, (size_t)own.size() * cols));
+        breakSums = Mat(own.size(), cols, CV_16U, grown(scratch.breakSums, (size_t)own.size() * cols));
+        const Size window(windowSide(), windowSide());
+        boxFilter(matched.rowRange(own), matchedSums, CV_16U, window, Point(-1, -1), false, BORDER_REPLICATE);
+        boxFilter(breaks.rowRange(own), breakSums, CV_16U, window, Point(-1, -1), false, BORDER_REPLICATE);
+    }
+};
 
 } // namespace
 
 void weighSmoothness(const Mat& upper, const Mat& residual, int bits, int least, SmoothnessBuffers& buffers,
                      Mat& weights)
 {
-    buffers.matched.create(upper.size(), CV_8U);
-    buffers.breaks.create(upper.size(), CV_8U);
-    parallelFor(upper.rows, [&](int y) {
-        dispatched::findTermsOfRow(upper.ptr<ushort>(y), upper.ptr<ushort>(std::min(y + 1, upper.rows - 1)),
-                                   residual.ptr(y), upper.cols, bits, buffers.matched.ptr(y), buffers.breaks.ptr(y));
-    });
-    sumOverWindows(buffers.matched, windowSide(), CV_16U, buffers.matchedSums);
-    sumOverWindows(buffers.breaks, windowSide(), CV_16U, buffers.breakSums);
-    tabulateStepCosts(buffers.stepCosts);
-    tabulateInverseEvidence(bits, buffers.inverseEvidence);
+    const std::vector<ushort> steps = stepCosts(), inverse = inverseEvidence(bits);
     weights.create(upper.size(), CV_8U);
-    const ushort *const stepCosts = buffers.stepCosts.data(), *const inverseEvidence = buffers.inverseEvidence.data();
-    parallelFor(upper.rows, [&](int y) {
-        const ushort* const matched = buffers.matchedSums.ptr<ushort>(y);
-        const ushort* const breaks = buffers.breakSums.ptr<ushort>(y);
-        uchar* const weight = weights.ptr(y);
-        for (int x = 0; x < upper.cols; ++x)
+    const int stripes = (upper.rows + stripeHeight - 1) / stripeHeight;
+    parallelFor(stripes, [&](int i) {
+        const Range rows(i * stripeHeight, std::min((i + 1) * stripeHeight, upper.rows));
+        const WindowTerms terms(upper, residual, bits, rows, buffers.getRef());
+        for (int y = rows.start; y < rows.end; ++y)
         {
-            const int product = stepCosts[breaks[x]] * inverseEvidence[matched[x] >> sumBits];
-            weight[x] = (uchar)clamped(product / (productUnit / SmoothnessWeight::one), least, +SmoothnessWeight::max);
+            const ushort* const matched = terms.matchedSums.ptr<ushort>(y - rows.start);
+            const ushort* const breaks = terms.breakSums.ptr<ushort>(y - rows.start);
+            uchar* const weight = weights.ptr(y);
+            for (int x = 0; x < upper.cols; ++x)
+            {
+                const int product = steps[breaks[x]] * inverse[matched[x] >> sumBits];
+                weight[x] =
+                    (uchar)clamped(product / (productUnit / SmoothnessWeight::one), least, +SmoothnessWeight::max);
+            }
         }
     });
 }

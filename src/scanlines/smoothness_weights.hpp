@@ -4,6 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_SMOOTHNESS_WEIGHTS_HPP
 #define OPENCV_HDPSTEREO_SMOOTHNESS_WEIGHTS_HPP
 
+#include "opencv2/core/utils/tls.hpp"
 #include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -19,12 +20,14 @@ struct SmoothnessWeight
     };
 };
 
-//! Memory of weighSmoothness()
-struct SmoothnessBuffers
+//! Memory of a thread
+struct SmoothnessScratch
 {
-    Mat matched, breaks, matchedSums, breakSums;
-    std::vector<ushort> stepCosts, inverseEvidence;
+    std::vector<uchar> matched, breaks;
+    std::vector<ushort> matchedSums, breakSums;
 };
+
+typedef TLSData<SmoothnessScratch> SmoothnessBuffers;
 
 /** Weighs smoothness against matching costs, by what the layer above has of both around each of its pixels
 @cite Zhang2007Parameters :
