@@ -270,7 +270,7 @@ private:
         result_.searchRatio = windowed / plan_.numDisparities;
         clock_.run("cost aggregation", [&] {
             weighEdges(guide(), own_.edgeWeights);
-            weighSmoothness(in_.upper->disparity, in_.upper->residual, own_.census.comparisons(), plan_.leastSmoothness,
+            weighSmoothness(in_.upper->disparity, in_.upper->residual, own_.census.comparisons(), plan_.smoothness,
                             shared_.smoothness, own_.smoothness);
         });
         for (const ScanlinePenalties& penalties : plan_.passes)

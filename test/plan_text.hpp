@@ -29,10 +29,10 @@ inline std::string textOf(const hdp::LayerPlan& p)
     for (const hdp::ScanlinePenalties& pass : p.passes)
         text << " [" << pass.small << " " << pass.large << " slopes " << pass.edgeSlope << " " << pass.borderSlope
              << " prior " << pass.prior << " nearer " << pass.nearer << " noise " << pass.edgeNoise << "]";
-    text << " smoothness " << p.leastSmoothness << "\n  checks last frame " << p.checksLastFrame << " prefers it "
-         << p.prefersLastFrame << " fills " << p.fillsOcclusions << " median " << p.medianSize << " thin structures "
-         << p.restoresThinStructures << " votes " << p.votesAtEdges << " smooths " << p.surfaceDifference << " noise "
-         << p.noise << "\n";
+    text << " smoothness " << p.smoothness.radius << " " << p.smoothness.least << " " << p.smoothness.most
+         << "\n  checks last frame " << p.checksLastFrame << " prefers it " << p.prefersLastFrame << " fills "
+         << p.fillsOcclusions << " median " << p.medianSize << " thin structures " << p.restoresThinStructures
+         << " votes " << p.votesAtEdges << " smooths " << p.surfaceDifference << " noise " << p.noise << "\n";
     return text.str();
 }
 

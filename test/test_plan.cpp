@@ -322,7 +322,10 @@ TEST(HDPStereo_Plan, whole_range_of_coarse_layers)
             const hdp::LayerPlan followed = hdp::adapt(plan, hdp::PairFindings(), { hdp::CONTINUED, true }).layers[i];
             EXPECT_EQ(isWhole, layer.rangePenalties.maxPrior < followed.rangePenalties.maxPrior)
                 << "many frames know more";
-            EXPECT_EQ(isWhole, layer.leastSmoothness == followed.leastSmoothness) << "likewise";
+            EXPECT_EQ(isWhole, layer.smoothness.least == followed.smoothness.least) << "likewise";
+            EXPECT_EQ(isWhole ? 1 : 12 >> layer.layer, layer.smoothness.radius) << "one size in the image";
+            EXPECT_EQ(layer.isFinest, layer.smoothness.least == +hdp::SmoothnessWeight::min);
+            EXPECT_EQ(layer.isFinest, layer.smoothness.most == +hdp::SmoothnessWeight::max);
         }
     }
 }
@@ -403,7 +406,7 @@ TEST(HDPStereo_Plan, adapts_to_a_video)
             {
                 adapted.layers[i].cost.tolerance = alone.layers[i].cost.tolerance;
                 adapted.layers[i].rangePenalties.maxPrior = alone.layers[i].rangePenalties.maxPrior;
-                adapted.layers[i].leastSmoothness = alone.layers[i].leastSmoothness;
+                adapted.layers[i].smoothness = alone.layers[i].smoothness;
             }
             EXPECT_EQ(textOf(alone), textOf(adapted)) << "else as a single frame";
         }

@@ -37,7 +37,7 @@ Mat weightsOf(const Mat& upper, const Mat& residual, int least = hdp::Smoothness
 {
     Mat weights;
     hdp::SmoothnessBuffers buffers;
-    hdp::weighSmoothness(upper, residual, bits, least, buffers, weights);
+    hdp::weighSmoothness(upper, residual, bits, { side / 2, least, hdp::SmoothnessWeight::max }, buffers, weights);
     EXPECT_EQ(upper.size(), weights.size());
     EXPECT_EQ(CV_8UC1, weights.type());
     return weights;

@@ -68,6 +68,11 @@ HDP_TUNABLE(int, firstPrior, 1, "bits per 2 pixels",
             "from the layer above, which may be wrong: more cannot be repaired, less loses bare surfaces");
 HDP_TUNABLE(int, laterPrior, 2, "bits per 2 pixels", "from the pass before, which knows more than the layer above");
 
+HDP_TUNABLE(
+    int, smoothnessRadius, 12, "pixels of the layer above",
+    "of the window that smoothness is weighed in, on the first layer: more mixes surfaces that differ, less counts "
+    "too few steps");
+
 HDP_TUNABLE(double, surfaceDifference, 1.25, "pixels",
             "of the disparities of a surface: less leaves its noise, more rounds small steps");
 
@@ -210,6 +215,16 @@ std::vector<ScanlinePenalties> planPasses(const MatcherParameters& p, bool isFin
     return passes;
 }
 
+//! The window is the same in pixels of the image on each layer. What only predicts another layer is left nearer to what
+//! is usual: that one cannot do without what it loses.
+SmoothnessPlan planSmoothness(const LayerPlan& layer)
+{
+    const int one = SmoothnessWeight::one, radius = std::max(smoothnessRadius >> layer.layer, 1);
+    if (layer.isFinest)
+        return { radius, SmoothnessWeight::min, SmoothnessWeight::max };
+    return { radius, one * 3 / 4, one * 5 / 4 };
+}
+
 LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers, int finest)
 {
     LayerPlan plan;
@@ -226,7 +241,10 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     if (plan.seesBelow)
         plan.numDisparities = layerDisparities(p.numDisparities, layer - 1, false);
     if (plan.method == WINDOW_SCANLINES)
+    {
         plan.passes = planPasses(p, plan.isFinest);
+        plan.smoothness = planSmoothness(plan);
+    }
     else
         plan.smoothsGuide = p.useMedianPrefilter;
     if (plan.method == TREE_SUMS || plan.method == TREE_SCANLINES)
@@ -323,7 +341,7 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
         if (video.hasPrior && layer.method == RANGE_SCANLINES)
             layer.rangePenalties.maxPrior = RangePenalties::maxMaxPrior;
         if (video.hasPrior && layer.method == WINDOW_SCANLINES)
-            layer.leastSmoothness = SmoothnessWeight::one;
+            layer.smoothness.least = SmoothnessWeight::one;
         if (layer.cost.isCensus)
             layer.cost.tolerance = censusTolerance(layer, findings.noise, video.hasPrior);
         for (ScanlinePenalties& penalties : layer.passes)

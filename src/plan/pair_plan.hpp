@@ -77,10 +77,10 @@ struct LayerPlan
     TreePlan trees;
     VolumePenalties volumePenalties = { 0, 0, 0 };
     RangePenalties rangePenalties = { 0, 0, 0, 0, 1, 0 };
-    std::vector<ScanlinePenalties> passes;       // of scanlines over windows
-    int leastSmoothness = SmoothnessWeight::min; // that weighs these
-    bool checksLastFrame = false;                // whether the pair's own costs may refuse the last frame
-    bool prefersLastFrame = false;               // whether what the last frame predicts has lower costs
+    std::vector<ScanlinePenalties> passes; // of scanlines over windows, and how these are weighed
+    SmoothnessPlan smoothness = { 1, SmoothnessWeight::one, SmoothnessWeight::one };
+    bool checksLastFrame = false;  // whether the pair's own costs may refuse the last frame
+    bool prefersLastFrame = false; // whether what the last frame predicts has lower costs
     bool fillsOcclusions = false;
     int medianSize = 0; // of the median over the winners; 0: none
     bool restoresThinStructures = false;

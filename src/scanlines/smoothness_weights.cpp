@@ -12,8 +12,6 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(int, windowRadius, 12, "pixels of the upper layer",
-            "of the window: more mixes surfaces that differ, less counts too few steps");
 HDP_TUNABLE(double, typical, 7.3, "natural logarithms per logarithm",
             "of pairs that the penalties are right for as they are: more loses bare surfaces, less loses details");
 HDP_TUNABLE(double, leastShare, 0.001, "share of neighbours",
@@ -26,12 +24,12 @@ const int stripeHeight = 64; // rows that are in the caches at once: fewer find 
 // Units of the tables: residuals in the sum of a window, parts of what is in them
 const int sumBits = 7, stepUnit = 256, evidenceUnit = 4096, productUnit = stepUnit * evidenceUnit;
 
-int windowSide() { return 2 * windowRadius + 1; }
+int sideOf(int radius) { return 2 * radius + 1; }
 
 //! What a step costs, -ln(q + least), by the number of breaks in a window
-std::vector<ushort> stepCosts()
+std::vector<ushort> stepCosts(int radius)
 {
-    const int edges = 2 * windowSide() * windowSide();
+    const int edges = 2 * sideOf(radius) * sideOf(radius);
     std::vector<ushort> costs(edges + 1);
     for (int breaks = 0; breaks <= edges; ++breaks)
         costs[breaks] = saturate_cast<ushort>(stepUnit * -std::log(std::min((double)breaks / edges + leastShare, 1.)));
@@ -39,9 +37,9 @@ std::vector<ushort> stepCosts()
 }
 
 //! 1 / (typical * evidence(r)), by the sum of the residuals in a window
-std::vector<ushort> inverseEvidence(int bits)
+std::vector<ushort> inverseEvidence(int radius, int bits)
 {
-    const double pixels = windowSide() * windowSide(), half = 1 << (sumBits - 1);
+    const double pixels = sideOf(radius) * sideOf(radius), half = 1 << (sumBits - 1);
     std::vector<ushort> inverse((int)(pixels * (bits / 2)) / (1 << sumBits) + 1);
     for (size_t i = 0; i < inverse.size(); ++i)
     {
@@ -56,9 +54,10 @@ struct WindowTerms
 {
     Mat matchedSums, breakSums;
 
-    WindowTerms(const Mat& upper, const Mat& residual, int bits, const Range& rows, SmoothnessScratch& scratch)
+    WindowTerms(const Mat& upper, const Mat& residual, int bits, int radius, const Range& rows,
+                SmoothnessScratch& scratch)
     {
-        const Range seen(std::max(rows.start - windowRadius, 0), std::min(rows.end + windowRadius, upper.rows));
+        const Range seen(std::max(rows.start - radius, 0), std::min(rows.end + radius, upper.rows));
         const int cols = upper.cols;
         Mat matched(seen.size(), cols, CV_8U, grown(scratch.matched, (size_t)seen.size() * cols));
         Mat breaks(seen.size(), cols, CV_8U, grown(scratch.breaks, (size_t)seen.size() * cols));
@@ -69,7 +68,7 @@ struct WindowTerms
         const Range own = rows - seen.start; // the filter finds those beside it
         matchedSums = Mat(own.size(), cols, CV_16U, grown(scratch.matchedSums, (size_t)own.size() * cols));
         breakSums = Mat(own.size(), cols, CV_16U, grown(scratch.breakSums, (size_t)own.size() * cols));
-        const Size window(windowSide(), windowSide());
+        const Size window(sideOf(radius), sideOf(radius));
         boxFilter(matched.rowRange(own), matchedSums, CV_16U, window, Point(-1, -1), false, BORDER_REPLICATE);
         boxFilter(breaks.rowRange(own), breakSums, CV_16U, window, Point(-1, -1), false, BORDER_REPLICATE);
     }
@@ -77,15 +76,16 @@ struct WindowTerms
 
 } // namespace
 
-void weighSmoothness(const Mat& upper, const Mat& residual, int bits, int least, SmoothnessBuffers& buffers,
-                     Mat& weights)
+void weighSmoothness(const Mat& upper, const Mat& residual, int bits, const SmoothnessPlan& plan,
+                     SmoothnessBuffers& buffers, Mat& weights)
 {
-    const std::vector<ushort> steps = stepCosts(), inverse = inverseEvidence(bits);
+    const std::vector<ushort> steps = stepCosts(plan.radius), inverse = inverseEvidence(plan.radius, bits);
+    const int unit = productUnit / SmoothnessWeight::one;
     weights.create(upper.size(), CV_8U);
     const int stripes = (upper.rows + stripeHeight - 1) / stripeHeight;
     parallelFor(stripes, [&](int i) {
         const Range rows(i * stripeHeight, std::min((i + 1) * stripeHeight, upper.rows));
-        const WindowTerms terms(upper, residual, bits, rows, buffers.getRef());
+        const WindowTerms terms(upper, residual, bits, plan.radius, rows, buffers.getRef());
         for (int y = rows.start; y < rows.end; ++y)
         {
             const ushort* const matched = terms.matchedSums.ptr<ushort>(y - rows.start);
@@ -94,8 +94,7 @@ void weighSmoothness(const Mat& upper, const Mat& residual, int bits, int least,
             for (int x = 0; x < upper.cols; ++x)
             {
                 const int product = steps[breaks[x]] * inverse[matched[x] >> sumBits];
-                weight[x] =
-                    (uchar)clamped(product / (productUnit / SmoothnessWeight::one), least, +SmoothnessWeight::max);
+                weight[x] = (uchar)clamped(product / unit, plan.least, plan.most);
             }
         }
     });

@@ -20,6 +20,12 @@ struct SmoothnessWeight
     };
 };
 
+//! How smoothness is weighed: the radius of the windows in pixels of the layer above, at least 1, and limits of the weights
+struct SmoothnessPlan
+{
+    int radius, least, most;
+};
+
 //! Memory of a thread
 struct SmoothnessScratch
 {
@@ -41,11 +47,11 @@ are large, penalties count more; where bits agree, or surfaces are many, they co
 @param upper The disparities of the layer above, CV_16UC1, a disparity map.
 @param residual The costs of its winners, CV_8UC1; UCHAR_MAX: a pixel without data.
 @param bits That a cost is the number of.
-@param least The least weight, of SmoothnessWeight::min or more.
+@param plan The windows, and limits from SmoothnessWeight::min to SmoothnessWeight::max.
 @param buffers Memory to work in.
 @param weights Receives CV_8UC1, a SmoothnessWeight per pixel of the layer above. */
-CV_EXPORTS void weighSmoothness(const Mat& upper, const Mat& residual, int bits, int least, SmoothnessBuffers& buffers,
-                                Mat& weights);
+CV_EXPORTS void weighSmoothness(const Mat& upper, const Mat& residual, int bits, const SmoothnessPlan& plan,
+                                SmoothnessBuffers& buffers, Mat& weights);
 
 }}} // namespace cv::stereo::hdp
 
