@@ -276,12 +276,19 @@ TEST(HDPStereo_SlowTemporalPrediction, thousand_frames)
     SyntheticVideo still(size, 8, 0), noisy(size, 8, 3);
     const Ptr<HDPTreeMatcher> single = createSingle(), temporal = createTemporal();
     const SyntheticFrame frame = still.render(0);
-    const Mat expected = matchFrame(*single, frame);
+    const Mat alone = matchFrame(*single, frame);
+    Mat expected;
     for (int i = 0; i < 1000; ++i)
-        if (i % 100 == 99)
-            expectIdentical(expected, matchFrame(*temporal, frame));
-        else
-            matchFrame(*temporal, frame);
+    {
+        const Mat disparity = matchFrame(*temporal, frame);
+        if (i == 99) // what the last frame predicts counts more than in a single one: its fractions are smoother
+        {
+            expected = disparity.clone();
+            EXPECT_EQ(0, cv::countNonZero(cv::abs(alone - expected) > 0.25 * 16));
+        }
+        else if (i % 100 == 99)
+            expectIdentical(expected, disparity);
+    }
 
     std::vector<SyntheticFrame> frames;
     for (int i = 0; i < 20; ++i)
