@@ -235,11 +235,13 @@ private:
         if (plan_.hasFractions && plan_.layer > 0)
             min(result_.winners, plan_.maxDisparity, result_.winners);
         correctWinners();
-        findResidual();
+        if (plan_.fillsOcclusions || !plan_.isFinest)
+            findResidual();
         if (plan_.fillsOcclusions)
             fillOcclusions(result_.residual);
     }
 
+    //! For occlusions, and for the layer below
     void findResidual()
     {
         if (plan_.cost.isCensus)
@@ -280,13 +282,15 @@ private:
                 aggregateScanlines(own_.census, own_.edgeWeights, plan_.frame, plan_.numDisparities, plan_.maxDisparity,
                                    own_.windows, own_.smoothness, penalties, shared_.scanlines, result_.winners,
                                    own_.passResidual);
-                leaveWithoutData(own_.passResidual);
             });
             correctWinners();
             if (!plan_.isFinest)
-                findResidual(); // without priors, for the layer below
+                findResidual(); // without priors
             if (plan_.fillsOcclusions)
+            {
+                leaveWithoutData(own_.passResidual);
                 fillOcclusions(own_.passResidual);
+            }
         }
     }
 

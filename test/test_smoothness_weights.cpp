@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 #include "helpers.hpp"
+#include "oracles.hpp"
 #include "../src/scanlines/smoothness_weights.hpp"
 
 namespace opencv_test { namespace {
@@ -12,21 +13,16 @@ const int bits = 24, side = 25; // of a window
 //! The formula of weighSmoothness(), in doubles; borders replicated, as in its windows
 double expectedWeight(const Mat& upper, const Mat& residual, Point p)
 {
-    const auto at = [&](const Mat& map, int x, int y) {
-        x = std::min(std::max(x, 0), map.cols - 1);
-        y = std::min(std::max(y, 0), map.rows - 1);
-        return map.depth() == CV_8U ? (int)map.at<uchar>(y, x) : (int)map.at<ushort>(y, x);
-    };
+    using oracle::clamped;
     double sum = 0, breaks = 0;
     for (int dy = -side / 2; dy <= side / 2; ++dy)
         for (int dx = -side / 2; dx <= side / 2; ++dx)
         {
-            const int x = std::min(std::max(p.x + dx, 0), upper.cols - 1);
-            const int y = std::min(std::max(p.y + dy, 0), upper.rows - 1);
-            const int cost = at(residual, x, y), own = at(upper, x, y);
+            const int x = clamped(p.x + dx, upper.cols), y = clamped(p.y + dy, upper.rows);
+            const int cost = residual.at<uchar>(y, x), own = upper.at<ushort>(y, x);
             sum += cost == 255 ? bits / 8 : std::min(cost, bits / 2);
-            breaks += std::abs(at(upper, x + 1, y) - own) > 16;
-            breaks += std::abs(at(upper, x, y + 1) - own) > 16;
+            breaks += std::abs(upper.at<ushort>(y, clamped(x + 1, upper.cols)) - own) > 16;
+            breaks += std::abs(upper.at<ushort>(clamped(y + 1, upper.rows), x) - own) > 16;
         }
     const double r = std::min(sum / (side * side * bits), 0.45), q = breaks / (2 * side * side);
     const double evidence = (0.5 - r) * std::log((1 - r) / r);

@@ -8,7 +8,18 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-/** Sums over the windows around all pixels, borders replicated, by several threads.
+/** Sums over the windows around the pixels of some rows, borders replicated.
+@param values Whole numbers of one channel.
+@param rows Of values, of which windows see those beside them, too.
+@param side Of the windows, in pixels; odd.
+@param depth CV_16U, CV_16S or CV_32S.
+@param sums Receives the sums of these rows; another Mat. */
+inline void sumOverWindows(const Mat& values, const Range& rows, int side, int depth, Mat& sums)
+{
+    boxFilter(values.rowRange(rows), sums, depth, Size(side, side), Point(-1, -1), false, BORDER_REPLICATE);
+}
+
+/** The same around all pixels, by several threads.
 @param values Whole numbers of one channel.
 @param side Of the windows, in pixels; odd.
 @param depth CV_16U, CV_16S or CV_32S.
@@ -19,8 +30,8 @@ inline void sumOverWindows(const Mat& values, int side, int depth, Mat& sums)
     sums.create(values.size(), depth);
     parallel_for_(Range(0, (values.rows + stripe - 1) / stripe), [&](const Range& stripes) {
         const Range rows(stripes.start * stripe, std::min(stripes.end * stripe, values.rows));
-        Mat part = sums.rowRange(rows); // the filter finds the rows beside those of the values
-        boxFilter(values.rowRange(rows), part, depth, Size(side, side), Point(-1, -1), false, BORDER_REPLICATE);
+        Mat part = sums.rowRange(rows);
+        sumOverWindows(values, rows, side, depth, part);
     });
 }
 

@@ -17,8 +17,9 @@ HDP_TUNABLE(int, mostWeight, 64, "noise^-2",
             "of a pixel beside another: more helps surfaces with little texture, less keeps details");
 
 // Distances of the nearest and of the farthest pairs of both rounds
-constexpr int first[] = { 1, 3 }, timesFarther = 1 << (SmoothingPairs::count - 1),
-              last[] = { timesFarther * first[0], timesFarther*first[1] };
+constexpr int first[] = { 1, 3 };
+constexpr int timesFarther = 1 << (SmoothingPairs::count - 1);
+constexpr int last[] = { timesFarther * first[0], timesFarther* first[1] };
 
 // Rows that are smoothed at once, in memory that stays in the caches: fewer compute those between stripes more often
 const int stripe = 128;

@@ -17,7 +17,7 @@ struct ScanlinePenalties
     int small, large; // for a step of one disparity and for a larger one between neighbours of one colour, 0..max
     int edgeSlope;    // halves of a bit by which large falls per grey level of an edge's weight, 0..64
     int borderSlope;  // the same where a window has two runs: surfaces end there
-    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 0..4: costs have 8 bits
+    int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..4: costs have 8 bits
     int nearer;       // for candidates of another surface that is nearer, 0..4
     int edgeNoise;    // grey levels that an edge's weight may have by noise, 0..255
     enum

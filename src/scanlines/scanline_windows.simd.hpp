@@ -84,8 +84,8 @@ public:
     const short* firstOfColumn(int run) const { return firstOfColumn_[run]; }
     //! By column of the layer
     EdgePenalties edgePenalties() const { return { slopes_, large_, least_ }; }
-    //! The small penalty in the row of a block that is this number of rows behind
-    const uchar* small(int step) const { return small_ + step; }
+    //! The small penalty, by column of the layer above
+    const uchar* small(int column) const { return small_ + column; }
     //! With ScanlinePenalties::max, which is a part of all costs in a sweep
     const uchar* prior(int step) const { return ofStep(priors_, step); }
     //! Orders of lanes, 255 for candidates that the window before does not have: from the left in a sweep upward, from

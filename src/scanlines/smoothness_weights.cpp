@@ -5,6 +5,7 @@
 #include "smoothness_weights.hpp"
 #include "smoothness_weights.simd.hpp"
 #include "scanlines/smoothness_weights.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/window_sums.hpp"
 
 #include <cmath>
 
@@ -65,12 +66,11 @@ struct WindowTerms
             dispatched::findTermsOfRow(upper.ptr<ushort>(y), upper.ptr<ushort>(std::min(y + 1, upper.rows - 1)),
                                        residual.ptr(y), cols, bits, matched.ptr(y - seen.start),
                                        breaks.ptr(y - seen.start));
-        const Range own = rows - seen.start; // the filter finds those beside it
+        const Range own = rows - seen.start;
         matchedSums = Mat(own.size(), cols, CV_16U, grown(scratch.matchedSums, (size_t)own.size() * cols));
         breakSums = Mat(own.size(), cols, CV_16U, grown(scratch.breakSums, (size_t)own.size() * cols));
-        const Size window(sideOf(radius), sideOf(radius));
-        boxFilter(matched.rowRange(own), matchedSums, CV_16U, window, Point(-1, -1), false, BORDER_REPLICATE);
-        boxFilter(breaks.rowRange(own), breakSums, CV_16U, window, Point(-1, -1), false, BORDER_REPLICATE);
+        sumOverWindows(matched, own, sideOf(radius), CV_16U, matchedSums);
+        sumOverWindows(breaks, own, sideOf(radius), CV_16U, breakSums);
     }
 };
 

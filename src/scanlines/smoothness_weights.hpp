@@ -20,7 +20,7 @@ struct SmoothnessWeight
     };
 };
 
-//! How smoothness is weighed: the radius of the windows in pixels of the layer above, at least 1, and limits of the weights
+//! How smoothness is weighed: the radius of the windows, 1 pixel of the layer above or more, and limits of the weights
 struct SmoothnessPlan
 {
     int radius, least, most;

@@ -365,8 +365,8 @@ public:
         /** @brief Penalty for a step of one disparity between neighbours on a scanline.
 
         In bits of the census, which is not the unit of cv::StereoSGBM, 0..100. All: 16. Below the top layer, where only
-        disparities around those of the layer above are candidates, both penalties are multiplied by 0.4 to 1.8: more
-        where the layer above matches badly, less where it has many steps. */
+        disparities around those of the layer above are candidates, both penalties are multiplied by 0.4 to 1.8 (0.75 to
+        1.25 on layers that only predict): more where the layer above matches badly, less where it has many steps. */
         CV_PROP_RW int P1;
 
         /** @brief Penalty for a larger step between neighbours of one colour on a scanline.
