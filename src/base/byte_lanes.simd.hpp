@@ -66,10 +66,6 @@ struct ByteLanes
         return ByteLanes(v_load_halves(low[0] + offset, high[0] + offset),
                          v_load_halves(low[1] + offset, high[1] + offset));
     }
-    static ByteLanes loadInTurns(const uchar* first, const uchar* second)
-    {
-        return ByteLanes(inTurns(first, second), inTurns(first + 8, second + 8));
-    }
     //! The group at bytes as the first or the last one, and 0, 1, .. 15 in the other one
     static ByteLanes first(const uchar* bytes) { return ByteLanes(v_load(bytes), laneNumbers()); }
     static ByteLanes last(const uchar* bytes) { return ByteLanes(laneNumbers(), v_load(bytes)); }
@@ -93,8 +89,6 @@ struct ByteLanes
     {
         return v_load_halves(low[0] + offset, high[0] + offset);
     }
-    //! A byte of the first, one of the second and so on; 8 more of each may be read.
-    static ByteLanes loadInTurns(const uchar* first, const uchar* second) { return inTurns(first, second); }
     static ByteLanes first(const uchar* bytes) { return v_load(bytes); }
     static ByteLanes last(const uchar* bytes) { return v_load(bytes); }
     static ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes&) { return v_load(bytes); }
@@ -103,13 +97,6 @@ struct ByteLanes
     void storeLast(uchar* bytes) const { v_store(bytes, v); }
 #endif
     void store(uchar* bytes) const { v_store(bytes, v); }
-
-    static v_uint8x16 inTurns(const uchar* first, const uchar* second)
-    {
-        v_uint8x16 low, high;
-        v_zip(v_load(first), v_load(second), low, high);
-        return low;
-    }
 
     static v_uint8x16 laneNumbers()
     {
@@ -188,6 +175,16 @@ struct ByteLanes
 #endif
     }
 
+    //! The byte in place `at` of 16, in all lanes of all groups
+    template <int at> static ByteLanes repeatByte(const uchar* bytes)
+    {
+#if HDP_LANES_AVX2
+        return _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(v_load(bytes).val), _mm256_set1_epi8(at));
+#else
+        return repeatByte<at>(&bytes);
+#endif
+    }
+
     //! Lane i of a group receives lane i - 1, the first one 0.
     ByteLanes toNext() const
     {
@@ -205,6 +202,23 @@ struct ByteLanes
         return _mm256_srli_si256(v.val, 1);
 #else
         return v_rotate_right<1>(v);
+#endif
+    }
+
+    //! Lane i of all receives the sum of lanes floor(i / 2) and ceil(i / 2).
+    ByteLanes sumsOfHalves() const
+    {
+#if HDP_LANES_AVX2
+        const __m256i last = _mm256_permute2x128_si256(v.val, v.val, 0x11);
+        const __m256i next = _mm256_alignr_epi8(last, v.val, 1);
+        // The first eight in one half, the eight behind them in the other one
+        const __m256i floors = _mm256_permute4x64_epi64(v.val, 0x10), ceils = _mm256_permute4x64_epi64(next, 0x10);
+        return ByteLanes(_mm256_unpacklo_epi8(floors, floors)) + ByteLanes(_mm256_unpacklo_epi8(floors, ceils));
+#else
+        v_uint8x16 both, high, beside;
+        v_zip(v, v, both, high);
+        v_zip(v, toPrevious().v, beside, high);
+        return ByteLanes(both) + ByteLanes(beside);
 #endif
     }
 

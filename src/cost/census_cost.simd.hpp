@@ -92,27 +92,19 @@ struct PixelCensus
     {
     }
 
-    //! C of some candidates from number k on
-    template <int planes> CV_ALWAYS_INLINE ByteLanes costs(size_t rightPlane, int k) const
+    //! C of some candidates from number k on, of the pixel so many columns to the right
+    template <int planes, int column = 0> CV_ALWAYS_INLINE ByteLanes costs(size_t rightPlane, int k) const
     {
-        ByteLanes sum = (ByteLanes::repeat(left[0]) ^ ByteLanes::load(right + k)).countBits();
-        for (int plane = 1; plane < planes; ++plane)
-            sum = sum + (ByteLanes::repeat(left[plane]) ^ ByteLanes::load(right + plane * rightPlane + k)).countBits();
-        return sum;
-    }
-
-    //! C(floor(h / 2)) + C(ceil(h / 2)) of candidates h, from number 2 * k on
-    template <int planes> CV_ALWAYS_INLINE ByteLanes costsOfHalves(size_t rightPlane, int k) const
-    {
-        ByteLanes sum = ByteLanes::repeat(0);
-        for (int plane = 0; plane < planes; ++plane)
-        {
-            const ByteLanes pixel = ByteLanes::repeat(left[plane]);
-            const uchar* const from = right + plane * rightPlane + k;
-            sum = sum + (pixel ^ ByteLanes::loadInTurns(from, from)).countBits() +
-                  (pixel ^ ByteLanes::loadInTurns(from, from + 1)).countBits();
-        }
-        return sum;
+        const int at = 4 * column;
+        const uchar* const from = right - column + k;
+        const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ByteLanes::load(from);
+        if (planes == 1)
+            return first.countBits();
+        const ByteLanes second = ByteLanes::repeatByte<at + 1>(left) ^ ByteLanes::load(from + rightPlane);
+        if (planes == 2)
+            return first.countBits() + second.countBits();
+        const ByteLanes third = ByteLanes::repeatByte<at + 2>(left) ^ ByteLanes::load(from + 2 * rightPlane);
+        return ByteLanes::countBits(first, second, third);
     }
 };
 
@@ -155,11 +147,12 @@ template <int planes> struct CensusCosts
                         uchar* cost)
         {
             evaluatePixels<lanes>(own.width, pixels, count, cost, [&](int y, int x, int k) {
-                ByteLanes sum = ByteLanes::repeat(0);
-                HDP_UNROLLED for (int i = 0; i < 4; ++i) sum =
-                    sum + PixelCensus(below, 2 * y + i / 2, 2 * x + i % 2, first).costs<planes>(below.rightPlane, k);
-                return PixelCensus(own, y, x, first / 2).costsOfHalves<planes>(own.rightPlane, k / 2) + sum +
-                       (sum + ByteLanes::repeat(1)).half();
+                const size_t plane = below.rightPlane;
+                const PixelCensus upper(below, 2 * y, 2 * x, first), lower(below, 2 * y + 1, 2 * x, first);
+                const ByteLanes ofOwn = PixelCensus(own, y, x, first / 2).costs<planes>(own.rightPlane, k / 2);
+                const ByteLanes sum = upper.costs<planes>(plane, k) + upper.costs<planes, 1>(plane, k) +
+                                      lower.costs<planes>(plane, k) + lower.costs<planes, 1>(plane, k);
+                return ofOwn.sumsOfHalves() + sum + (sum + ByteLanes::repeat(1)).half();
             });
         }
     };

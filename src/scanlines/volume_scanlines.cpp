@@ -12,23 +12,29 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-// Scanlines that are followed side by side. Columns are side by side in memory, too: as many of them as leave work for
-// all threads.
+// The most scanlines that are followed side by side. Columns are side by side in memory, too: as many of them as leave
+// work for all threads.
 const int blockRows = 8;
 
-int blockColumns(int width) { return std::min(std::max(width / 16, 32), +VolumeProblem::maxScanlines); }
+// Columns whose winners become disparities together
+const int columnGroup = 16;
+
+int blockColumns(int width) { return std::min(std::max(width / 256 * columnGroup, 32), +VolumeProblem::maxScanlines); }
 
 HDP_DISPATCH(aggregateRows)
 HDP_DISPATCH(aggregateColumns)
 
-//! Calls aggregate(scanlines, memory) for each block of scanlines.
+//! Calls aggregate(scanlines, memory) for blocks of whole groups of scanlines; an even number of them, so that also two
+//! threads have as much to do.
 template <typename Aggregate>
-void runBlocks(const VolumeProblem& problem, int scanlines, int block, const Aggregate& aggregate)
+void runBlocks(const VolumeProblem& problem, int scanlines, int group, int block, const Aggregate& aggregate)
 {
     const std::vector<short> memory(problem.lineMemory(block));
-    parallelFor((scanlines + block - 1) / block, memory, [&](int i, std::vector<short>& lines) {
-        aggregate(Range(i * block, std::min((i + 1) * block, scanlines)), lines.data());
-    });
+    const int groups = (scanlines + group - 1) / group, pairs = (scanlines + 2 * block - 1) / (2 * block);
+    const int count = std::min(2 * pairs, groups);
+    const auto firstOf = [&](int i) { return std::min(groups * i / count * group, scanlines); };
+    parallelFor(count, memory,
+                [&](int i, std::vector<short>& lines) { aggregate(Range(firstOf(i), firstOf(i + 1)), lines.data()); });
 }
 
 } // namespace
@@ -50,9 +56,9 @@ void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumeP
     for (int w = 0; w < 256; ++w)
         problem.large[w] = (short)std::max(penalties.small, cvRound(penalties.large * similarity.table[w]));
 
-    runBlocks(problem, size.height, blockRows,
+    runBlocks(problem, size.height, 1, blockRows,
               [&](const Range& rows, short* lines) { dispatched::aggregateRows(problem, rows, lines); });
-    runBlocks(problem, size.width, blockColumns(size.width),
+    runBlocks(problem, size.width, columnGroup, blockColumns(size.width),
               [&](const Range& columns, short* lines) { dispatched::aggregateColumns(problem, columns, lines); });
 }
 

@@ -122,16 +122,16 @@ public:
     {
         if (!p_.volume.isUniform)
             return follow<role, OWN>(direction);
-        switch (vectorsOf(p_.volume.of(0).interval)) // of 17, 33 and 65 candidates, as top layers have
+        switch (vectorsOf(p_.volume.of(0).interval)) // of 32, 64 and 128 candidates, and of up to 48
         {
         case 2:
             return follow<role, 2>(direction);
         case 3:
             return follow<role, 3>(direction);
-        case 5:
-            return follow<role, 5>(direction);
-        case 9:
-            return follow<role, 9>(direction);
+        case 4:
+            return follow<role, 4>(direction);
+        case 8:
+            return follow<role, 8>(direction);
         default:
             return follow<role, ANY>(direction);
         }
