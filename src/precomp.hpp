@@ -32,6 +32,35 @@ template <typename Scratch, typename F> void parallelFor(int count, const Scratc
     });
 }
 
+//! How many parts of an image are done by themselves: what takes some microseconds is not worth waking a thread, and an
+//! even number gives also two threads as much to do.
+inline int countParts(const Size& size)
+{
+    const double pixels = 1 << 14; // of a part, at least about
+    return std::max(2 * cvRound(size.area() / (2 * pixels)), 1);
+}
+
+//! f(y) for each row of an image, by all threads
+template <typename F> void parallelForRows(const Size& size, const F& f)
+{
+    const auto part = [&](const Range& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            f(y);
+    };
+    parallel_for_(Range(0, size.height), part, countParts(size));
+}
+
+//! f(y, scratch) for each row of an image, by all threads; each has a copy of the scratch.
+template <typename Scratch, typename F> void parallelForRows(const Size& size, const Scratch& scratch, const F& f)
+{
+    const auto part = [&](const Range& rows) {
+        Scratch own = scratch;
+        for (int y = rows.start; y < rows.end; ++y)
+            f(y, own);
+    };
+    parallel_for_(Range(0, size.height), part, countParts(size));
+}
+
 //! At least so many elements of a vector that only ever grows
 template <typename T> T* grown(std::vector<T>& elements, size_t count)
 {

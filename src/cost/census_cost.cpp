@@ -105,7 +105,7 @@ void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, uc
 void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
 {
     costs.create(disparity.size(), CV_8U);
-    parallelFor(disparity.rows, [&](int y) {
+    parallelForRows(disparity.size(), [&](int y) {
         dispatched::censusCostOfRow(planes_, y, disparity.ptr<ushort>(y), costs.ptr(y));
         limits_.apply(y, disparity.ptr<ushort>(y), costs.ptr(y));
     });

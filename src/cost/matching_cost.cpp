@@ -79,7 +79,7 @@ MatchingCost::~MatchingCost() {}
 void MatchingCost::ofDisparities(const Mat& disparity, Mat& costs) const
 {
     costs.create(disparity.size(), CV_32S);
-    parallelFor(disparity.rows, [&](int y) {
+    parallelForRows(disparity.size(), [&](int y) {
         float cost[4];
         for (int x = 0; x < disparity.cols; ++x)
         {

@@ -78,7 +78,7 @@ void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const Dis
     isUniform = true;
     uniform_ = interval;
     grown(costs, rows * row);
-    parallelFor(size.height, [&](int y) {
+    parallelForRows(size, [&](int y) {
         std::vector<int> pixels(size.width);
         std::vector<uchar> run(size.width * row);
         std::iota(pixels.begin(), pixels.end(), y * size.width);
@@ -93,7 +93,7 @@ void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const Dis
 
 void excludeCandidates(const Mat& intervals, CostVolume& volume)
 {
-    parallelFor(volume.size.height, [&](int y) {
+    parallelForRows(volume.size, [&](int y) {
         for (int x = 0; x < volume.size.width; ++x)
         {
             const DisparityInterval& own = intervals.ptr<DisparityInterval>(y)[x];

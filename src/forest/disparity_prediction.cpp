@@ -67,7 +67,7 @@ void upperHistogram(const Mat& upper, int numDisparities, std::vector<double>& h
 void assignIntervals(const Mat& upper, Size size, const std::vector<DisparityInterval>& intervals, Mat& pixelIntv)
 {
     pixelIntv.create(size, CV_16UC2);
-    parallelFor(size.height, [&](int y) {
+    parallelForRows(size, [&](int y) {
         const ushort* above = upper.ptr<ushort>(std::min(y / 2, upper.rows - 1));
         DisparityInterval* interval = pixelIntv.ptr<DisparityInterval>(y);
         for (int x = 0; x < size.width; ++x)

@@ -28,7 +28,7 @@ bool isKept(int weight, const DisparityInterval& a, const DisparityInterval& b)
 void weighEdges(const Mat& image, Mat& weights)
 {
     weights.create(image.size(), CV_8UC2);
-    parallelFor(image.rows, [&](int y) {
+    parallelForRows(image.size(), [&](int y) {
         const uchar* const next = image.ptr(std::min(y + 1, image.rows - 1)); // the last row itself below it
         dispatched::weighRow(image.ptr(y), next, image.cols, image.channels(), weights.ptr(y));
     });

@@ -140,7 +140,7 @@ void compareAlternatives(const Mat& disparity, int numDisparities, const Matchin
 {
     Mat before(disparity.size(), CV_16U), after(disparity.size(), CV_16U), costs[2];
     const ushort step = (ushort)(alternative * subpixelScale), last = (ushort)((numDisparities - 1) * subpixelScale);
-    parallelFor(disparity.rows, [&](int y) {
+    parallelForRows(disparity.size(), [&](int y) {
         const ushort* const row = disparity.ptr<ushort>(y);
         ushort *const low = before.ptr<ushort>(y), *const high = after.ptr<ushort>(y);
         HDP_VECTORIZED for (int x = 0; x < disparity.cols; ++x)

@@ -54,7 +54,7 @@ void removeSpeckles(Mat& disparity, const OutputPlan& plan, short invalid, Mat& 
 void upsampleDisparity(const Mat& upper, Size size, Mat& disparity)
 {
     disparity.create(size, CV_16U);
-    parallelFor(size.height, [&](int y) {
+    parallelForRows(size, [&](int y) {
         const auto clampRow = [&](int row) { return clamped(row, 0, upper.rows - 1); };
         const ushort* own = upper.ptr<ushort>(clampRow(y / 2));
         const ushort* beside = upper.ptr<ushort>(clampRow(y % 2 ? y / 2 + 1 : y / 2 - 1));
@@ -135,7 +135,7 @@ void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const 
     findStable(limits.dropMissing(disparity), stable);
     const int scale = 1 << plan.finestLayer, half = subpixelScale / 2;
     reasons.create(disparity.size(), CV_8U);
-    parallelFor(reasons.rows, [&](int y) {
+    parallelForRows(reasons.size(), [&](int y) {
         for (int x = 0; x < reasons.cols; ++x)
         {
             // The column of the right image, in 1 / subpixelScale pixel

@@ -82,14 +82,14 @@ void levelMismatch(const Mat& disparity, const CensusCost& cost, Mat& mismatch)
 {
     const Size size = disparity.size();
     Mat differences(size, CV_32S), squares(size, CV_32S), gradients(size, CV_32S);
-    parallelFor(size.height, [&](int y) {
+    parallelForRows(size, [&](int y) {
         compareRow(cost, disparity.ptr<ushort>(y), y, size.width, differences.ptr<int>(y), squares.ptr<int>(y),
                    gradients.ptr<int>(y));
     });
     for (Mat* values : { &differences, &squares, &gradients })
         sumOverWindows(values->clone(), window, CV_32S, *values);
     mismatch.create(size, CV_32F);
-    parallelFor(size.height, [&](int y) {
+    parallelForRows(size, [&](int y) {
         const int count = window * window;
         for (int x = 0; x < size.width; ++x)
         {
@@ -109,7 +109,7 @@ void disparitySigma(const Mat& confidence, const Mat& mismatch, double rowError,
     for (int i = 0; i < 256; ++i)
         places[i] = placeOf((float)i, confidenceOf, confidences);
     sigma.create(confidence.size(), CV_32F);
-    parallelFor(sigma.rows, [&](int y) {
+    parallelForRows(sigma.size(), [&](int y) {
         for (int x = 0; x < sigma.cols; ++x)
         {
             const Place& row = places[confidence.at<uchar>(y, x)];

@@ -29,7 +29,7 @@ template <typename T, typename Shows> int countBlank(const Mat& image, int y, co
 void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right, const Mat& rightMask)
 {
     const auto isBright = [](ushort level) { return level > maxBlack * greyScale; };
-    parallelFor(disparity.rows, OcclusionScratch(disparity.cols), [&](int y, OcclusionScratch& scratch) {
+    parallelForRows(disparity.size(), OcclusionScratch(disparity.cols), [&](int y, OcclusionScratch& scratch) {
         const int blank = !rightMask.empty() ? countBlank<uchar>(rightMask, y, hasData)
                           : !right.empty()   ? countBlank<ushort>(right, y, isBright)
                                              : 0;

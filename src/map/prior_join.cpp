@@ -83,7 +83,7 @@ public:
     void join(int maxDisparity)
     {
         Mat hypotheses(winners_.size(), CV_16U), isOpposed(winners_.size(), CV_8U), ofWinners, ofHypotheses;
-        parallelFor(winners_.rows, std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
+        parallelForRows(winners_.size(), std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
             for (int x = 0; x < width_; ++x)
                 isOpposed.ptr(y)[x] = propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
         });

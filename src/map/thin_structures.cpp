@@ -41,7 +41,7 @@ bool isInStructure(const Mat& disparity, int y, int x)
 void restoreThinStructures(const Mat& unfiltered, Mat& disparity)
 {
     const ushort minRise = (ushort)(minDistance * subpixelScale);
-    parallelFor(disparity.rows, [&](int y) {
+    parallelForRows(disparity.size(), [&](int y) {
         const ushort* before = unfiltered.ptr<ushort>(y);
         ushort* row = disparity.ptr<ushort>(y);
         for (int begin = 0; begin < disparity.cols; begin += columns)

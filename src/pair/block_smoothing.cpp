@@ -56,7 +56,7 @@ void smoothStep(ushort* row, int x, double limit)
 void smoothSteps(const BlockGrid& grid, Mat& grey)
 {
     const double limit = 2 * smoothedSteps * grid.step; // of twice a step
-    parallelFor(grey.rows, [&](int y) {
+    parallelForRows(grey.size(), [&](int y) {
         for (int x = grid.begin < side / 2 ? grid.begin + side : grid.begin; x + side / 2 <= grey.cols; x += side)
             smoothStep(grey.ptr<ushort>(y), x, limit);
     });

@@ -25,7 +25,7 @@ void resizeNearest(const Mat& map, Size size, Mat& resized)
     for (int x = 0; x < size.width; ++x)
         columns.push_back((int)((int64)x * map.cols / size.width));
     resized.create(size, CV_16S);
-    parallelFor(resized.rows, [&](int y) {
+    parallelForRows(resized.size(), [&](int y) {
         const short* const row = map.ptr<short>((int)((int64)y * map.rows / size.height));
         for (int x = 0; x < size.width; ++x)
             resized.ptr<short>(y)[x] = row[columns[x]];
@@ -39,7 +39,7 @@ void expandLimits(const Mat& given, int limitOfAll, bool isWhole, bool isLargest
     Mat& limits = given.size() == size ? expanded : coarse;
     limits.create(given.size(), CV_16S);
     const Range range(isLargest ? SHRT_MIN : limitOfAll, isLargest ? limitOfAll : SHRT_MAX);
-    parallelFor(limits.rows, [&](int y) {
+    parallelForRows(limits.size(), [&](int y) {
         dispatched::toUnits(given.ptr<float>(y), limits.cols, isWhole, isLargest, range, limits.ptr<short>(y));
     });
     if (!coarse.empty())
@@ -63,7 +63,7 @@ void expandRanges(const Mat& smallest, const Mat& largest, Size size, Range disp
 void halveIntervals(const Mat& intervals, Mat& hulls)
 {
     hulls.create(intervals.rows / 2, intervals.cols / 2, CV_16UC2);
-    parallelFor(hulls.rows, [&](int y) {
+    parallelForRows(hulls.size(), [&](int y) {
         dispatched::halveIntervals(intervals.ptr<ushort>(2 * y), intervals.ptr<ushort>(2 * y + 1), hulls.cols,
                                    hulls.ptr<ushort>(y));
     });
@@ -79,7 +79,7 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
     // In units of the image first, so that layers know fractions
     const int last = (numDisparities[0] - 1) * subpixelScale, offset = minDisparity * subpixelScale;
     units[0].create(ranges.smallest.rows, ranges.smallest.cols + extension, CV_16UC2);
-    parallelFor(units[0].rows, [&](int y) {
+    parallelForRows(units[0].size(), [&](int y) {
         ushort* const row = units[0].ptr<ushort>(y);
         ushort* const own = row + 2 * extension;
         dispatched::joinLimits(ranges.smallest.ptr<short>(y), ranges.largest.ptr<short>(y), ranges.smallest.cols,
@@ -94,7 +94,7 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
             halveIntervals(units[layer - 1], exact);
         Mat& ofLayer = intervals[layer];
         ofLayer.create(exact.size(), CV_16UC2);
-        parallelFor(exact.rows, [&](int y) {
+        parallelForRows(exact.size(), [&](int y) {
             dispatched::toCandidates(exact.ptr<ushort>(y), exact.cols, (int)layer, numDisparities[layer] - 1,
                                      ofLayer.ptr<ushort>(y));
         });
@@ -104,28 +104,28 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
 void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled)
 {
     doubled.create(intervals.size(), CV_16UC2);
-    parallelFor(intervals.rows, [&](int y) {
+    parallelForRows(intervals.size(), [&](int y) {
         dispatched::doubleIntervals(intervals.ptr<ushort>(y), intervals.cols, candidates - 1, doubled.ptr<ushort>(y));
     });
 }
 
 void intersectIntervals(const Mat& intervals, Mat& others)
 {
-    parallelFor(others.rows, [&](int y) {
+    parallelForRows(others.size(), [&](int y) {
         dispatched::intersectIntervals(intervals.ptr<ushort>(y), others.cols, others.ptr<ushort>(y));
     });
 }
 
 void moveIntoIntervals(const Mat& intervals, Mat& disparity)
 {
-    parallelFor(disparity.rows, [&](int y) {
+    parallelForRows(disparity.size(), [&](int y) {
         dispatched::moveIntoIntervals(intervals.ptr<ushort>(y), disparity.cols, disparity.ptr<ushort>(y));
     });
 }
 
 void moveIntoRanges(const PixelRanges& ranges, short invalid, Mat& disparity)
 {
-    parallelFor(disparity.rows, [&](int y) {
+    parallelForRows(disparity.size(), [&](int y) {
         dispatched::moveIntoRanges(ranges.smallest.ptr<short>(y), ranges.largest.ptr<short>(y), disparity.cols, invalid,
                                    disparity.ptr<short>(y));
     });

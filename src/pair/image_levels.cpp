@@ -112,7 +112,7 @@ Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
     if (image.depth() == CV_16U)
     {
         buffer.create(image.size(), CV_8UC1);
-        parallelFor(image.rows, std::vector<ushort>(image.cols), [&](int y, std::vector<ushort>& levels) {
+        parallelForRows(image.size(), std::vector<ushort>(image.cols), [&](int y, std::vector<ushort>& levels) {
             greyRow(image, y, times, curve, levels.data());
             const int width = image.cols; // local, as stores of bytes may alias all else
             const ushort* const row = levels.data();
@@ -141,7 +141,7 @@ void greyLevels(const Mat& image, int bits, Mat& grey, double brightness)
     const int times = timesDoubled(bits, brightness);
     const std::vector<ushort> curve = brightnessCurve(brightness);
     grey.create(image.size(), CV_16U);
-    parallelFor(image.rows, [&](int y) { greyRow(image, y, times, curve, grey.ptr<ushort>(y)); });
+    parallelForRows(image.size(), [&](int y) { greyRow(image, y, times, curve, grey.ptr<ushort>(y)); });
 }
 
 double findBrightness(const Mat& left, const Mat& right, double share)

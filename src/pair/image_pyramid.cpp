@@ -15,7 +15,7 @@ HDP_DISPATCH(halveRow)
 
 template <typename T> void halve(const Mat& image, Mat& half)
 {
-    parallelFor(half.rows, [&](int y) {
+    parallelForRows(half.size(), [&](int y) {
         dispatched::halveRow(image.ptr<T>(2 * y), image.ptr<T>(2 * y + 1), half.cols, half.channels(), half.ptr<T>(y));
     });
 }

@@ -83,7 +83,7 @@ void alignLight(Mat& levels, const LightModel& model, const ImageFrame& frame)
     ofAll.step = 1.f / frame.whole.width;
     ofAll.first = 0.5f * ofAll.step - 0.5f;
     ofAll.origin = frame.origin.x;
-    parallelFor(levels.rows, [&](int i) {
+    parallelForRows(levels.size(), [&](int i) {
         const double y = (i + frame.origin.y + 0.5) / frame.whole.height - 0.5, y2 = y * y;
         RowLight light = ofAll;
         light.gain[0] = (float)(c[0] + c[2] * y + c[5] * y2 + c[6] * y2 * y2);

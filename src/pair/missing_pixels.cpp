@@ -50,7 +50,7 @@ void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
     const size_t pixel = image.elemSize();
     filled.create(image.size(), image.type());
     std::vector<uchar> has(image.rows);
-    parallelFor(image.rows, [&](int y) {
+    parallelForRows(image.size(), [&](int y) {
         const std::vector<int> columns = nearestWithData(mask.ptr(y), image.cols);
         has[y] = columns[0] >= 0;
         for (int x = 0; x < image.cols && has[y]; ++x)
@@ -90,7 +90,7 @@ void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, M
 {
     const double scale = floats.white > floats.black ? USHRT_MAX / (floats.white - floats.black) : 0;
     levels.create(image.size(), CV_16U);
-    parallelFor(image.rows, [&](int y) {
+    parallelForRows(image.size(), [&](int y) {
         const float* const row = image.ptr<float>(y);
         const uchar* const has = mask.ptr(y);
         ushort* const level = levels.ptr<ushort>(y);

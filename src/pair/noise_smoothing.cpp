@@ -18,7 +18,8 @@ void smoothNoise(const Mat& image, Mat& smoothed)
 {
     const int width = image.cols, side = sideWeight, middle = 256 - 2 * side;
     smoothed.create(image.size(), CV_16U);
-    parallelFor(image.rows, std::vector<int>(width + 2), [=, &image, &smoothed](int y, std::vector<int>& columns) {
+    parallelForRows(image.size(), std::vector<int>(width + 2),
+                    [=, &image, &smoothed](int y, std::vector<int>& columns) {
         const ushort *const own = image.ptr<ushort>(y), *const above = image.ptr<ushort>(std::max(y - 1, 0)),
                             *const below = image.ptr<ushort>(std::min(y + 1, image.rows - 1));
         int* const column = &columns[1]; // and one more at both ends

@@ -229,7 +229,7 @@ void alignRows(const Mat& right, const RowModel& model, const ImageFrame& frame,
     for (int i = 0; i < fractions; ++i)
         cubicWeights((double)i / fractions, weights[i]);
     aligned.create(right.size(), right.type());
-    parallelFor(right.rows, [&](int y) {
+    parallelForRows(right.size(), [&](int y) {
         if (right.depth() == CV_8U)
             alignRow(right, model, frame, y, weights, aligned.ptr(y));
         else

@@ -33,7 +33,7 @@ void horizontalGradient(const Mat& image, Mat& gradient)
     const int last = image.cols - 1;
     gradient.create(image.size(), CV_16S);
     // Grey levels in 1 / 65536: rounded to whole ones they cost accuracy, as smooth surfaces have gradients below one.
-    parallelFor(image.rows, std::vector<int>(image.cols), [&](int y, std::vector<int>& g) {
+    parallelForRows(image.size(), std::vector<int>(image.cols), [&](int y, std::vector<int>& g) {
         const uchar* pixels = image.ptr(y);
         const int channels = image.channels();
         short* d = gradient.ptr<short>(y);

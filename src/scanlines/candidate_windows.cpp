@@ -19,7 +19,7 @@ HDP_DISPATCH(restrictRow)
 void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat& windows)
 {
     windows.create(upper.size(), CV_16UC4);
-    parallelFor(upper.rows, [&](int y) {
+    parallelForRows(upper.size(), [&](int y) {
         dispatched::predictRow(upper.ptr<ushort>(y), others.ptr<ushort>(y), upper.cols, numDisparities,
                                windows.ptr<ushort>(y));
     });
@@ -28,7 +28,7 @@ void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat
 void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows)
 {
     CV_DbgAssert(intervals.size() == windows.size());
-    parallelFor(windows.rows, [&](int y) {
+    parallelForRows(windows.size(), [&](int y) {
         dispatched::restrictRow(intervals.ptr<ushort>(y), windows.cols, numDisparities, windows.ptr<ushort>(y));
     });
 }
@@ -37,7 +37,7 @@ void halveDisparity(const Mat& disparity, Mat& upper)
 {
     upper.create(disparity.rows / 2, disparity.cols / 2, CV_16U);
     const int maxDistance = otherSurfaceDistance * subpixelScale;
-    parallelFor(upper.rows, [&](int y) {
+    parallelForRows(upper.size(), [&](int y) {
         const ushort* above = disparity.ptr<ushort>(2 * y);
         const ushort* below = disparity.ptr<ushort>(2 * y + 1);
         ushort* middle = upper.ptr<ushort>(y);

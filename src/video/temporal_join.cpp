@@ -220,7 +220,7 @@ bool join(const CensusCost& cost, const FrameMemory& last, const FramePrediction
         return false;
     next.disparity.create(disparity.size(), CV_16U);
     next.detail.create(disparity.size(), CV_8U);
-    parallelFor(disparity.rows, TemporalRow(disparity.cols), [&](int y, TemporalRow& row) {
+    parallelForRows(disparity.size(), TemporalRow(disparity.cols), [&](int y, TemporalRow& row) {
         joinRow(frame, scratch.choices.ptr(std::min(y / cell, scratch.choices.rows - 1)), disparity, y, row, next);
     });
     next.disparity.copyTo(disparity);
@@ -262,7 +262,7 @@ void trustStable(const FrameMemory& frame, Mat& confidence)
     float factors[FrameMemory::countMask + 1];
     for (int count = 0; count <= FrameMemory::countMask; ++count)
         factors[count] = std::sqrt((float)(count + 1) / (float)(most + 1));
-    parallelFor(confidence.rows, [&](int y) {
+    parallelForRows(confidence.size(), [&](int y) {
         const uchar* const ofRow = counts.ptr(y);
         uchar* const row = confidence.ptr(y);
         for (int x = 0; x < confidence.cols; ++x)

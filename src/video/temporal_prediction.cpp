@@ -131,7 +131,7 @@ void findContrast(const Mat& image, Mat& sums, Mat& contrast)
 {
     sumOverWindows(image, contrastSide, CV_16U, sums);
     contrast.create(image.size(), CV_8U);
-    parallelFor(image.rows, [&](int y) {
+    parallelForRows(image.size(), [&](int y) {
         const uchar* levels = image.ptr(y);
         const ushort* ofWindow = sums.ptr<ushort>(y);
         uchar* contrasts = contrast.ptr(y);
@@ -148,7 +148,7 @@ void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
     const uchar* const levels = before.data; // local, as stores may alias the Mat
     const size_t step = before.step;
     warped.create(before.size(), CV_8U);
-    parallelFor(before.rows, [&](int y) {
+    parallelForRows(before.size(), [&](int y) {
         uchar* const row = warped.ptr(y);
         warp.forEachBlock(cell * y, [=](int x, const Point& from, int count) {
             const int fromY = std::min(from.y, lastY);
@@ -212,7 +212,7 @@ void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, Video
     const int noise = changeCells * (minNoise + noiseFactor * medianLevel(scratch.change));
     const int maxChange = (int)(changeCells * stillness), share = contrastShare * changeCells;
     sources.create(now.size(), CV_8U);
-    parallelFor(now.rows, [&](int y) {
+    parallelForRows(now.size(), [&](int y) {
         const ushort *changes = scratch.sums[0].ptr<ushort>(y), *contrasts = scratch.sums[1].ptr<ushort>(y);
         const int cells = now.cols, maxNoise = noise; // local, as stores may alias all else
         uchar* const ofRow = sources.ptr(y);

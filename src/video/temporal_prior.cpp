@@ -49,7 +49,7 @@ void predictDisparities(const FrameMemory& last, const FramePrediction& predicti
                         Mat& predicted)
 {
     predicted.create(size, CV_32F);
-    parallelFor(size.height, [&](int y) {
+    parallelForRows(size, [&](int y) {
         const int centreY = std::min(y * side + side / 2, last.disparity.rows - 1);
         float* const row = predicted.ptr<float>(y);
         for (int x = 0; x < size.width; ++x)
@@ -64,7 +64,7 @@ void predictDisparities(const FrameMemory& last, const FramePrediction& predicti
 bool refusesLastFrame(const CostVolume& volume, Mat& predicted)
 {
     const int64 known = countNonZero(predicted >= 0);
-    parallelFor(volume.size.height, [&](int y) {
+    parallelForRows(volume.size, [&](int y) {
         float* const row = predicted.ptr<float>(y);
         for (int x = 0; x < volume.size.width; ++x)
             if (row[x] >= 0 && isContradicted(y * volume.size.width + x, row[x], volume))
@@ -76,7 +76,7 @@ bool refusesLastFrame(const CostVolume& volume, Mat& predicted)
 
 void preferPredicted(const Mat& predicted, CostVolume& volume)
 {
-    parallelFor(volume.size.height, [&](int y) {
+    parallelForRows(volume.size, [&](int y) {
         const float* const row = predicted.ptr<float>(y);
         for (int x = 0; x < volume.size.width; ++x)
             if (row[x] >= 0)
@@ -87,7 +87,7 @@ void preferPredicted(const Mat& predicted, CostVolume& volume)
 void predictWinners(const Mat& predicted, const CostVolume& volume, Mat& winners)
 {
     winners.create(volume.size, CV_16U);
-    parallelFor(volume.size.height, [&](int y) {
+    parallelForRows(volume.size, [&](int y) {
         const float* const known = predicted.ptr<float>(y);
         ushort* const row = winners.ptr<ushort>(y);
         for (int x = 0; x < volume.size.width; ++x)
