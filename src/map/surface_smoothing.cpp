@@ -59,7 +59,7 @@ public:
     {
         const int rows = std::min(disparity.rows, stripe + 2 * (last[0] + last[1]));
         for (Mat& mat : framed_)
-            mat = Mat::zeros(rows + 2 * frame, disparity.cols + 2 * frame, CV_16U);
+            mat = Mat(rows + 2 * frame, disparity.cols + 2 * frame, CV_16U, Scalar(0));
     }
 
     void smooth(const Range& rows, Mat& smoothed)
