@@ -527,6 +527,7 @@ PairModel anyModel(Input& input, const PairModel& last)
         break;
     case 7:
         model.brightness = input.ConsumeIntegralInRange(0, 5);
+        model.isGrey = input.ConsumeBool();
         break;
     case 8:
         model.leftBlockStep = model.rightBlockStep = anyDisparity(input);

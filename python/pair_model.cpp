@@ -64,6 +64,9 @@ void defFields(py::class_<PairModel>& type)
     type.def_readwrite("bits", &PairModel::bits, "that levels of uint16 have: 8 to 16. For uint8 8");
     type.def_readwrite("brightness", &PairModel::brightness,
                        "what a dark pair is brightened by, for COST_CENSUS: 1..4");
+    type.def_readwrite(
+        "isGrey", &PairModel::isGrey,
+        "whether the left image has no colours: edges are those of its grey levels then, for COST_CENSUS");
     type.def_readwrite("leftBlockStart", &PairModel::leftBlockStart,
                        "first column, 0 to 7, of a block of JPEG compression in the left image");
     type.def_readwrite("leftBlockStep", &PairModel::leftBlockStep,

@@ -335,8 +335,8 @@ private:
         keepIntervals(result_.winners);
         if (in_.pair.hasPrior)
             clock_.run("prior", [&] {
-                joinPrior(in_.known.points[plan_.layer], in_.images.guide, own_.census, plan_.layer, plan_.maxDisparity,
-                          result_.winners);
+                joinPrior(in_.known.points[plan_.layer], in_.images.colours, own_.census, plan_.layer,
+                          plan_.maxDisparity, result_.winners);
                 keepIntervals(result_.winners);
             });
     }
@@ -371,7 +371,7 @@ private:
         if (plan_.restoresThinStructures)
             restoreThinStructures(result_.winners, result_.disparity);
         if (plan_.votesAtEdges)
-            filterWhereData(1, [&](const Mat& map) { voteAtEdges(in_.images.guide, map, result_.disparity); });
+            filterWhereData(1, [&](const Mat& map) { voteAtEdges(in_.images.colours, map, result_.disparity); });
         if (plan_.surfaceDifference > 0)
             filterWhereData(0, [&](const Mat& map) {
                 smoothSurfaces(in_.images.left, plan_.noise, plan_.surfaceDifference, map, result_.disparity);

@@ -395,8 +395,15 @@ inline hdp::DisparityInterval pixelInterval(const Mat_<double>& row, double delt
     return interval;
 }
 
+//! Of colours, or of grey levels in 1 / 4
 inline int edgeWeight(const Mat& image, int p, int q)
 {
+    if (image.depth() == CV_16U)
+    {
+        const int difference = std::abs(image.at<ushort>(p / image.cols, p % image.cols) -
+                                        image.at<ushort>(q / image.cols, q % image.cols));
+        return std::min((int)std::ceil(9 / 8. * difference / 4), 255);
+    }
     const int channels = image.channels();
     int weight = 0;
     for (int c = 0; c < channels; ++c)

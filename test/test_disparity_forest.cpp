@@ -136,6 +136,18 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_on_sets_with_predicted_intervals)
                 }
 }
 
+TEST(HDPStereo_DisparityForest, plain_kruskal_on_grey_levels_in_quarters)
+{
+    RNG rng(19);
+    hdp::ForestBuffers buffers;
+    DisparityForest forest;
+    for (const Ptr<TreeStrategy>& strategy : allStrategies())
+        for (const Size& size : testSizes)
+            for (int levels : { 3, 12, 1024 })
+                testForest(randomImage(rng, size, CV_16UC1, levels), randomIntervals(rng, size), *strategy,
+                           { 0.6, false }, buffers, forest);
+}
+
 TEST(HDPStereo_DisparityForest, plain_kruskal_over_the_full_range)
 {
     RNG rng(13);

@@ -82,6 +82,30 @@ TEST(HDPStereo_ImageLevels, of_8_bits_are_the_image_without_alpha)
     expectIdentical(expected, hdp::byteLevels(image, 8, buffer));
 }
 
+TEST(HDPStereo_ImageLevels, without_colours)
+{
+    RNG rng(59);
+    for (int type : { CV_8UC1, CV_16UC1, CV_32FC1, CV_8UC3, CV_8UC4 })
+        for (const Size& size : { Size(1, 1), Size(19, 1), Size(5, 7), Size(70, 3) })
+        {
+            SCOPED_TRACE(testing::Message() << "type " << type << ", " << size);
+            Mat image = randomImage(rng, size, CV_8UC1);
+            if (CV_MAT_CN(type) > 1)
+            {
+                cvtColor(image, image, CV_MAT_CN(type) == 3 ? COLOR_GRAY2BGR : COLOR_GRAY2BGRA);
+                EXPECT_TRUE(hdp::hasNoColours(image));
+                const Point place(rng.uniform(0, size.width), rng.uniform(0, size.height));
+                image.ptr(place.y)[place.x * CV_MAT_CN(type) + rng.uniform(0, 3)] ^= 1;
+                EXPECT_FALSE(hdp::hasNoColours(image)) << place;
+            }
+            else
+            {
+                image.convertTo(image, CV_MAT_DEPTH(type));
+                EXPECT_TRUE(hdp::hasNoColours(image));
+            }
+        }
+}
+
 TEST(HDPStereo_ImageLevels, count_of_bits)
 {
     const auto bitsInUse = [](const Mat& left, const Mat& right) {
@@ -289,6 +313,20 @@ TEST(HDPStereo_ImageTypes, alpha_is_ignored)
             expectSameResults(*matcher, results(*matcher, pair.left, pair.right), left, right);
         }
     expectIdentical(before, left);
+}
+
+TEST(HDPStereo_ImageTypes, grey_levels_as_colours)
+{
+    const SyntheticPair pair = greyPair(24);
+    Mat left, right;
+    cvtColor(pair.left, left, COLOR_GRAY2BGR);
+    cvtColor(pair.right, right, COLOR_GRAY2BGR);
+    for (const System& system : allSystems())
+    {
+        SCOPED_TRACE(system.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
+        expectSameResults(*matcher, results(*matcher, pair.left, pair.right), left, right);
+    }
 }
 
 //! The upper 8 of a number of bits

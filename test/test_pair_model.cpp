@@ -79,6 +79,7 @@ PairModel makeUnusualModel()
     model.white = 7.25;
     model.bits = 12;
     model.brightness = 2.59375;
+    model.isGrey = true;
     model.leftBlockStart = 3;
     model.leftBlockStep = 1. / 3;
     model.rightBlockStart = 5;
@@ -371,7 +372,7 @@ TEST(HDPStereo_PairModel, files)
         expectRejected([&] { readFrom(without); }, name);
         ++fields;
     }
-    EXPECT_EQ(25, fields);
+    EXPECT_EQ(26, fields);
 }
 
 TEST(HDPStereo_PairModel, bad_values)

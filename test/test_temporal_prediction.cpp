@@ -115,19 +115,20 @@ const int squarePresets[] = { HDPTreeMatcher::PRESET_ULTRAFAST, HDPTreeMatcher::
 //! The square leaves no traces: around it are no more errors than in single frames.
 TEST(HDPStereo_SlowTemporalPrediction, moving_square)
 {
+    SquareErrors errors[3];
+    const int few = 30; // of about 10000 pixels: what one frame may have more
     for (double noise : { 0., 2. })
         for (int speed : { 3, 8 })
         {
             const SquareVideo video(noise, speed, 26);
-            for (int preset : squarePresets)
+            for (int i = 0; i < 3; ++i)
             {
-                SCOPED_TRACE(cv::format("preset %d, noise %.0f, %d pixels per frame", preset, noise, speed));
-                SquareErrors errors;
-                const int few = 30; // of about 10000 pixels
-                errors.add(video, preset, 1.05, few);
-                EXPECT_LE(errors.temporal, 1.05 * errors.single + few);
+                SCOPED_TRACE(cv::format("preset %d, noise %.0f, %d pixels per frame", squarePresets[i], noise, speed));
+                errors[i].add(video, squarePresets[i], 1.05, few);
             }
         }
+    for (const SquareErrors& sum : errors)
+        EXPECT_LE(sum.temporal, 1.05 * sum.single);
 }
 
 //! Before moving cameras, its borders are up to a pixel off: 40 percent more errors in sum.
@@ -284,7 +285,7 @@ TEST(HDPStereo_SlowTemporalPrediction, thousand_frames)
         if (i == 99) // what the last frame predicts counts more than in a single one: its fractions are smoother
         {
             expected = disparity.clone();
-            EXPECT_EQ(0, cv::countNonZero(cv::abs(alone - expected) > 0.25 * 16));
+            EXPECT_LE(cv::countNonZero(cv::abs(alone - expected) > 0.25 * 16), size.area() / 1000);
         }
         else if (i % 100 == 99)
             expectIdentical(expected, disparity);

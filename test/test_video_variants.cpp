@@ -127,7 +127,9 @@ TEST_P(HDPStereo_SlowVideoVariants, never_worse)
             ofSingle += one / frames;
             ofTemporal += other / frames;
         }
-        EXPECT_LE(ofTemporal, 1.01 * ofSingle + 0.05) << "preset " << preset;
+        const double few =
+            preset == HDPTreeMatcher::PRESET_ULTRAFAST ? 0.1 : 0.05; // its pixels are four times as large
+        EXPECT_LE(ofTemporal, 1.01 * ofSingle + few) << "preset " << preset;
     }
 }
 

@@ -68,7 +68,8 @@ TEST(HDPStereo_SlowWholeRange, each_disparity_is_found)
 }
 
 //! The mean over several pictures at the ends of the range, which have candidates on one side only. In so small ones no
-//! noise is found that smooths: ULTRAFAST, whose only layer has 1 as half a pixel, then has 0 for one pixel in twenty.
+//! noise is found that smooths: ULTRAFAST, whose only layer has 1 as half a pixel, then has 0 for one pixel in twenty. Of
+//! the largest disparity, if that is half a pixel, too, one in fifty has less.
 TEST(HDPStereo_SlowWholeRange, ends_in_several_pictures)
 {
     const int pictures = 5;
@@ -88,7 +89,7 @@ TEST(HDPStereo_SlowWholeRange, ends_in_several_pictures)
                     sum += wrong(disparityOf(preset.preset, 0, numDisparities, left, right), d,
                                  Range(numDisparities, size.width - 16));
                 }
-                EXPECT_LE(sum / pictures, isUltrafast ? 2 : 0.5)
+                EXPECT_LE(sum / pictures, isUltrafast ? 2.5 : 0.5)
                     << preset.name << ", " << numDisparities << " disparities, " << d;
             }
 }

@@ -16,6 +16,7 @@ namespace {
 const int largestSparedWeight = 7;
 
 HDP_DISPATCH(weighRow)
+HDP_DISPATCH(weighRowOfLevels)
 
 //! DT-Rule 1, without a branch
 bool isKept(int weight, const DisparityInterval& a, const DisparityInterval& b)
@@ -29,8 +30,11 @@ void weighEdges(const Mat& image, Mat& weights)
 {
     weights.create(image.size(), CV_8UC2);
     parallelForRows(image.size(), [&](int y) {
-        const uchar* const next = image.ptr(std::min(y + 1, image.rows - 1)); // the last row itself below it
-        dispatched::weighRow(image.ptr(y), next, image.cols, image.channels(), weights.ptr(y));
+        const int next = std::min(y + 1, image.rows - 1); // the last row itself below it
+        if (image.depth() == CV_16U)
+            dispatched::weighRowOfLevels(image.ptr<ushort>(y), image.ptr<ushort>(next), image.cols, weights.ptr(y));
+        else
+            dispatched::weighRow(image.ptr(y), image.ptr(next), image.cols, image.channels(), weights.ptr(y));
     });
 }
 

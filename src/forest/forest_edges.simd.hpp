@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
+#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -11,12 +12,15 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 //! weighEdges() for a row of pixels of 1 or 3 channels; next: the row below
 void weighRow(const uchar* row, const uchar* next, int width, int channels, uchar* weights);
 
+//! The same for grey levels
+void weighRowOfLevels(const ushort* row, const ushort* next, int width, uchar* weights);
+
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
-//! The largest absolute difference over the channels of two pixels
-template <int channels> CV_ALWAYS_INLINE uchar largestDifference(const uchar* a, const uchar* b)
+//! w of two pixels
+template <int channels> CV_ALWAYS_INLINE uchar weightOf(const uchar* a, const uchar* b)
 {
     uchar largest = 0;
     for (int c = 0; c < channels; ++c)
@@ -24,17 +28,25 @@ template <int channels> CV_ALWAYS_INLINE uchar largestDifference(const uchar* a,
     return largest;
 }
 
-template <int channels> void weighPixels(const uchar* row, const uchar* next, int width, uchar* weights)
+//! The same by their grey levels
+template <int> CV_ALWAYS_INLINE uchar weightOf(const ushort* a, const ushort* b)
+{
+    const int unit = 8 * greyScale;
+    const ushort rounded = (ushort)(9 * (std::max(*a, *b) - std::min(*a, *b)) + unit - 1);
+    return (uchar)std::min<ushort>(rounded / unit, UCHAR_MAX);
+}
+
+template <int channels, typename T> void weighPixels(const T* row, const T* next, int width, uchar* weights)
 {
     const int last = width - 1;
     HDP_VECTORIZED for (int x = 0; x < last; ++x)
     {
-        const uchar* const p = row + x * channels;
-        weights[2 * x] = largestDifference<channels>(p, p + channels);
-        weights[2 * x + 1] = largestDifference<channels>(p, next + x * channels);
+        const T* const p = row + x * channels;
+        weights[2 * x] = weightOf<channels>(p, p + channels);
+        weights[2 * x + 1] = weightOf<channels>(p, next + x * channels);
     }
     weights[2 * last] = 0; // there is no pixel
-    weights[2 * last + 1] = largestDifference<channels>(row + last * channels, next + last * channels);
+    weights[2 * last + 1] = weightOf<channels>(row + last * channels, next + last * channels);
 }
 
 } // namespace
@@ -42,6 +54,11 @@ template <int channels> void weighPixels(const uchar* row, const uchar* next, in
 void weighRow(const uchar* row, const uchar* next, int width, int channels, uchar* weights)
 {
     channels == 1 ? weighPixels<1>(row, next, width, weights) : weighPixels<3>(row, next, width, weights);
+}
+
+void weighRowOfLevels(const ushort* row, const ushort* next, int width, uchar* weights)
+{
+    weighPixels<1>(row, next, width, weights);
 }
 
 #endif

@@ -105,6 +105,21 @@ int bitsInUse(const Mat& left, const Mat& right, double share)
     return bits;
 }
 
+bool hasNoColours(const Mat& image)
+{
+    const int channels = image.channels(), width = image.cols;
+    for (int y = 0; y < image.rows && channels > 1; ++y) // a few rows tell of most images with colours
+    {
+        const uchar* const row = image.ptr(y);
+        uchar differences = 0;
+        HDP_VECTORIZED for (int x = 0; x < width; ++x) differences |=
+            (uchar)((row[channels * x] ^ row[channels * x + 1]) | (row[channels * x + 1] ^ row[channels * x + 2]));
+        if (differences != 0)
+            return false;
+    }
+    return true;
+}
+
 Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
 {
     const int times = timesDoubled(bits, brightness);

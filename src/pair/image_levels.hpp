@@ -17,6 +17,9 @@ again, if more than one pixel in 1024 has a level of 128 or more.
 @param share Of the pixels that count; the others are black. */
 CV_EXPORTS int bitsInUse(const Mat& left, const Mat& right, double share = 1);
 
+//! Whether all pixels have a grey level alone, or the same of each colour
+CV_EXPORTS bool hasNoColours(const Mat& image);
+
 /** The colours or grey levels of an image in 8 bits, the upper ones of those in use.
 @param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
 @param bits See bitsInUse().

@@ -96,22 +96,30 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
     LevelFindings& levels = pyramids.levels;
     levels = given ? *given : LevelFindings();
     if (!given)
+    {
         levels.bits = bitsInUse(blackened(left, masks.left), blackened(right, masks.right), share);
+        levels.isGrey = hasNoColours(left);
+    }
     if (plan.isCensus)
         makeLevels(movedLeft, movedRight, movedMasks, share, given != nullptr, plan.smoothsBlocks, pyramids);
     const Mat leftBytes = byteLevels(movedLeft, levels.bits, l.bytes, levels.brightness);
-    buildPyramid({ leftBytes }, layers, l.guide);
+    buildPyramid({ leftBytes }, layers, l.colours);
     if (plan.isCensus)
         buildPyramid({ l.levels }, layers, l.matched);
     else
-        l.matched = l.guide;
+        l.matched = l.colours;
     buildPyramid({ plan.isCensus ? r.levels : byteLevels(movedRight, levels.bits, r.bytes) }, layers, r.matched);
     buildPyramid({ movedMasks.left }, layers, l.mask);
     buildPyramid({ movedMasks.right }, layers, r.mask);
     images.resize(layers);
+    const bool seesLevels = plan.isCensus && levels.isGrey;
     for (int layer = 0; layer < layers; ++layer)
-        images[layer] = { l.guide[layer], l.matched[layer], r.matched[layer], { l.mask[layer], r.mask[layer] } };
-    for (std::vector<Mat>* pyramid : { &l.guide, &l.matched, &r.matched, &l.mask, &r.mask })
+        images[layer] = { l.colours[layer],
+                          seesLevels ? l.matched[layer] : l.colours[layer],
+                          l.matched[layer],
+                          r.matched[layer],
+                          { l.mask[layer], r.mask[layer] } };
+    for (std::vector<Mat>* pyramid : { &l.colours, &l.matched, &r.matched, &l.mask, &r.mask })
         pyramid->front().release(); // may be the caller's
 }
 

@@ -20,7 +20,8 @@ void checkPair(const Mat& left, const Mat& right);
 //! What the stages see of a layer
 struct LayerImages
 {
-    Mat guide;       // gives the edge weights
+    Mat colours;     // of the left image, or its grey levels, in 8 bits
+    Mat guide;       // gives the edge weights: the colours, or the grey levels of greyLevels() where there are none
     Mat left, right; // give the matching cost; a candidate counts from minDisparity
     PairMasks masks; // of both
 };
@@ -30,6 +31,7 @@ struct LevelFindings
 {
     int bits = 8;                      // in use, see bitsInUse()
     double brightness = 1;             // what the levels are brightened by, see greyLevels()
+    bool isGrey = false;               // whether the left image has no colours
     BlockGrid leftBlocks, rightBlocks; // of JPEG compression
 };
 
@@ -37,7 +39,7 @@ struct LevelFindings
 struct ImagePyramids
 {
     Mat moved, bytes, levels;
-    std::vector<Mat> guide, matched, mask; // no guide of the right image
+    std::vector<Mat> colours, matched, mask; // no colours of the right image
 };
 
 //! Memory of the pyramids of a pair, kept from pair to pair

@@ -48,6 +48,7 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("white", m.white, std::isfinite(m.white) && m.white >= m.black, "finite and >= black");
     visit("bits", m.bits, m.bits >= 8 && m.bits <= (m.depth == CV_8U ? 8 : 16), "8..16, and 8 for CV_8U");
     visit("brightness", m.brightness, m.brightness >= 1 && m.brightness <= 4, "1..4");
+    visit("isGrey", m.isGrey, true, "");
     visit("leftBlockStart", m.leftBlockStart, m.leftBlockStart >= 0 && m.leftBlockStart < BlockGrid::side, "0..7");
     visit("leftBlockStep", m.leftBlockStep, isStep(m.leftBlockStep), notNegative);
     visit("rightBlockStart", m.rightBlockStart, m.rightBlockStart >= 0 && m.rightBlockStart < BlockGrid::side, "0..7");
@@ -110,7 +111,7 @@ PairModel::PairModel()
     : width(0), height(0), depth(CV_8U), x(0), y(0), tileWidth(0), tileHeight(0), minDisparity(0), numDisparities(0),
       addedColumns(0), rows(RowModel::terms, 0.), areRowsMoved(false), light(LightModel::terms, 0.),
       isLightChanged(false), rowError(0), noise(0), noiseLayer(0), black(0), white(0), bits(8), brightness(1),
-      leftBlockStart(0), leftBlockStep(0), rightBlockStart(0), rightBlockStep(0)
+      isGrey(false), leftBlockStart(0), leftBlockStep(0), rightBlockStart(0), rightBlockStep(0)
 {
     light[0] = 1;
 }
@@ -238,6 +239,7 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     LevelFindings& levels = given.levels;
     levels.bits = model.bits;
     levels.brightness = plan.isCensus ? model.brightness : 1;
+    levels.isGrey = model.isGrey;
     const int brightness = roundedBrightness(levels.brightness);
     const double unit = greyScale * brightness;
     levels.leftBlocks.begin = blockStart(model.leftBlockStart - model.x + plan.extension);
@@ -285,6 +287,7 @@ PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisp
     model.white = floats.white;
     model.bits = levels.bits;
     model.brightness = levels.brightness;
+    model.isGrey = levels.isGrey;
     model.leftBlockStart = blockStart(levels.leftBlocks.begin - plan.extension);
     model.leftBlockStep = levels.leftBlocks.step / unit;
     model.rightBlockStart = blockStart(levels.rightBlocks.begin - plan.extension - plan.minDisparity);

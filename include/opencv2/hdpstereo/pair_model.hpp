@@ -94,6 +94,8 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     //! What the dark levels of a dark pair are brightened by, for HDPTreeMatcher::COST_CENSUS: 1..4. From 1 to 2 and
     //! from 2 to 4, ever fewer of the bright levels are held back.
     CV_PROP_RW double brightness;
+    //! Whether the left image has no colours: edges are those of its grey levels then, for HDPTreeMatcher::COST_CENSUS.
+    CV_PROP_RW bool isGrey;
 
     //! First column, 0..7, of a block of JPEG compression, and the mean step between blocks in grey levels of 0 to 255,
     //! finite, >= 0; 0: there are none in this image, and nothing is smoothed in either. See Params::noiseThreshold.
