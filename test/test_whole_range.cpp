@@ -68,8 +68,8 @@ TEST(HDPStereo_SlowWholeRange, each_disparity_is_found)
 }
 
 //! The mean over several pictures at the ends of the range, which have candidates on one side only. In so small ones no
-//! noise is found that smooths: ULTRAFAST, whose only layer has 1 as half a pixel, then has 0 for one pixel in twenty. Of
-//! the largest disparity, if that is half a pixel, too, one in fifty has less.
+//! noise is found that smooths: ULTRAFAST, whose only layer has 1 as half a pixel, then has 0 for one pixel in twenty.
+//! Of the largest disparity, if that is half a pixel, too, one in fifty has less.
 TEST(HDPStereo_SlowWholeRange, ends_in_several_pictures)
 {
     const int pictures = 5;

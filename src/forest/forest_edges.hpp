@@ -30,8 +30,8 @@ struct TreeLink
 };
 
 /** w(p, q) of all edges: the largest absolute difference over the colour channels, as in the authors' program; the
-paper has the difference of intensities. Of grey levels it is 9 / 8 of their difference, rounded up: the largest of three
-differences is a bit more, and hardly ever 0 where there is any.
+paper has the difference of intensities. Of grey levels it is 9 / 8 of their difference, rounded up: the largest of
+three differences is a bit more, and hardly ever 0 where there is any.
 @param image CV_8UC1 or CV_8UC3, or CV_16UC1, see greyLevels().
 @param weights Receives CV_8UC2; weights.ptr()[e] is that of edge e; 0 at the border. */
 void weighEdges(const Mat& image, Mat& weights);

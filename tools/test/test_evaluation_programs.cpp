@@ -287,7 +287,7 @@ TEST(HDPStereo_EvaluationPrograms, read_16_bit)
                         folder.path("maps") + " --report=" + folder.path("report"));
     EXPECT_EQ(0, evaluated.status) << evaluated.errors;
     EXPECT_LT(faint.countErrors("maps/fast/scenes/faint.png", 1. / 256),
-              faint.countErrors("maps/fast/scenes/rounded.png", 1. / 256) / 2);
+              0.75 * faint.countErrors("maps/fast/scenes/rounded.png", 1. / 256));
     const Execution result = run(folder, "hdp_benchmark --runs=1 --methods=fast,opencv" + faint.images("faint"));
     EXPECT_EQ(0, result.status) << result.errors;
     const String option = " --truth=" + folder.path("scenes/faint/disp_left.png") + " --output=" + folder.root;

@@ -507,7 +507,7 @@ TEST(HDPStereo_Programs, read_16_bit)
                             " --focal=100" + " --baseline=2 --point-cloud=" + folder.path(scene + ".ply"));
         EXPECT_EQ(0, result.status) << result.errors;
     }
-    EXPECT_LT(faint.countErrors("faint.pfm", 1), faint.countErrors("rounded.pfm", 1) / 2);
+    EXPECT_LT(faint.countErrors("faint.pfm", 1), 0.75 * faint.countErrors("rounded.pfm", 1));
     EXPECT_EQ(0, run(folder, "example_hdpstereo_hdp_own_tree" + faint.images("faint")).status);
 }
 
