@@ -37,8 +37,6 @@ public:
     Verdict run()
     {
         result_.prior.clear();
-        if (plan_.seesBelow)
-            doubleIntervals(intervals(), plan_.numDisparities, own_.candidateIntervals);
         if (plan_.method == COST_SCANLINES)
             matchCosts();
         else if (plan_.method == WINDOW_SCANLINES)
@@ -186,8 +184,8 @@ private:
     //! DisparityInterval of each pixel; empty without ranges
     Mat intervals() const { return in_.pair.hasRanges ? in_.known.intervals[plan_.layer] : Mat(); }
 
-    //! The same in the candidates that are compared, see run()
-    Mat candidateIntervals() const { return plan_.seesBelow ? own_.candidateIntervals : intervals(); }
+    //! The same in the candidates that are compared
+    Mat candidateIntervals() const { return in_.pair.hasRanges ? in_.known.candidates[plan_.layer] : Mat(); }
 
     void predictFromLastFrame()
     {
@@ -324,7 +322,6 @@ private:
     //! From the winners to the layer's disparities. The authors' program has this median; the paper has no such filter.
     void filter()
     {
-        keepIntervals(result_.winners); // which occlusions or the last frame may have left
         filterMap();
         keepIntervals(result_.disparity);
     }

@@ -45,7 +45,6 @@ struct LayerScratch
     ColorGradientCost colorGradient;
     Mat guide, edgeWeights;              // what edges are weighed on; their weights, if there is no forest
     Mat pixelIntv;                       // PixelIntv, section 3.1
-    Mat candidateIntervals;              // of the pixels, if the candidates are those of the layer below
     SurfaceBuffers surfaceBuffers;       // memory of findOtherSurfaces()
     Mat others, windows;                 // what the windows of scanlines are predicted from; the windows
     Mat smoothness;                      // weights of the penalties in these windows

@@ -83,8 +83,9 @@ void upsampleDisparity(const Mat& upper, Size size, Mat& disparity)
 void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity, const Mat& mask,
                      const PixelRanges& ranges)
 {
-    const bool missesAny = !mask.empty() || !ranges.isEmpty(), isChecked = plan.disp12MaxDiff > 0,
-               isFiltered = plan.speckleWindowSize > 0, mayReject = missesAny || isChecked || isFiltered;
+    const bool missesAny = !mask.empty() || ranges.hasEmpty, isChecked = plan.disp12MaxDiff > 0,
+               isFiltered = plan.speckleWindowSize > 0,
+               isChanged = missesAny || isChecked || isFiltered || !ranges.isEmpty();
     std::vector<Rejected>& rejected = buffers.rejected;
     rejected.clear();
     const Size extendedSize = disparity.size() + Size(plan.extension, 0);
@@ -97,11 +98,11 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
     }
     const Mat map = extended.colRange(plan.extension, extended.cols);
     const bool isFloat = disparity.depth() == CV_32F;
-    if (isFloat && !mayReject)
+    if (isFloat && !isChanged)
         return convert(map, CV_32F, 1. / unit, plan.minDisparity, disparity);
     Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
     convert(map, CV_16S, 1, (double)plan.minDisparity * unit, fixedPoint);
-    if (!mayReject)
+    if (!isChanged)
         return;
 
     const short invalid = (short)((plan.minDisparity - 1) * unit);

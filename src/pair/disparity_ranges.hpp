@@ -12,6 +12,7 @@ namespace cv { namespace stereo { namespace hdp {
 struct PixelRanges
 {
     Mat smallest, largest; // CV_16SC1; empty: there are no ranges
+    bool hasEmpty = false; // whether a pixel may have none
 
     bool isEmpty() const { return smallest.empty(); }
 };
@@ -51,7 +52,7 @@ CV_EXPORTS void intersectIntervals(const Mat& intervals, Mat& others);
 //! Moves the disparities of a layer into the intervals of its pixels. disparity: CV_16UC1, a disparity map.
 CV_EXPORTS void moveIntoIntervals(const Mat& intervals, Mat& disparity);
 
-//! Moves the disparities of the image, CV_16SC1, into the ranges of its pixels; to this value where there is none.
+//! Moves the disparities of the image, CV_16SC1, into the ranges of its pixels; to this value where these are empty.
 void moveIntoRanges(const PixelRanges& ranges, short invalid, Mat& disparity);
 
 }}} // namespace cv::stereo::hdp

@@ -87,9 +87,11 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
 {
     const OutputPlan& output = plan.output;
     const int first = output.minDisparity, numDisparities = plan.alignment.numDisparities;
-    const std::vector<int> key = { inputs.changes,   plan.size.width,    plan.size.height, first,
-                                   numDisparities,   output.extension,   output.isWhole,   plan.top().hasFractions,
-                                   plan.top().layer, plan.finest().layer };
+    std::vector<int> key = { inputs.changes,   plan.size.width,    plan.size.height, first,
+                             numDisparities,   output.extension,   output.isWhole,   plan.top().hasFractions,
+                             plan.top().layer, plan.finest().layer };
+    for (const LayerPlan& layer : plan.layers)
+        key.push_back(layer.seesBelow);
     if (known.key == key)
         return;
     known.key.clear();
@@ -100,9 +102,17 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
                  known.ranges);
     buildIntervals(known.ranges, first, output.extension, counts, known.units, known.intervals);
     known.hulls.resize(known.intervals.size());
+    known.candidates.resize(known.intervals.size());
     if (inputs.hasRanges())
         for (const LayerPlan& layer : plan.layers)
-            halveIntervals(known.intervals[layer.layer], known.hulls[layer.layer]);
+        {
+            const Mat& intervals = known.intervals[layer.layer];
+            Mat candidates = intervals;
+            if (layer.seesBelow)
+                doubleIntervals(intervals, layer.numDisparities, candidates = Mat());
+            known.candidates[layer.layer] = candidates;
+            halveIntervals(intervals, known.hulls[layer.layer]);
+        }
     known.points.resize(counts.size());
     if (plan.hasPrior)
         for (const LayerPlan& layer : plan.layers)

@@ -37,6 +37,7 @@ struct KnownDisparities
 {
     PixelRanges ranges;
     std::vector<Mat> intervals;                  // of the layers, if there are ranges
+    std::vector<Mat> candidates;                 // the same in what a layer compares, see LayerPlan::seesBelow
     std::vector<Mat> hulls;                      // of those of 2 x 2 pixels, for windows
     std::vector<std::vector<PriorPoint>> points; // of the layers, if there is a prior
     std::vector<Mat> units;                      // memory of buildIntervals(), kept from pair to pair
