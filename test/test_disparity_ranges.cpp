@@ -98,8 +98,9 @@ TEST(HDPStereo_DisparityRanges, follow_what_changes)
     pair.truth(Rect(0, 0, 200, 60)).copyTo(prior(Rect(0, 0, 200, 60)));
     typedef HDPTreeMatcher::Params Params;
     Params quality(HDPTreeMatcher::PRESET_QUALITY), half(HDPTreeMatcher::PRESET_ULTRAFAST), whole,
-        paper(HDPTreeMatcher::PRESET_PAPER);
+        paper(HDPTreeMatcher::PRESET_PAPER), sums;
     whole.useSubpixel = paper.useSubpixel = false;
+    sums.topAggregation = HDPTreeMatcher::AGGREGATION_TREES;
     const struct
     {
         const char* what;
@@ -111,6 +112,8 @@ TEST(HDPStereo_DisparityRanges, follow_what_changes)
         { "first", pair, quality, 0, 40, lowest, highest, none },
         { "largest", pair, quality, 0, 40, lowest, higher, none },
         { "more layers", pair, Params(), 0, 40, lowest, higher, none },
+        { "no candidates of the layer below", pair, sums, 0, 40, lowest, higher, none },
+        { "and with these again", pair, Params(), 0, 40, lowest, higher, none },
         { "whole disparities", pair, whole, 0, 40, lowest, higher, none },
         { "no fractions of layers", pair, paper, 0, 40, lowest, higher, none },
         { "minDisparity", pair, paper, 1, 40, lowest, higher, none },
