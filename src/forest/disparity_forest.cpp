@@ -179,12 +179,13 @@ void startTrees(const Mat& pixelIntv, const Range& rows, ForestBuffers& buffers)
     }
 }
 
-//! Asks Rule 1 for the order of edges and refuses what is not a permutation.
-void orderEdges(const TreeStrategy& strategy, const Mat& weights, Stripe& stripe)
+//! Asks Rule 1 for the order of the edges of some rows and refuses what is not a permutation.
+void orderEdges(const TreeStrategy& strategy, const Mat& weights, const Mat& pixelIntv, const Range& rows,
+                std::vector<int>& edges)
 {
-    std::vector<int>& edges = stripe.edges;
     if (strategy.ordersByWeight())
-        return sortByWeight(weights, edges, stripe.sorted);
+        return selectEdgesByWeight(weights, pixelIntv, rows, edges);
+    selectEdges(weights, pixelIntv, rows, edges);
     std::vector<bool> isMissing(weights.total() * 2);
     for (int edge : edges)
         isMissing[edge] = true;
@@ -220,8 +221,7 @@ void joinTrees(const TreeStrategy& strategy, const Mat& pixelIntv, const JoinerP
         stripe.undecidedEdges.clear();
         stripe.frozenRoots.clear();
         startTrees(pixelIntv, rows, buffers);
-        selectEdges(weights, pixelIntv, rows, stripe.edges);
-        orderEdges(strategy, weights, stripe);
+        orderEdges(strategy, weights, pixelIntv, rows, stripe.edges);
         StripeJoiner(&strategy, params.beta, rows, buffers, stripe, forest).tryEdges(stripe.edges);
     });
 
@@ -235,15 +235,12 @@ void joinTrees(const TreeStrategy& strategy, const Mat& pixelIntv, const JoinerP
         for (int root : stripe.frozenRoots)
             buffers.nodes[root].parent += frozenMark;
     }
-    sortByWeight(weights, whole.edges, whole.sorted); // those of one weight are by number already
+    sortByWeight(weights, whole.edges); // those of one weight are by number already
     StripeJoiner(&strategy, params.beta, all, buffers, whole, forest).tryEdges(whole.edges);
     if (!params.link || !strategy.linksTrees())
         return;
     if (count > 1)
-    {
-        selectEdges(weights, pixelIntv, all, stripes[0].edges);
-        sortByWeight(weights, stripes[0].edges, whole.sorted);
-    }
+        selectEdgesByWeight(weights, pixelIntv, all, stripes[0].edges);
     StripeJoiner(nullptr, params.beta, all, buffers, whole, forest).tryEdges(stripes[0].edges);
 }
 

@@ -35,7 +35,6 @@ struct ForestBuffers
     struct Stripe // of the image, whose trees a thread joins
     {
         std::vector<int> edges;          // in the order in which they are tried
-        std::vector<int> sorted;         // to sort them
         std::vector<int> undecidedEdges; // those that wait until all stripes are done
         std::vector<int> frozenRoots;    // of the trees that must not grow until then
     };

@@ -97,11 +97,7 @@ Ptr<TreeStrategy> createTreeStrategy(const String& name)
 
 } // namespace hdp
 
-void TreeStrategy::orderEdges(const Mat& weights, std::vector<int>& edges) const
-{
-    std::vector<int> sorted;
-    hdp::sortByWeight(weights, edges, sorted);
-}
+void TreeStrategy::orderEdges(const Mat& weights, std::vector<int>& edges) const { hdp::sortByWeight(weights, edges); }
 
 Ptr<TreeStrategy> createMinimumSpanningTree() { return makePtr<hdp::MinimumSpanningTree>(); }
 
