@@ -119,8 +119,8 @@ Mat sumDifferences(const Mat& map, const Mat& other, bool isUpper, int side)
             for (int row = 2 * y; row < 2 * y + 2; ++row)
             {
                 const int inside = std::min(row, map.rows - 1);
-                const ushort *const own = map.ptr<ushort>(inside), *const there = isUpper ? doubled.data()
-                                                                                          : other.ptr<ushort>(inside);
+                const ushort* const own = map.ptr<ushort>(inside);
+                const ushort* const there = isUpper ? doubled.data() : other.ptr<ushort>(inside);
                 HDP_VECTORIZED for (int x = 0; x < width; ++x) sums[x] =
                     (ushort)(sums[x] + std::min(difference(own[x], there[x]), limit));
             }

@@ -90,13 +90,14 @@ public:
         sumCosts(winners_, ofWinners);
         sumCosts(hypotheses, ofHypotheses);
         const int area = windowSide * windowSide;
-        for (int y = 0; y < winners_.rows; ++y)
+        parallelForRows(winners_.size(), [&](int y) {
             for (int x = 0; x < width_; ++x)
             {
                 const int more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners.ptr<ushort>(y)[x];
                 if (more <= area * (isOpposed.ptr(y)[x] ? contradiction : contradictionAlone))
                     winners_.ptr<ushort>(y)[x] = hypotheses.ptr<ushort>(y)[x];
             }
+        });
     }
 
 private:
@@ -116,8 +117,8 @@ private:
     {
         const int channels = guide_.channels();
         const Point other = points_[index].place;
-        const uchar *const p = guide_.ptr(place.y) + place.x * channels, *const q =
-                                                                             guide_.ptr(other.y) + other.x * channels;
+        const uchar* const p = guide_.ptr(place.y) + place.x * channels;
+        const uchar* const q = guide_.ptr(other.y) + other.x * channels;
         int color = 0;
         for (int c = 0; c < channels; ++c)
             color = std::max(color, std::abs(p[c] - q[c]));

@@ -210,11 +210,11 @@ void checkPairModelOf(const PairModel& model, Size size, int type, int layers)
 {
     if (model.empty())
         return;
+    const char* const levels = model.depth == CV_32F  ? "levels of CV_32F"
+                               : model.depth == CV_8U ? "8 bits per level"
+                                                      : "16 bits per level";
     if (model.depth != CV_MAT_DEPTH(type))
-        CV_Error(Error::StsUnmatchedFormats, format("left must have %s as the pair model, see setPairModel()",
-                                                    model.depth == CV_32F  ? "levels of CV_32F"
-                                                    : model.depth == CV_8U ? "8 bits per level"
-                                                                           : "16 bits per level"));
+        CV_Error(Error::StsUnmatchedFormats, format("left must have %s as the pair model, see setPairModel()", levels));
     if (size != Size(model.tileWidth, model.tileHeight))
         CV_Error(Error::StsUnmatchedSizes,
                  format("left must have %d x %d pixels as the pair model, not %d x %d, see setPairModel()",

@@ -170,8 +170,9 @@ StereoCalibration readRos(const Texts& texts)
 //! Each matrix is in one of the texts: M1 and so on.
 const CalibrationText& textWith(const Texts& texts, const std::string& name)
 {
-    return texts.size() > 1 && (texts[1].has(name) || (!texts[0].has(name) && (name == "R" || name == "T"))) ? texts[1]
-                                                                                                             : texts[0];
+    const bool isUsuallySecond = name == "R" || name == "T";
+    const bool isSecond = texts.size() > 1 && (texts[1].has(name) || (!texts[0].has(name) && isUsuallySecond));
+    return texts[isSecond ? 1 : 0];
 }
 
 StereoCalibration readOpenCV(const Texts& texts, Size imageSize, double unit)
