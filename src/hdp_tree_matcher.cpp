@@ -24,7 +24,7 @@ namespace {
 const char* const nameInFiles = "StereoMatcher.HDPTree"; // as OpenCV's StereoMatcher.SGBM
 
 // Factor of the errors from a layer to the one below that it is enlarged to: means of pixels have less noise
-const double sigmaPerLayer = 1.45;
+const double sigmaPerLayer = 1.37;
 
 //! The setter and the getter of a parameter
 #define HDP_PARAMETER(T, Name, member)                                                                                 \
@@ -204,7 +204,8 @@ public:
         if (plan.cost.isCensus)
             levelMismatch(layers_[plan.layer].disparity, scratch_[plan.layer].census, mismatch);
         const float rounding = result_.plan.output.isWhole ? 0.34f : 0.f; // of 68 % of what is rounded to whole pixels
-        disparitySigma(confidenceOfLayer(), mismatch, result_.findings.rowError, rounding, ofLayer);
+        const double noise = result_.findings.noise.ofLayer(0) / roundedBrightness(pyramids_.levels.brightness);
+        disparitySigma(confidenceOfLayer(), mismatch, result_.findings.rowError, noise, rounding, ofLayer);
         double scale = 1;
         for (int layer = 0; layer < plan.layer; ++layer)
             scale *= sigmaPerLayer;

@@ -83,9 +83,9 @@ TEST(HDPStereo_DisparitySigma, falls_with_confidence_and_rises_with_mismatch)
             confidence.at<uchar>(y, x) = (uchar)x;
             mismatch.at<float>(y, x) = 0.06f * y;
         }
-    hdp::disparitySigma(confidence, mismatch, 0, 0, sigma);
-    hdp::disparitySigma(confidence, mismatch, 0, 0.34f, whole);
-    EXPECT_TRUE(cv::checkRange(sigma, true, nullptr, 0.2, 4));
+    hdp::disparitySigma(confidence, mismatch, 0, 0, 0, sigma);
+    hdp::disparitySigma(confidence, mismatch, 0, 0, 0.34f, whole);
+    EXPECT_TRUE(cv::checkRange(sigma, true, nullptr, 0.18, 4));
     for (int y = 0; y < 60; ++y)
         for (int x = 0; x < 256; ++x)
         {
@@ -96,18 +96,21 @@ TEST(HDPStereo_DisparitySigma, falls_with_confidence_and_rises_with_mismatch)
         }
 }
 
-TEST(HDPStereo_DisparitySigma, rises_with_the_row_error)
+TEST(HDPStereo_DisparitySigma, rises_with_the_row_error_and_the_noise)
 {
     const Mat confidence(1, 3, CV_8U, Scalar(100));
-    const auto sigmaFor = [&](double rowError) {
+    const auto sigmaFor = [&](double rowError, double noise) {
         Mat sigma;
-        hdp::disparitySigma(confidence, Mat(), rowError, 0, sigma);
+        hdp::disparitySigma(confidence, Mat(), rowError, noise, 0, sigma);
         return sigma.at<float>(0, 1);
     };
-    EXPECT_NEAR(1.2, sigmaFor(1.44 * 0.1) / sigmaFor(0.1), 1e-5);
-    EXPECT_EQ(sigmaFor(0.12), sigmaFor(0)) << "unknown";
-    EXPECT_EQ(sigmaFor(0.03), sigmaFor(1e-6));
-    EXPECT_EQ(sigmaFor(0.25), sigmaFor(1e6));
+    EXPECT_NEAR(1.2, sigmaFor(1.44 * 0.1, 0) / sigmaFor(0.1, 0), 1e-5);
+    EXPECT_EQ(sigmaFor(0.12, 0), sigmaFor(0, 0)) << "unknown";
+    EXPECT_EQ(sigmaFor(0.03, 0), sigmaFor(1e-6, 0));
+    EXPECT_EQ(sigmaFor(0.25, 0), sigmaFor(1e6, 0));
+    EXPECT_NEAR(1.1, sigmaFor(0.1, 1.4641 * 2) / sigmaFor(0.1, 2), 1e-5);
+    EXPECT_EQ(sigmaFor(0.1, 1), sigmaFor(0.1, 0)) << "unknown";
+    EXPECT_EQ(sigmaFor(0.1, 4), sigmaFor(0.1, 1e6));
 }
 
 TEST(HDPStereo_DisparitySigma, is_true_of_a_pair)

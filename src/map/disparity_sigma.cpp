@@ -5,6 +5,7 @@
 #include "disparity_sigma.hpp"
 
 #include "../base/units.hpp"
+#include "../base/vectorized.hpp"
 #include "../base/window_sums.hpp"
 
 #include <cmath>
@@ -23,23 +24,26 @@ const int unit = subpixelScale;
 // sets between 50 and 80 %. Beyond the limits there were few pairs to tell it.
 const double minRowError = 0.03, usualRowError = 0.12, maxRowError = 0.25;
 
-// Errors in pixels by which 50 to 80 % are not larger, at the usual row error, of FAST, QUALITY and TREE on pairs of
-// Middlebury, ETH3D, SceneFlow and KITTI, each set as much as the others; made to fall with the confidence and to rise
-// with the mismatch, and smooth.
+// Grey levels. Sigma rises with the fourth root of the noise between these, beyond which the same holds.
+const double minNoise = 1, maxNoise = 4;
+
+// Errors in pixels by which 50 to 80 % are not larger, at the usual row error and little noise, of FAST, QUALITY and TREE
+// on pairs of Middlebury, ETH3D, SceneFlow and KITTI, each set as much as the others; made to fall with the confidence
+// and to rise with the mismatch, and smooth.
 const int confidences = 9, mismatches = 7;
 const float confidenceOf[confidences] = { 2, 10, 20, 30, 44, 64, 88, 116, 150 };
 const float mismatchOf[mismatches] = { 0.15f, 0.3f, 0.45f, 0.65f, 0.9f, 1.4f, 2.5f };
 const float unknownMismatch = 0.65f; // that of most pixels
 const float sigmas[confidences][mismatches] = {
-    { 1.10f, 1.30f, 1.40f, 1.40f, 1.50f, 2.70f, 3.80f }, // confidence 2
-    { 0.62f, 0.82f, 1.10f, 1.10f, 1.20f, 1.60f, 1.80f }, // confidence 10
-    { 0.43f, 0.49f, 0.61f, 0.67f, 0.76f, 0.87f, 0.89f }, // confidence 20
-    { 0.38f, 0.39f, 0.45f, 0.52f, 0.58f, 0.64f, 0.65f }, // confidence 30
-    { 0.33f, 0.34f, 0.37f, 0.44f, 0.48f, 0.51f, 0.52f }, // confidence 44
-    { 0.28f, 0.32f, 0.33f, 0.37f, 0.40f, 0.43f, 0.44f }, // confidence 64
-    { 0.25f, 0.28f, 0.29f, 0.31f, 0.33f, 0.35f, 0.36f }, // confidence 88
-    { 0.23f, 0.25f, 0.28f, 0.29f, 0.31f, 0.32f, 0.33f }, // confidence 116
-    { 0.22f, 0.23f, 0.24f, 0.27f, 0.30f, 0.32f, 0.32f }, // confidence 150
+    { 0.97f, 1.14f, 1.23f, 1.23f, 1.32f, 2.38f, 3.34f }, // confidence 2
+    { 0.55f, 0.72f, 0.97f, 0.97f, 1.06f, 1.41f, 1.58f }, // confidence 10
+    { 0.38f, 0.43f, 0.54f, 0.59f, 0.67f, 0.77f, 0.78f }, // confidence 20
+    { 0.33f, 0.34f, 0.40f, 0.46f, 0.51f, 0.56f, 0.57f }, // confidence 30
+    { 0.29f, 0.30f, 0.33f, 0.39f, 0.42f, 0.45f, 0.46f }, // confidence 44
+    { 0.25f, 0.28f, 0.29f, 0.33f, 0.35f, 0.38f, 0.39f }, // confidence 64
+    { 0.22f, 0.25f, 0.26f, 0.27f, 0.29f, 0.31f, 0.32f }, // confidence 88
+    { 0.20f, 0.22f, 0.25f, 0.26f, 0.27f, 0.28f, 0.29f }, // confidence 116
+    { 0.19f, 0.20f, 0.21f, 0.24f, 0.26f, 0.28f, 0.28f }, // confidence 150
 };
 
 //! Where a value is between ascending ones: the first of two, and the share of the second
@@ -101,10 +105,13 @@ void levelMismatch(const Mat& disparity, const CensusCost& cost, Mat& mismatch)
     });
 }
 
-void disparitySigma(const Mat& confidence, const Mat& mismatch, double rowError, float rounding, Mat& sigma)
+void disparitySigma(const Mat& confidence, const Mat& mismatch, double rowError, double noise, float rounding,
+                    Mat& sigma)
 {
-    const double error = rowError > 0 ? std::min(std::max(rowError, minRowError), maxRowError) : usualRowError;
-    const float ofPair = (float)std::sqrt(error / usualRowError);
+    const double error = rowError > 0 ? clamped(rowError, +minRowError, +maxRowError) : usualRowError;
+    // Roots alone, which are the same on all machines
+    const float ofPair =
+        (float)(std::sqrt(error / usualRowError) * std::sqrt(std::sqrt(clamped(noise, +minNoise, +maxNoise))));
     Place places[256];
     for (int i = 0; i < 256; ++i)
         places[i] = placeOf((float)i, confidenceOf, confidences);

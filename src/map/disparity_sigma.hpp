@@ -19,13 +19,15 @@ CV_EXPORTS void levelMismatch(const Mat& disparity, const CensusCost& cost, Mat&
 
 /** Standard deviation of the disparities' errors, in pixels of the layer: 68 % of them are within it. It is what errors
 of pixels with this confidence and mismatch are in pairs of known truth, by a table between whose lines and columns it
-is linear, times the root of the row error in terms of the usual one.
+is linear, times the root of the row error in terms of the usual one and the fourth root of the noise.
 @param confidence Of the layer, CV_8UC1.
 @param mismatch Of the layer, CV_32FC1; empty if it is unknown.
 @param rowError Of the pair, in pixels, see RowFindings; 0 if it is unknown.
+@param noise Of the images in grey levels, 0 if it is unknown: as little.
 @param rounding Of what disparities are rounded by, 0 if they have fractions.
 @param sigma Receives CV_32FC1. */
-CV_EXPORTS void disparitySigma(const Mat& confidence, const Mat& mismatch, double rowError, float rounding, Mat& sigma);
+CV_EXPORTS void disparitySigma(const Mat& confidence, const Mat& mismatch, double rowError, double noise,
+                               float rounding, Mat& sigma);
 
 }}} // namespace cv::stereo::hdp
 

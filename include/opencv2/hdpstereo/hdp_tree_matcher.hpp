@@ -588,7 +588,8 @@ public:
     /** @brief Returns the standard deviation of each disparity's error in the last compute().
 
     About 68 % of the errors of pixels with a value are not larger; it is calibrated on pairs of known truth. It comes
-    from getConfidence(), from how much matched levels differ for the texture there is, and from Findings::rowError.
+    from getConfidence(), from how much matched levels differ for the texture there is, from Findings::rowError, and
+    from Findings::noise.
     About two thirds of the disparities that are wrong by more than 3 pixels have one above 1; how much they are wrong
     it does not tell. It is computed by this call.
     @param sigma Receives CV_32FC1 of the left image's size, in pixels; infinite where a pixel has no data or a filter
