@@ -232,7 +232,7 @@ private:
     {
         if (plan_.hasFractions && plan_.layer > 0)
             min(result_.winners, plan_.maxDisparity, result_.winners);
-        correctWinners();
+        joinWithPrior();
         if (plan_.fillsOcclusions || !plan_.isFinest)
             findResidual();
         if (plan_.fillsOcclusions)
@@ -281,7 +281,7 @@ private:
                                    own_.windows, own_.smoothness, penalties, shared_.scanlines, result_.winners,
                                    own_.passResidual);
             });
-            correctWinners();
+            joinWithPrior();
             if (!plan_.isFinest)
                 findResidual(); // without priors
             if (plan_.fillsOcclusions)
@@ -323,13 +323,13 @@ private:
     void filter()
     {
         filterMap();
-        keepIntervals(result_.disparity);
+        if (!plan_.isFinest) // whose map outputDisparity() moves into the ranges
+            keepIntervals(result_.disparity);
     }
 
-    //! Moves the winners into the intervals of their pixels, and joins them with the prior, which may leave them.
-    void correctWinners()
+    //! With ranges, winners are nearly in them, as their candidates are.
+    void joinWithPrior()
     {
-        keepIntervals(result_.winners);
         if (in_.pair.hasPrior)
             clock_.run("prior", [&] {
                 joinPrior(in_.known.points[plan_.layer], in_.images.colours, own_.census, plan_.layer,
