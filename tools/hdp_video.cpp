@@ -4,6 +4,7 @@
 
 // Matches videos frame by frame and with temporal prediction: errors, how much the disparities flicker, and time.
 
+#include <cstdio>
 #include <iostream>
 
 #include "opencv2/core.hpp"
@@ -30,6 +31,8 @@ static const String KEYS =
     "{methods         | fast,quality | names as of hdp_evaluate }"
     "{noise           | 0,5 | standard deviations of Gaussian noise in both images, in grey levels }"
     "{still           |     | in place of each video, its first frame so many times, with noise of its own each time }"
+    "{pan             |     | in place of each video, each of its pairs as one that a camera pans over: RIGHT,DOWN "
+    "pixels from frame to frame, in --still frames, or eight }"
     "{variants        |     | in place of that, variants of each video that may mislead; all, or a list of recorded, "
     "every2, every3, every4, reversed, random, three-times, exposure.7, exposure.5, fade, noise15, foreign, shake6, "
     "rows3 }"
@@ -51,6 +54,15 @@ static std::vector<double> readDeviations(const CommandLineParser& parser)
     if (deviations.empty())
         fail("--noise names no standard deviation");
     return deviations;
+}
+
+static Point readStep(const String& text)
+{
+    int x = 0, y = 0, end = 0;
+    if (std::sscanf(text.c_str(), "%d,%d%n", &x, &y, &end) != 2 || text[end] || std::abs(x) > 1000 ||
+        std::abs(y) > 1000)
+        fail("--pan=" + text + ": not RIGHT,DOWN in pixels, up to 1000");
+    return Point(x, y);
 }
 
 //! A frame as it was taken
@@ -117,16 +129,16 @@ public:
     //! Has nothing to do if the method knows no temporal prediction.
     bool isIdle() const { return isTemporal_ && !method_.isHdp; }
 
-    void match(const Mat& left, const Mat& right, const Frame& frame, int index, bool counts)
+    //! isFirst: of its video; index: of all frames that the stream gets
+    void match(const Mat& left, const Mat& right, const Frame& frame, bool isFirst, int index, bool counts)
     {
         if (isIdle())
             return;
-        if (!matcher_)
-            matcher_ = method_.create(frame.pair.disparities);
-        if (method_.isHdp && index == 0)
+        if (isFirst)
         {
-            matcher_->clear();
-            matcher_.dynamicCast<HDPTreeMatcher>()->setUseTemporalPrediction(isTemporal_);
+            matcher_ = method_.create(frame.pair.disparities);
+            if (method_.isHdp)
+                matcher_.dynamicCast<HDPTreeMatcher>()->setUseTemporalPrediction(isTemporal_);
         }
         double seconds;
         std::array<Mat, 2> images = { { left, right } };
@@ -257,9 +269,9 @@ static Table toTable(const String& title, const std::vector<VideoVariant>& varia
 }
 
 //! Matches a video, all streams in turns: those of each noise, and of it those of each method. Frames from firstCounted
-//! on count.
-static void matchVideo(Video video, int runs, const std::vector<double>& noise, int firstCounted, Streams* streams,
-                       size_t methods, Progress& progress)
+//! on count. before: frames of other videos that the streams got
+static void matchVideo(Video video, int before, int runs, const std::vector<double>& noise, int firstCounted,
+                       Streams* streams, size_t methods, Progress& progress)
 {
     const int frames = video.size();
     for (int run = 0; run < runs; ++run)
@@ -274,7 +286,8 @@ static void matchVideo(Video video, int runs, const std::vector<double>& noise, 
                           right = addNoise(frame.pair.right, noise[k], rng);
                 for (size_t m = 0; m < methods; ++m)
                     for (int turn = 0; turn < 2; ++turn)
-                        streams[k * methods + m][(i + turn) % 2].match(left, right, frame, i, i >= firstCounted);
+                        streams[k * methods + m][(i + turn) % 2].match(left, right, frame, i == 0, before + i,
+                                                                       i >= firstCounted);
             }
             progress.step(format("frame %d", i));
         }
@@ -287,9 +300,39 @@ struct Task
     std::vector<Method> methods;
     std::vector<double> noise;
     int numDisparities, stillFrames, runs;
-    bool hasVariants, isGrey;
+    bool hasVariants, isGrey, isPanned;
     String variants;
+    Point step; // of a camera that pans
 };
+
+//! Streams of each noise, and of it of each method
+static std::vector<Streams> makeStreams(const Task& task)
+{
+    std::vector<Streams> streams;
+    for (size_t k = 0; k < task.noise.size(); ++k)
+        for (const Method& method : task.methods)
+            streams.push_back(Streams{ { Stream(method, false), Stream(method, true) } });
+    return streams;
+}
+
+//! The table of pairs that a camera pans over
+static Table evaluatePans(const Task& task, const std::vector<Scene>& scenes)
+{
+    const int frames = task.stillFrames > 0 ? task.stillFrames : 8, firstCounted = frames / 2;
+    std::vector<Streams> streams = makeStreams(task);
+    Progress progress(scenes.size() * frames * task.runs);
+    for (size_t i = 0; i < scenes.size(); ++i)
+    {
+        const Size size = readPair(scenes[i]).left.size();
+        const Video video(scenes, panOver((int)i, size, task.step, frames), task.isGrey, task.numDisparities);
+        matchVideo(video, (int)i * frames, task.runs, task.noise, firstCounted, streams.data(), task.methods.size(),
+                   progress);
+    }
+    progress.finish();
+    return toTable(format("%s: pans over %d pairs, the last %d of %d frames", scenes[0].set.c_str(), (int)scenes.size(),
+                          frames - firstCounted, frames),
+                   task.noise, task.methods, streams);
+}
 
 //! The table of a video
 static Table evaluate(const Task& task, const std::vector<Scene>& scenes)
@@ -307,14 +350,13 @@ static Table evaluate(const Task& task, const std::vector<Scene>& scenes)
     for (const VideoVariant& variant : variants)
     {
         steps += variant.frames.size() * task.runs;
-        for (size_t k = 0; k < task.noise.size(); ++k)
-            for (const Method& method : task.methods)
-                streams.push_back(Streams{ { Stream(method, false), Stream(method, true) } });
+        for (const Streams& own : makeStreams(task))
+            streams.push_back(own);
     }
     Progress progress(steps);
     const int frames = (int)variants[0].frames.size(), firstCounted = task.hasVariants ? 0 : frames / 2;
     for (size_t v = 0; v < variants.size(); ++v)
-        matchVideo(Video(scenes, variants[v].frames, task.isGrey, task.numDisparities), task.runs, task.noise,
+        matchVideo(Video(scenes, variants[v].frames, task.isGrey, task.numDisparities), 0, task.runs, task.noise,
                    firstCounted, &streams[v * task.noise.size() * methods], methods, progress);
     progress.finish();
     if (task.hasVariants)
@@ -330,8 +372,11 @@ static Task readTask(const CommandLineParser& parser)
     task.hasVariants = parser.has("variants");
     const String variants = task.hasVariants ? parser.get<String>("variants") : String();
     task.variants = variants == "true" ? String() : variants; // without a value
-    if (task.hasVariants && parser.has("still"))
-        fail("--still and --variants do not go together");
+    task.isPanned = parser.has("pan");
+    if (task.hasVariants && (parser.has("still") || task.isPanned))
+        fail("--variants does not go with --still or --pan");
+    if (task.isPanned)
+        task.step = readStep(parser.get<String>("pan"));
     selectVariants(task.variants, 1);
     task.noise = task.hasVariants ? std::vector<double>(1, 0.) : readDeviations(parser);
     task.numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 1, 2048) : 0;
@@ -361,7 +406,7 @@ static int run(const CommandLineParser& parser)
     for (const std::vector<Scene>& scenes : videos)
         try
         {
-            const Table table = evaluate(task, scenes);
+            const Table table = task.isPanned ? evaluatePans(task, scenes) : evaluate(task, scenes);
             if (isInterrupted())
                 return 130;
             std::cout << toMarkdown(table) << std::endl;

@@ -108,6 +108,19 @@ void moveDown(int rows, int border, const Scalar& value, Mat& image)
     copyMakeBorder(above, image, image.rows - above.rows, 0, 0, 0, border, value);
 }
 
+//! Shows a part alone. What it has no match of is not judged.
+void cutOut(const Rect& part, Pair& pair)
+{
+    for (Mat* map : { &pair.left, &pair.right, &pair.truth, &pair.judged, &pair.judgedNonOccluded })
+        if (!map->empty())
+            *map = (*map)(part).clone();
+    for (int y = 0; y < pair.truth.rows; ++y)
+        for (int x = 0; x < pair.truth.cols; ++x)
+            for (Mat* judged : { &pair.judged, &pair.judgedNonOccluded })
+                if (!judged->empty() && pair.truth.at<float>(y, x) > x)
+                    judged->at<uchar>(y, x) = 0;
+}
+
 } // namespace
 
 std::vector<VideoVariant> selectVariants(const String& list, int frames)
@@ -136,8 +149,24 @@ std::vector<VideoVariant> selectVariants(const String& list, int frames)
     return variants;
 }
 
+std::vector<VariantFrame> panOver(int index, const Size& size, const Point& step, int frames)
+{
+    const Point way = step * (frames - 1), distance(std::abs(way.x), std::abs(way.y));
+    if (2 * distance.x > size.width || 2 * distance.y > size.height)
+        fail(format("--pan moves by more than half of the images, %d x %d pixels", size.width, size.height));
+    std::vector<VariantFrame> panned(frames, VariantFrame(index));
+    for (int i = 0; i < frames; ++i)
+    {
+        const Point at = step * i - Point(std::min(way.x, 0), std::min(way.y, 0));
+        panned[i].part = Rect(at, Size(size.width - distance.x, size.height - distance.y));
+    }
+    return panned;
+}
+
 void changeFrame(const VariantFrame& frame, RNG& rng, Pair& pair)
 {
+    if (!frame.part.empty())
+        cutOut(frame.part, pair);
     Mat* const maps[] = { &pair.truth, &pair.judged, &pair.judgedNonOccluded };
     if (frame.isReversed)
     {

@@ -22,6 +22,7 @@ struct VariantFrame
     int rows = 0;            // that the picture moves down by, in both images
     int rightRows = 0;       // that the right image moves down by, beside that
     bool isReversed = false; // upside down: another scene, whose truth is known
+    cv::Rect part;           // of the picture, which is shown alone; empty: all of it
 
     explicit VariantFrame(int recorded = 0) : index(recorded) {}
 };
@@ -46,6 +47,14 @@ struct VideoVariant
 std::vector<VideoVariant> selectVariants(const String& list, int frames);
 
 //! Does with a recorded frame what a variant does with it.
+/** A pair as the video of a camera that pans over it: parts of one size, which move by a step in pixels from frame to
+frame. So the truth of the pair is that of each frame.
+@param index Of the recorded frame.
+@param size Of the images.
+@param step In pixels, to the right and down.
+@param frames Their number. */
+std::vector<VariantFrame> panOver(int index, const cv::Size& size, const cv::Point& step, int frames);
+
 void changeFrame(const VariantFrame& frame, cv::RNG& rng, Pair& pair);
 
 } // namespace hdp_tools

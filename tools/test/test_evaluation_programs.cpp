@@ -182,6 +182,19 @@ TEST(HDPStereo_EvaluationPrograms, video)
     EXPECT_LE(d1[1], d1[0]);
     EXPECT_LT(flicker[1], 0.5 * flicker[0]);
 
+    // Pairs that a camera pans over: their truth is that of each frame.
+    const Execution pans = run(folder, "hdp_video " + folder.path("videos/known") +
+                                           " --num-disparities=32 --methods=fast,bm --noise=2 --pan=-3,1 --still=6");
+    EXPECT_EQ(0, pans.status) << pans.errors;
+    EXPECT_NE(String::npos, pans.output.find("### known: pans over 4 pairs, the last 3 of 6 frames")) << pans.output;
+    const size_t panned = pans.output.find("| fast | 2 |");
+    ASSERT_NE(String::npos, panned) << pans.output;
+    ASSERT_EQ(2, std::sscanf(pans.output.c_str() + panned, "| fast | 2 | %lf | %lf |", &d1[0], &d1[1])) << pans.output;
+    EXPECT_LT(d1[0], 10);
+    EXPECT_LE(d1[1], 1.1 * d1[0]);
+    EXPECT_EQ(2, run(folder, "hdp_video " + folder.path("videos/known") + " --pan=90,0").status)
+        << "no picture is left";
+
     const Execution some =
         run(folder, "hdp_video " + folder.path("videos/known") +
                         " --num-disparities=32 --methods=fast,bm --colors --variants=every2,foreign");
@@ -194,7 +207,8 @@ TEST(HDPStereo_EvaluationPrograms, video)
     for (const char* name : { "recorded", "random", "three-times", "exposure.7", "fade", "noise15", "rows3" })
         EXPECT_NE(String::npos, variants.output.find(format("\n| %s | fast | - | - | ", name))) << variants.output;
 
-    for (const char* bad : { "--noise=x", "--noise=-1", "--still=1", "--variants=rain", "--variants --still=9" })
+    for (const char* bad : { "--noise=x", "--noise=-1", "--still=1", "--variants=rain", "--variants --still=9", "--pan",
+                             "--pan=3", "--pan=3,x", "--pan=3,1 --variants" })
         EXPECT_EQ(1, run(folder, "hdp_video " + folder.path("videos") + " " + bad).status) << bad;
     folder.write("videos/unknown/left/002.png", Mat(10, 10, CV_8U, Scalar(0)));
     const Execution skipped = run(folder, common);

@@ -86,4 +86,32 @@ TEST(HDPStereo_VideoVariants, changes)
     EXPECT_EQ(0, cv::norm(changed("noise15", 1).left, rowsPair().left));
 }
 
+TEST(HDPStereo_VideoVariants, a_camera_that_pans_sees_parts_of_one_size)
+{
+    const std::vector<VariantFrame> left = panOver(7, Size(30, 20), Point(-4, 2), 4);
+    ASSERT_EQ(4u, left.size());
+    for (int i = 0; i < 4; ++i)
+    {
+        EXPECT_EQ(7, left[i].index);
+        EXPECT_EQ(Rect(12 - 4 * i, 2 * i, 18, 14), left[i].part);
+    }
+    EXPECT_EQ(Rect(0, 0, 30, 20), panOver(0, Size(30, 20), Point(), 3)[2].part) << "stands still";
+
+    Pair pair = rowsPair();
+    RNG rng(1);
+    VariantFrame frame;
+    frame.part = Rect(1, 2, 2, 10);
+    changeFrame(frame, rng, pair);
+    for (const Mat& map : { pair.left, pair.right, pair.truth, pair.judged })
+        ASSERT_EQ(Size(2, 10), map.size());
+    EXPECT_EQ(20, pair.left.at<Vec3b>(0, 0)[0]);
+    EXPECT_EQ(110, pair.right.at<Vec3b>(9, 1)[0]);
+    EXPECT_EQ(2.f, pair.truth.at<float>(0, 0));
+    EXPECT_EQ(0, countNonZero(pair.judged)) << "the part of the right image does not show disparities above 1";
+    frame.part = Rect(0, 0, 3, 3);
+    Pair first = rowsPair();
+    changeFrame(frame, rng, first);
+    EXPECT_EQ(3 + 2 + 1, countNonZero(first.judged)) << "disparities 0, 1, 2 in three columns";
+}
+
 }} // namespace opencv_test
