@@ -159,12 +159,8 @@ private:
         const bool hasPlanes = plan_.isTop && volume.isUniform; // which ranges may change
         if (hasPlanes)
             preferLargestSurfaces(own_.census, volume);
-        const bool isPredicted = hasPlanes && plan_.prefersLastFrame;
-        if (isPredicted)
-            predictWinners(shared_.predicted, volume, result_.winners); // good enough for planes
-        else
-            scanVolume(forest.weights);
-        if ((hasPlanes && preferTreePlanes(forest, result_.winners, volume) > 0) || isPredicted)
+        scanVolume(forest.weights);
+        if (hasPlanes && preferTreePlanes(forest, result_.winners, volume) > 0)
             scanVolume(forest.weights);
         return true;
     }

@@ -158,20 +158,6 @@ TEST(HDPStereo_TemporalPrior, contradicted_frame)
     EXPECT_TRUE(contradicts(10, rise, false)) << "a camera at rest";
 }
 
-//! What is predicted, with fractions; else the first of the lowest costs
-TEST(HDPStereo_TemporalPrior, winners)
-{
-    CostVolume volume = flatVolume(Size(3, 2));
-    Mat predicted(volume.size, CV_32F, Scalar(-1)), winners;
-    predicted.at<float>(0, 1) = 7.28f;
-    predicted.at<float>(1, 2) = 0;
-    for (int k : { 11, 17 })
-        volume.costs[volume.candidates[4].start() + k] = (uchar)(flatCost - 1);
-    predictWinners(predicted, volume, winners);
-    const Mat expected = (Mat_<ushort>(2, 3) << 0, 116, 0, 0, 11 * subpixelScale, 0);
-    expectIdentical(expected, winners);
-}
-
 //! None before a second pair has agreed, and none if nothing moves.
 TEST(HDPStereo_TemporalPrior, hasPrior)
 {

@@ -30,14 +30,6 @@ float predict(const FrameMemory& last, const FramePrediction& p, int x, int y)
     return isClear && isConfirmed(last, from.x, from.y) ? moved : none;
 }
 
-//! The first candidate of those of the lowest cost
-int lowestCandidate(const CostVolume& volume, int pixel)
-{
-    const CostVolume::Candidates own = volume.of(pixel);
-    const uchar *const costs = volume.costs.data() + own.start(), *const end = costs + own.interval.size();
-    return own.interval.first + (int)(std::find(costs, end, volume.lowestOf(own)) - costs);
-}
-
 } // namespace
 
 bool hasPrior(const FrameMemory& last, const FramePrediction& prediction)
@@ -81,19 +73,6 @@ void preferPredicted(const Mat& predicted, CostVolume& volume)
         for (int x = 0; x < volume.size.width; ++x)
             if (row[x] >= 0)
                 preferDisparity(y * volume.size.width + x, row[x], CostVolume::scale * maxPenalty, volume);
-    });
-}
-
-void predictWinners(const Mat& predicted, const CostVolume& volume, Mat& winners)
-{
-    winners.create(volume.size, CV_16U);
-    parallelForRows(volume.size, [&](int y) {
-        const float* const known = predicted.ptr<float>(y);
-        ushort* const row = winners.ptr<ushort>(y);
-        for (int x = 0; x < volume.size.width; ++x)
-            row[x] = (ushort)(known[x] < 0
-                                  ? subpixelScale * lowestCandidate(volume, y * volume.size.width + x) / volume.steps
-                                  : cvRound(subpixelScale * known[x]));
     });
 }
 

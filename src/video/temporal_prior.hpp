@@ -32,11 +32,6 @@ CV_EXPORTS bool refusesLastFrame(const CostVolume& volume, Mat& predicted);
 //! P(D_t | D_(t-1)): raises the costs of disparities other than the predicted one, see preferDisparity().
 CV_EXPORTS void preferPredicted(const Mat& predicted, CostVolume& volume);
 
-/** What the winners will be, without scanlines: the predicted disparities, and the lowest costs beside them.
-@param volume Its pixels have candidates.
-@param winners Receives a disparity map. */
-CV_EXPORTS void predictWinners(const Mat& predicted, const CostVolume& volume, Mat& winners);
-
 }}} // namespace cv::stereo::hdp
 
 #endif
