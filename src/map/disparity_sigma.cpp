@@ -27,9 +27,9 @@ const double minRowError = 0.03, usualRowError = 0.12, maxRowError = 0.25;
 // Grey levels. Sigma rises with the fourth root of the noise between these, beyond which the same holds.
 const double minNoise = 1, maxNoise = 4;
 
-// Errors in pixels by which 50 to 80 % are not larger, at the usual row error and little noise, of FAST, QUALITY and TREE
-// on pairs of Middlebury, ETH3D, SceneFlow and KITTI, each set as much as the others; made to fall with the confidence
-// and to rise with the mismatch, and smooth.
+// Errors in pixels by which 50 to 80 % are not larger, at the usual row error and little noise, of FAST, QUALITY and
+// TREE on pairs of Middlebury, ETH3D, SceneFlow and KITTI, each set as much as the others; made to fall with the
+// confidence and to rise with the mismatch, and smooth.
 const int confidences = 9, mismatches = 7;
 const float confidenceOf[confidences] = { 2, 10, 20, 30, 44, 64, 88, 116, 150 };
 const float mismatchOf[mismatches] = { 0.15f, 0.3f, 0.45f, 0.65f, 0.9f, 1.4f, 2.5f };

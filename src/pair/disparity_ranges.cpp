@@ -58,7 +58,9 @@ void expandRanges(const Mat& smallest, const Mat& largest, Size size, Range disp
     }
     expandLimits(smallest, disparities.start * subpixelScale, isWhole, false, size, ranges.smallest);
     expandLimits(largest, disparities.end * subpixelScale, isWhole, true, size, ranges.largest);
-    ranges.hasEmpty = countNonZero(ranges.smallest > ranges.largest) > 0;
+    Mat isEmpty;
+    compare(ranges.smallest, ranges.largest, isEmpty, CMP_GT);
+    ranges.hasEmpty = countNonZero(isEmpty) > 0;
 }
 
 void halveIntervals(const Mat& intervals, Mat& hulls)

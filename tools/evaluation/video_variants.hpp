@@ -46,7 +46,6 @@ struct VideoVariant
 @param frames Number of recorded frames. */
 std::vector<VideoVariant> selectVariants(const String& list, int frames);
 
-//! Does with a recorded frame what a variant does with it.
 /** A pair as the video of a camera that pans over it: parts of one size, which move by a step in pixels from frame to
 frame. So the truth of the pair is that of each frame.
 @param index Of the recorded frame.
@@ -55,6 +54,7 @@ frame. So the truth of the pair is that of each frame.
 @param frames Their number. */
 std::vector<VariantFrame> panOver(int index, const cv::Size& size, const cv::Point& step, int frames);
 
+//! Does with a recorded frame what a variant does with it.
 void changeFrame(const VariantFrame& frame, cv::RNG& rng, Pair& pair);
 
 } // namespace hdp_tools
