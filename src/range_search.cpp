@@ -22,7 +22,8 @@ HDP_TUNABLE(int, minSupport, 10, "corners", "fewer are no evidence of a range");
 // All pixels
 HDP_TUNABLE(double, reach, 1.5, "share of the corners' range",
             "that is searched before it and behind it: more costs time and errors");
-HDP_TUNABLE(double, minConfidence, 25, "confidence", "of disparities that count: less believes errors");
+HDP_TUNABLE(double, minConfidence, 15, "confidence",
+            "of disparities that count: less believes errors, more misses what is near and small");
 HDP_TUNABLE(double, leftOut, 0.0005, "share of the disparities", "at each end that may be wrong");
 
 // The range
