@@ -29,7 +29,7 @@ TEST(HDPStereo_SlowDisparityPrior, is_believed_as_far_as_the_images_do_not_contr
     const Mat all(Size(320, 200), CV_8U, Scalar(255));
     for (const System& preset : presetsWithPrior)
     {
-        double none = 0, good = 0, some = 0, bad = 0;
+        double none = 0, good = 0, some = 0, bad = 0, off = 0;
         for (int seed = 1; seed <= 3; ++seed)
         {
             const SyntheticPair pair = makeSyntheticPair(all.size(), 64, seed);
@@ -43,10 +43,15 @@ TEST(HDPStereo_SlowDisparityPrior, is_believed_as_far_as_the_images_do_not_contr
             some += errors();
             matcher->setPriorDisparity(makePrior(rng, pair.truth, 400, 1, 20), 0.5);
             bad += errors();
+            Mat prior = makePrior(rng, pair.truth, 400, 0, 0), part = prior.colRange(0, 160);
+            part += 12;
+            matcher->setPriorDisparity(prior, 0.5);
+            off += errors();
         }
         EXPECT_LT(good, 0.9 * none) << preset.name;
         EXPECT_LT(some, none) << preset.name;
         EXPECT_LE(bad, 1.05 * none) << preset.name;
+        EXPECT_LE(off, 1.1 * none) << preset.name << ", half of the image";
     }
 }
 

@@ -181,6 +181,10 @@ TEST(HDPStereo_DisparityRanges, bad_ranges_change_nothing)
         expectRejected([&] { matcher->setDisparityRange(noArray(), highest); }, "largest must have the size and type");
         expectRejected([&] { matcher->setDisparityRange(lowest, highest.colRange(1, 20)); }, "largest must have");
         expectRejected([&] { matcher->setDisparityRange(highest, lowest); }, "largest must not be less than smallest");
+        const Mat far = lowest + 2043, near = highest - 2068.1;
+        expectRejected([&] { matcher->setDisparityRange(far, far); }, "smallest must be below 2048");
+        expectRejected([&] { matcher->setDisparityRange(near, near); },
+                       "largest at least -2048, as they are not in 200");
         expectIdentical(expected, match(*matcher, pair.left, pair.right));
 
         Mat disparity;

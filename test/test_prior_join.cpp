@@ -25,7 +25,12 @@ public:
         for (const PriorPoint& point : points)
             agrees_.push_back(areAlike(winnerAt(point.place), point.disparity, point.sigma, 0));
         for (size_t i = 0; i < points.size(); ++i)
-            counts_.push_back(agrees_[i] || (!isContradicted(points[i]) && isSupported(points[i])));
+        {
+            claims_.push_back(!agrees_[i] && isSupported(points[i]));
+            excess_.push_back(excessOf(points[i]));
+        }
+        for (size_t i = 0; i < points.size(); ++i)
+            counts_.push_back(agrees_[i] || (claims_[i] && excess_[i] <= 25 * 7 && !isContradictedAround(i)));
     }
 
     Mat join(int maxDisparity) const
@@ -93,11 +98,27 @@ private:
         return cvRound(sum);
     }
 
-    bool isContradicted(const PriorPoint& point) const
+    int excessOf(const PriorPoint& point) const
     {
         const Mat flat(winners_.size(), CV_16U, Scalar(16 * cvRound(point.disparity)));
-        return costAround(flat, point.place.x, point.place.y) - costAround(winners_, point.place.x, point.place.y) >
-               25 * 7;
+        return costAround(flat, point.place.x, point.place.y) - costAround(winners_, point.place.x, point.place.y);
+    }
+
+    //! In the mean of all claims in 7 x 7 squares of the reach
+    bool isContradictedAround(size_t index) const
+    {
+        double sum = 0;
+        int count = 0;
+        const Point own = points_[index].place / reach_;
+        for (size_t i = 0; i < points_.size(); ++i)
+        {
+            const Point other = points_[i].place / reach_;
+            if (!claims_[i] || std::max(std::abs(other.x - own.x), std::abs(other.y - own.y)) > 3)
+                continue;
+            sum += excess_[i];
+            ++count;
+        }
+        return sum > 25 * 3.5 * count;
     }
 
     //! By a third of the points around, which may be wrong themselves
@@ -130,7 +151,7 @@ private:
         if (voices.size() < 2 || (speaksFor > 0 && speaksFor >= against))
             return;
         proposed = (ushort)std::max(0, std::min(cvRound(planeAt(place, voices) * 16), maxDisparity));
-        limit = against > 0 ? 7 : 5;
+        limit = against > 0 ? 7 : 4;
     }
 
     bool areOfOneSurface(size_t a, size_t b) const
@@ -181,7 +202,8 @@ private:
     const Mat& winners_;
     const double unit_;
     int reach_;
-    std::vector<bool> agrees_, counts_;
+    std::vector<bool> agrees_, claims_, counts_;
+    std::vector<int> excess_;
 };
 
 TEST(HDPStereo_PriorJoin, model)

@@ -26,7 +26,10 @@ HDP_TUNABLE(double, distanceScale, 8, "pixels of the image", "by which the weigh
 HDP_TUNABLE(double, flatness, 0.1, "squared distanceScale", "by which planes resist being tilted: points in a row");
 HDP_TUNABLE(int, windowSide, 5, "pixels", "of the costs that are compared: single ones are noise");
 HDP_TUNABLE(double, contradiction, 7, "bits", "that a cost is higher by: more follows errors of the prior");
-HDP_TUNABLE(double, contradictionAlone, 5, "bits", "the same where no point speaks against a winner: thin things");
+HDP_TUNABLE(double, contradictionAlone, 4, "bits", "the same where no point speaks against a winner: thin things");
+HDP_TUNABLE(double, contradictionAround, 3.5, "bits",
+            "the same in the mean of the points around: more follows errors that many of them have in common");
+HDP_TUNABLE(int, around, 3, "cells", "on each side, that this mean is over: fewer have too few points");
 
 //! A point near a pixel
 struct Neighbour
@@ -40,6 +43,7 @@ enum PointState
 {
     AGREES,
     COUNTS, // against the winner
+    CLAIMS, // it will count, or fail
     FAILS
 };
 
@@ -51,7 +55,7 @@ public:
         : points_(points), guide_(guide), cost_(cost), winners_(winners), width_(winners.cols),
           reach_(reachOf(winners.size(), points.size(), layer)), scale_(1. / (1 << layer)),
           grid_((width_ + reach_ - 1) / reach_, (winners.rows + reach_ - 1) / reach_), cells_(grid_.area()),
-          states_(points.size(), AGREES), before_(points.size())
+          states_(points.size(), AGREES), before_(points.size()), excess_(points.size())
     {
         for (size_t i = 0; i < points.size(); ++i)
         {
@@ -74,9 +78,12 @@ public:
         if (points_.empty() || agreeing < minAgreement * points_.size())
             return false;
         parallelFor((int)points_.size(), [&](int i) {
-            if (states_[i] == FAILS && !isContradicted(i) && isSupported(i))
-                states_[i] = COUNTS; // no other point asks for it
+            if (states_[i] != FAILS || !isSupported(i))
+                return;
+            states_[i] = CLAIMS; // no other point asks for it
+            excess_[i] = excessOf(i);
         });
+        judgeClaims();
         return true;
     }
 
@@ -147,8 +154,8 @@ private:
         found.resize(count);
     }
 
-    //! Whether the costs around a point are much higher at its disparity than at the winner
-    bool isContradicted(int index) const
+    //! By how much the costs around a point are higher at its disparity than at the winner
+    int excessOf(int index) const
     {
         const PriorPoint& point = points_[index];
         const int radius = windowSide / 2;
@@ -163,7 +170,32 @@ private:
                 cost_.evaluate(&pixel, 1, wholeDisparity(winners_.ptr<ushort>(y)[x]), 4, other);
                 sum += own[0] - other[0];
             }
-        return sum > contradiction * windowSide * windowSide;
+        return sum;
+    }
+
+    Vec2d& cellOf(int index, Mat& cells) const
+    {
+        return cells.at<Vec2d>(points_[index].place.y / reach_, points_[index].place.x / reach_);
+    }
+
+    //! A claim counts unless the costs contradict it, or those around: what many have in common may be wrong as well,
+    //! and their mean tells that better.
+    void judgeClaims()
+    {
+        Mat claims(grid_, CV_64FC2, Scalar::all(0)); // the sum of their excess, and their number
+        for (size_t i = 0; i < points_.size(); ++i)
+            if (states_[i] == CLAIMS)
+                cellOf((int)i, claims) += Vec2d(excess_[i], 1);
+        boxFilter(claims, claims, -1, Size(2 * around + 1, 2 * around + 1), Point(-1, -1), false, BORDER_CONSTANT);
+        const int area = windowSide * windowSide;
+        for (size_t i = 0; i < points_.size(); ++i)
+            if (states_[i] == CLAIMS)
+            {
+                const Vec2d sums = cellOf((int)i, claims);
+                const bool isContradicted =
+                    excess_[i] > contradiction * area || sums[0] > contradictionAround * area * sums[1];
+                states_[i] = isContradicted ? FAILS : COUNTS;
+            }
     }
 
     //! Whether a third of the points around, by weight, agrees with a point
@@ -260,6 +292,7 @@ private:
     std::vector<std::vector<int>> cells_;
     std::vector<PointState> states_;
     std::vector<float> before_; // winners at the points
+    std::vector<int> excess_;   // of claims, see excessOf()
 };
 
 } // namespace

@@ -49,6 +49,12 @@ void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inp
     const int less = smallest.empty() ? 0 : countNonZero(largest < smallest);
     if (less > 0)
         CV_Error(Error::StsOutOfRange, format("largest must not be less than smallest, as it is in %d pixels", less));
+    const int limit = (SHRT_MAX + 1) / StereoMatcher::DISP_SCALE; // of a CV_16S map
+    const int beyond = smallest.empty() ? 0 : countNonZero((smallest >= limit) | (largest < -limit));
+    if (beyond > 0)
+        CV_Error(Error::StsOutOfRange,
+                 format("smallest must be below %d and largest at least %d, as they are not in %d pixels", limit,
+                        -limit, beyond));
     smallest.convertTo(inputs.smallest, CV_32F);
     largest.convertTo(inputs.largest, CV_32F);
     ++inputs.changes;

@@ -546,12 +546,13 @@ public:
 
     /** @brief Tells which disparities each pixel of the left image may have: a coarse product, the depth of a room.
 
-    No others occur in the map. A pixel for which there are none between minDisparity and the last one gets minDisparity
-    - 1. Trees search about their pixels' ranges alone; what is found outside of a range moves to its end. The maps stay
-    until others are set. They are no parameters: files do not have them.
+    No others occur in the map. A pixel for which there are none between minDisparity and the last one, or no multiple of
+    1 / 16 in its range, gets minDisparity - 1. Trees search about their pixels' ranges alone; what is found outside of a
+    range moves to its end. The maps stay until others are set. They are no parameters: files do not have them.
     @param smallest CV_16SC1 or CV_32FC1, in pixels, of the images' size or coarser: each pixel then has the range of
-    the nearest one. NaN limits nothing. Copied. Both empty: there are no ranges.
-    @param largest Of the same size and type; nowhere less than smallest.
+    the nearest one. Below 2048, as disparities of CV_16S are. NaN limits nothing. Copied. Both empty: there are no
+    ranges.
+    @param largest Of the same size and type; nowhere less than smallest or than -2048.
     @throws cv::Exception if the maps are not that; both are unchanged.
      */
     CV_WRAP virtual void setDisparityRange(InputArray smallest, InputArray largest) = 0;
@@ -559,8 +560,9 @@ public:
     /** @brief Tells disparities that are about known: of a lidar, of structure from motion, of the last survey.
 
     They are believed as far as the images do not contradict them. Where a point and the images differ, it counts if its
-    neighbours agree with it and the costs allow it; a prior that mostly differs has no effect. Needs
-    HDPTreeMatcher::COST_CENSUS. The prior stays until another one is set. It is no parameter: files do not have it.
+    neighbours agree with it, and the costs contradict neither it nor, in the mean, those around it that differ as well.
+    A prior that mostly differs has no effect. Needs HDPTreeMatcher::COST_CENSUS. The prior stays until another one is
+    set. It is no parameter: files do not have it.
     @param disparity CV_32FC1 in pixels, of the images' size, NaN where nothing is known: nearly everywhere, perhaps.
     Copied. Empty: there is no prior.
     @param sigma Standard deviation of the disparities in pixels, finite, >= 0: a number, or CV_32FC1 of the same size.
