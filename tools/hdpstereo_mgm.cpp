@@ -9,12 +9,15 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 #include <limits>
 #include <map>
 
 #include "opencv2/core.hpp"
+#include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/core/utils/logger.hpp"
 #include "opencv2/hdpstereo.hpp"
 #include "opencv2/imgcodecs.hpp"
@@ -26,7 +29,8 @@ using cv::stereo::HDPTreeMatcher;
 static const char* const usage =
     "HDPTreeMatcher behind the command line of mgm\n"
     "usage: hdpstereo-mgm [OPTION VALUE]... LEFT RIGHT OUT [COST [BACKFLOW]]\n"
-    "LEFT, RIGHT: a rectified pair, 8 or 16 bit or float, NaN = no data. OUT: float TIFF, NaN = no disparity.\n"
+    "LEFT, RIGHT: a rectified pair, 8 or 16 bit or float, NaN = no data. OUT: NaN = no disparity.\n"
+    "All maps are files of floats: .tif, .pfm, and .exr if OpenCV has it.\n"
     "A left pixel (x, y) is (x + d, y) in the right image: the sign is the opposite of OpenCV's.\n"
     "  -r MIN -R MAX    smallest and largest disparity; without both, or if both are nan, they are found in the pair,\n"
     "                   but with -m; else, or if too few points match, -30 and 30\n"
@@ -142,6 +146,34 @@ static Mat readImage(const String& path)
     return image;
 }
 
+//! Whether a format of images keeps floats: .png and .jpg would round disparities to 0 to 255.
+static bool keepsFloats(const String& path)
+{
+    try
+    {
+        std::vector<uchar> bytes;
+        imencode(path.substr(std::min(path.rfind('.'), path.size())), Mat(1, 1, CV_32F, Scalar(-0.5)), bytes);
+        const Mat read = imdecode(bytes, IMREAD_UNCHANGED);
+        return read.type() == CV_32FC1 && read.at<float>(0, 0) == -0.5f;
+    }
+    catch (const cv::Exception&)
+    {
+        return false; // there is no such format, or not in this OpenCV
+    }
+}
+
+//! Leaves what is there as it is.
+static void requireWritable(const String& name, const String& path)
+{
+    if (!keepsFloats(path))
+        fail(name + " must be a file of floats, such as .tif, not '" + path + "'");
+    const bool wasThere = utils::fs::exists(path);
+    if (!std::ofstream(path.c_str(), std::ios::binary | std::ios::app))
+        fail(name + ": cannot write '" + path + "'");
+    if (!wasThere)
+        std::remove(path.c_str());
+}
+
 static void writeImage(const String& path, const Mat& image)
 {
     if (!path.empty() && !imwrite(path, image))
@@ -193,6 +225,15 @@ static Mat readLimits(const String& path, Size size, double limit, bool isMax)
     return limits;
 }
 
+//! Maps of the matcher have no others.
+static double toDisparity(const String& name, double number)
+{
+    const double most = SHRT_MAX / StereoMatcher::DISP_SCALE;
+    if (std::abs(number) > most)
+        fail(format("%s must be from %g to %g, not %g", name.c_str(), -most, most, number));
+    return number;
+}
+
 //! -r or -R, if it is there and not nan
 static String limitOf(const Call& call, const char* name)
 {
@@ -203,8 +244,8 @@ static String limitOf(const Call& call, const char* name)
 static DisparityRange readRange(const Call& call, Size size)
 {
     const String least = limitOf(call, "r"), most = limitOf(call, "R");
-    DisparityRange range = { least.empty() ? -30 : cvFloor(toNumber("-r", least)),
-                             most.empty() ? 30 : cvCeil(toNumber("-R", most)),
+    DisparityRange range = { least.empty() ? -30 : cvFloor(toDisparity("-r", toNumber("-r", least))),
+                             most.empty() ? 30 : cvCeil(toDisparity("-R", toNumber("-R", most))),
                              least.empty() && most.empty() && call.value("m").empty(), Mat(), Mat() };
     if (range.max < range.min)
         fail(format("-R must be at least -r, %d, not %d", range.min, range.max));
@@ -243,10 +284,6 @@ static Ptr<HDPTreeMatcher> createMatcher(const Call& call)
     params.useSubpixel = call.value("s", "none") != "none";
     params.disparityDepth = CV_32F;
     matcher->setParams(params);
-    if (environment("TESTLRRL", "1") != "0")
-        matcher->setDisp12MaxDiff(cvCeil(toNumber("TESTLRRL_TAU", environment("TESTLRRL_TAU", "1"))));
-    matcher->setSpeckleWindowSize(cvRound(toNumber("REMOVESMALLCC", environment("REMOVESMALLCC", "0"))));
-    matcher->setSpeckleRange(1);
     return matcher;
 }
 
@@ -282,13 +319,42 @@ static void takeRange(const DisparityRange& range, const Mat& left, const Mat& r
     matcher.setNumDisparities(found.numDisparities);
 }
 
+//! How maps are filtered
+struct Filters
+{
+    bool isChecked; // left against right
+    int maxDifference, smallestRegion;
+};
+
+static double numberInEnvironment(const char* name, const char* otherwise)
+{
+    return toNumber(name, environment(name, otherwise));
+}
+
+static Filters readFilters()
+{
+    // A check that accepts no difference at all would be none for the matcher.
+    const double difference = std::max(numberInEnvironment("TESTLRRL_TAU", "1"), 1.);
+    return { numberInEnvironment("TESTLRRL", "1") != 0, cvCeil(std::min(difference, (double)SHRT_MAX)),
+             cvRound(numberInEnvironment("REMOVESMALLCC", "0")) };
+}
+
 static void run(const Call& call)
 {
+    const Filters filters = readFilters();
+    const Ptr<HDPTreeMatcher> matcher = createMatcher(call);
+    requireWritable("OUT", call.out());
+    for (const char* name : { "Rd", "confidence_consensusL", "confidence_consensusR" })
+        if (!call.value(name).empty())
+            requireWritable(String("-") + name, call.value(name));
     Mat left = readImage(call.left()), right = readImage(call.right());
     const Rect leftImage(Point(), left.size()), rightImage(Point(), right.size());
     const DisparityRange range = readRange(call, left.size());
     makeAlike(left, right);
-    const Ptr<HDPTreeMatcher> matcher = createMatcher(call);
+    if (filters.isChecked)
+        matcher->setDisp12MaxDiff(filters.maxDifference);
+    matcher->setSpeckleWindowSize(filters.smallestRegion);
+    matcher->setSpeckleRange(1);
     takeRange(range, left, right, *matcher);
     Mat disparity, confidence;
     match(*matcher, left, right, disparity, confidence);

@@ -191,6 +191,8 @@ TEST(HDPStereo_Mgm, wrong_calls)
         { "-q 3", "the option -q is unknown" },
         { "-r near -R 0", "-r must be a number, not 'near'" },
         { "-r 5 -R 4", "-R must be at least -r, 5, not 4" },
+        { "-r -2048 -R 0", "-r must be from -2047 to 2047, not -2048" },
+        { "-r 0 -R 1e30", "-R must be from -2047 to 2047, not 1e+30" },
         { "-m a.tif", "-m and -M need each other" },
         { "-m /no/a.tif -M /no/b.tif", "cannot read the image '/no/a.tif'" },
     };
@@ -202,12 +204,47 @@ TEST(HDPStereo_Mgm, wrong_calls)
         EXPECT_NE(String::npos, result.errors.find(wrong.second)) << result.errors;
         EXPECT_EQ(firstLine(result.errors) + "\n", result.errors);
     }
+    for (const String setting : { "TESTLRRL", "TESTLRRL_TAU", "REMOVESMALLCC", "OMP_NUM_THREADS" })
+        EXPECT_EQ("error: " + setting + " must be a number, not 'some'\n",
+                  test.call("-r -31 -R 0", setting + "=some").errors);
     EXPECT_EQ(1, run(test.folder, "hdpstereo-mgm").status);
     EXPECT_EQ(0, run(test.folder, "hdpstereo-mgm --help").status);
     EXPECT_EQ(1, test.call("-r -31 -R 0", "HDPSTEREO_PRESET=best").status);
     const Execution told = test.call("-r -31 -R 0 -O 8", "HDPSTEREO_VERBOSE=1");
     EXPECT_EQ("hdpstereo-mgm: -O has no effect\n", told.errors);
     EXPECT_EQ("", test.call("-r -31 -R 0 -O 8").errors);
+}
+
+TEST(HDPStereo_Mgm, outputs_that_cannot_be)
+{
+    MgmTest test;
+    const auto callFor = [&](const String& options, const String& images, const String& out) {
+        return run(test.folder, "hdpstereo-mgm -r -31 -R 0 " + options + " " + images + " " + out).errors;
+    };
+    // Such errors come first, here before that there are no images.
+    const String out = test.folder.path("out.tif"), images = "no_left.tif no_right.tif";
+    EXPECT_EQ("error: OUT: cannot write '/no/d6.tif'\n", callFor("", images, "/no/d6.tif"));
+    for (const String wrong : { "map.png", "map.jpg", "map", "map.none", "-" })
+        EXPECT_EQ("error: OUT must be a file of floats, such as .tif, not '" + wrong + "'\n",
+                  callFor("", images, wrong));
+    for (const String option : { "-Rd", "-confidence_consensusL", "-confidence_consensusR" })
+    {
+        EXPECT_EQ("error: " + option + ": cannot write '/no/d6.tif'\n", callFor(option + " /no/d6.tif", images, out));
+        EXPECT_EQ("error: " + option + " must be a file of floats, such as .tif, not 'map.png'\n",
+                  callFor(option + " map.png", images, out));
+    }
+    EXPECT_FALSE(fs::exists(out));
+    const String kept = test.folder.path("kept.tif");
+    test.folder.writeText("kept.tif", "kept");
+    EXPECT_EQ("error: cannot read the image 'no_left.tif'\n", callFor("", images, kept));
+    EXPECT_EQ("kept", readText(kept));
+
+    const String pair = test.folder.path("left.tif") + " " + test.folder.path("right.tif");
+    EXPECT_EQ("", callFor("", pair, out));
+    EXPECT_EQ("", callFor("", pair, test.folder.path("out.pfm")));
+    const Mat map = test.image("out.tif"), same = test.image("out.pfm");
+    EXPECT_EQ(0, cv::countNonZero((map == map) != (same == same)));
+    EXPECT_EQ(0, cv::norm(map, same, NORM_INF, map == map));
 }
 
 }} // namespace opencv_test
