@@ -40,10 +40,10 @@ static const char* const usage =
     "  -confidence_consensusL FILE, -confidence_consensusR FILE  confidence from 0 to 1\n"
     "Accepted without effect: -O -P1 -P2 -p -t -truncDist -aP1 -aP2 -aThresh -S -wl -wr -Rc -confidence_costL\n"
     "-confidence_costR -confidence_pkrL -confidence_pkrR -inputCostVolume, COST and BACKFLOW.\n"
-    "Environment, as mgm has it: TESTLRRL=0: no left-right check; TESTLRRL_TAU=1: its threshold; REMOVESMALLCC=0: "
-    "size\n"
-    "of the smallest region; OMP_NUM_THREADS. Its own: HDPSTEREO_PRESET=quality: ultrafast, fast, quality or tree;\n"
-    "HDPSTEREO_VERBOSE=1: says what has no effect.\n";
+    "Environment, as mgm has it: TESTLRRL=0: no left-right check, which leaves out what the right image hides or does\n"
+    "not have; TESTLRRL_TAU=1: its threshold; REMOVESMALLCC=0: size of the smallest region; OMP_NUM_THREADS.\n"
+    "Its own: HDPSTEREO_PRESET=quality: ultrafast, fast, quality or tree; HDPSTEREO_VERBOSE=1: says what has no "
+    "effect.\n";
 
 static const float none = std::numeric_limits<float>::quiet_NaN();
 
@@ -287,6 +287,21 @@ static Ptr<HDPTreeMatcher> createMatcher(const Call& call)
     return matcher;
 }
 
+//! What the right image does not have: mgm's left-right check looks where it ends, at the nearest pixel. Where its data
+//! end is no different.
+static void rejectOutside(const Mat& right, Mat& disparity)
+{
+    const Mat zeros = right - right, hasData = zeros == 0; // NaN and infinity leave NaN
+    for (int y = 0; y < disparity.rows; y++)
+        for (int x = 0; x < disparity.cols; x++)
+        {
+            float& value = disparity.at<float>(y, x);
+            const float column = std::round((float)x - value);
+            if (!(column >= 0 && column < (float)right.cols && hasData.at<uchar>(y, (int)column)))
+                value = none;
+        }
+}
+
 //! Disparities of OpenCV's sign, NaN where there is none, and the confidence from 0 to 1
 static void match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, Mat& disparity, Mat& confidence)
 {
@@ -294,7 +309,10 @@ static void match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, Ma
     matcher.compute(left, right, disparity);
     matcher.getConfidence(confidence);
     disparity.setTo(none, disparity < matcher.getFindings().minDisparity);
+    if (matcher.getDisp12MaxDiff() > 0)
+        rejectOutside(right, disparity);
     confidence.convertTo(confidence, CV_32F, 1. / 255);
+    confidence.setTo(0, disparity != disparity);
 }
 
 //! -r and -R, or what is found in the pair
