@@ -34,7 +34,7 @@ static const char* const usage =
     "A left pixel (x, y) is (x + d, y) in the right image: the sign is the opposite of OpenCV's.\n"
     "  -r MIN -R MAX    smallest and largest disparity; without both, or if both are nan, they are found in the pair,\n"
     "                   but with -m; else, or if too few points match, -30 and 30\n"
-    "  -m FILE -M FILE  the same for each pixel; where not finite, as -r and -R. What is outside has no disparity\n"
+    "  -m FILE -M FILE  the same for each pixel, in fractions, too; no others occur. Not finite: no limit of its own\n"
     "  -s none          whole disparities; with anything else they have fractions (none)\n"
     "  -Rd FILE         disparities of the right image\n"
     "  -confidence_consensusL FILE, -confidence_consensusR FILE  confidence from 0 to 1\n"
@@ -206,22 +206,18 @@ struct DisparityRange
 {
     int min, max;
     bool isUnknown;
-    Mat mins, maxs; // per pixel of the left image, if given
+    Mat mins, maxs; // of each pixel of the left image, NaN where there is no limit; empty if not given
 };
 
-//! -m or -M: rounded away from the range's inside, and the limit of all where it is not finite
-static Mat readLimits(const String& path, Size size, double limit, bool isMax)
+//! -m or -M, NaN where there is no limit
+static Mat readLimits(const Call& call, const char* name, Size size)
 {
-    Mat limits = readImage(path);
+    Mat limits = readImage(call.value(name));
     if (limits.size() != size)
-        fail("'" + path + "' must have the size of LEFT");
+        fail(format("-%s must have the size of LEFT, %d x %d, not %d x %d", name, size.width, size.height, limits.cols,
+                    limits.rows));
     limits.convertTo(limits, CV_32F);
-    for (int y = 0; y < limits.rows; y++)
-        for (int x = 0; x < limits.cols; x++)
-        {
-            float& value = limits.at<float>(y, x);
-            value = !std::isfinite(value) ? (float)limit : isMax ? std::ceil(value) : std::floor(value);
-        }
+    limits.setTo(none, abs(limits) == std::numeric_limits<float>::infinity());
     return limits;
 }
 
@@ -241,6 +237,28 @@ static String limitOf(const Call& call, const char* name)
     return text == "nan" || text == "NaN" ? String() : text;
 }
 
+//! -m and -M, and the range of all: that of their numbers, and where there is none -r and -R
+static void readPixelRanges(const Call& call, Size size, DisparityRange& range)
+{
+    range.mins = readLimits(call, "m", size);
+    range.maxs = readLimits(call, "M", size);
+    for (int y = 0; y < size.height; y++)
+        for (int x = 0; x < size.width; x++)
+        {
+            const float least = range.mins.at<float>(y, x), most = range.maxs.at<float>(y, x);
+            if (least > most)
+                fail(format("-m must be nowhere above -M, but at (%d, %d) they are %g and %g", x, y, least, most));
+        }
+    Mat mins = range.mins.clone(), maxs = range.maxs.clone(), limits;
+    patchNaNs(mins, range.min);
+    patchNaNs(maxs, range.max);
+    vconcat(mins, maxs, limits);
+    double lowest, highest;
+    minMaxLoc(limits, &lowest, &highest);
+    range.min = cvFloor(toDisparity("-m", lowest));
+    range.max = cvCeil(toDisparity("-M", highest));
+}
+
 static DisparityRange readRange(const Call& call, Size size)
 {
     const String least = limitOf(call, "r"), most = limitOf(call, "R");
@@ -251,16 +269,8 @@ static DisparityRange readRange(const Call& call, Size size)
         fail(format("-R must be at least -r, %d, not %d", range.min, range.max));
     if (call.value("m").empty() != call.value("M").empty())
         fail("-m and -M need each other");
-    if (call.value("m").empty())
-        return range;
-    range.mins = readLimits(call.value("m"), size, range.min, false);
-    range.maxs = readLimits(call.value("M"), size, range.max, true);
-    range.maxs = max(range.maxs, range.mins);
-    double lowest, highest;
-    minMaxLoc(range.mins, &lowest, nullptr);
-    minMaxLoc(range.maxs, nullptr, &highest);
-    range.min = cvFloor(lowest);
-    range.max = cvCeil(highest);
+    if (!call.value("m").empty())
+        readPixelRanges(call, size, range);
     return range;
 }
 
@@ -374,17 +384,18 @@ static void run(const Call& call)
     matcher->setSpeckleWindowSize(filters.smallestRegion);
     matcher->setSpeckleRange(1);
     takeRange(range, left, right, *matcher);
+    if (!range.mins.empty())
+        matcher->setDisparityRange(extended(-range.maxs, left.size(), none), extended(-range.mins, left.size(), none));
     Mat disparity, confidence;
     match(*matcher, left, right, disparity, confidence);
     disparity = -disparity(leftImage);
-    if (!range.mins.empty())
-        disparity.setTo(none, (disparity < range.mins - 0.5) | (disparity > range.maxs + 0.5));
     writeImage(call.out(), disparity);
     writeImage(call.value("confidence_consensusL"), confidence(leftImage));
     if (call.value("Rd").empty() && call.value("confidence_consensusR").empty())
         return;
 
-    // The right image is the left one of a scene that is mirrored.
+    // The right image is the left one of a scene that is mirrored; -m and -M are not about its pixels.
+    matcher->setDisparityRange(noArray(), noArray());
     Mat mirroredLeft, mirroredRight;
     flip(right, mirroredLeft, 1);
     flip(left, mirroredRight, 1);

@@ -119,17 +119,74 @@ TEST(HDPStereo_Mgm, unknown_range)
 TEST(HDPStereo_Mgm, ranges_of_pixels)
 {
     MgmTest test;
-    Mat least = -test.pair.truth - 3, most = -test.pair.truth + 3;
-    least.at<float>(5, 5) = none;
-    test.folder.write("least.tif", least);
-    test.folder.write("most.tif", most);
+    const Mat truth = -test.pair.truth; // of mgm's sign
+    Mat least = truth - 3.4, most = truth + 2.7;
+    const Rect wrong(60, 30, 60, 60), free(150, 70, 60, 60); // another range; none at all
+    least(wrong) += 9;
+    most(wrong) += 9;
+    least(free).setTo(none);
+    most(free).setTo(std::numeric_limits<float>::infinity());
+    const auto match = [&](const String& options, const String& environment) {
+        test.folder.write("least.tif", least);
+        test.folder.write("most.tif", most);
+        return test.match(options + " -m " + test.folder.path("least.tif") + " -M " + test.folder.path("most.tif"),
+                          environment);
+    };
+    for (const String options : { "-r -31 -R 0 -s vfit", "-r -31 -R 0" })
+    {
+        SCOPED_TRACE(options);
+        for (const String environment : { "TESTLRRL=0", "TESTLRRL=1" })
+        {
+            const Mat disparity = match(options, environment);
+            EXPECT_EQ(0, cv::countNonZero((disparity < least) | (disparity > most)));
+        }
+        const Mat disparity = match(options, "TESTLRRL=0");
+        EXPECT_EQ(0, cv::countNonZero(disparity != disparity)) << "it is looked for in the range";
+        const Mat isRight = cv::abs(disparity - truth) <= 1;
+        EXPECT_GT(cv::countNonZero(isRight(free)), 0.8 * free.area());
+    }
+    // These ranges say all; the right map is matched over that of all.
+    least = truth - 3;
+    most = truth + 3;
+    EXPECT_LT(test.wrong(-match("-s vfit -Rd " + test.folder.path("right_map.tif"), "")), 0.1);
+    const Mat ofRight = test.image("right_map.tif");
+    EXPECT_GT(cv::countNonZero(ofRight == ofRight), 0.7 * ofRight.total());
+}
+
+TEST(HDPStereo_Mgm, ranges_of_a_smaller_left_image)
+{
+    MgmTest test;
+    test.save(test.left.rowRange(0, 130), test.right);
+    const Mat truth = -test.pair.truth.rowRange(0, 130);
+    test.folder.write("least.tif", truth - 2);
+    test.folder.write("most.tif", truth + 2);
     const Mat disparity =
-        test.match("-r -31 -R 0 -s vfit -m " + test.folder.path("least.tif") + " -M " + test.folder.path("most.tif"),
-                   "TESTLRRL=0");
-    const Mat known = disparity == disparity;
-    EXPECT_GT(cv::countNonZero(known), 0.8 * known.total());
-    const Mat outside = (disparity < least - 1.5) | (disparity > most + 1.5);
-    EXPECT_EQ(0, cv::countNonZero(outside));
+        test.match("-s vfit -m " + test.folder.path("least.tif") + " -M " + test.folder.path("most.tif"));
+    ASSERT_EQ(truth.size(), disparity.size());
+    EXPECT_EQ(0, cv::countNonZero(cv::abs(disparity - truth) > 2));
+    EXPECT_GT(cv::countNonZero(disparity == disparity), 0.7 * disparity.total());
+}
+
+TEST(HDPStereo_Mgm, wrong_ranges_of_pixels)
+{
+    MgmTest test;
+    const auto errorsFor = [&](const Mat& least, const Mat& most) {
+        test.folder.write("least.tif", least);
+        test.folder.write("most.tif", most);
+        return test.call("-r -31 -R 0 -m " + test.folder.path("least.tif") + " -M " + test.folder.path("most.tif"))
+            .errors;
+    };
+    Mat least(test.left.size(), CV_32F, Scalar(-9)), most(test.left.size(), CV_32F, Scalar(-4));
+    least.at<float>(7, 5) = -3.5;
+    EXPECT_EQ("error: -m must be nowhere above -M, but at (5, 7) they are -3.5 and -4\n", errorsFor(least, most));
+    least.at<float>(7, 5) = -3000;
+    EXPECT_EQ("error: -m must be from -2047 to 2047, not -3000\n", errorsFor(least, most));
+    least.at<float>(7, 5) = none;
+    most.at<float>(7, 5) = 3000;
+    EXPECT_EQ("error: -M must be from -2047 to 2047, not 3000\n", errorsFor(least, most));
+    EXPECT_EQ("error: -M must have the size of LEFT, 240 x 160, not 240 x 159\n",
+              errorsFor(least, most.rowRange(0, 159)));
+    EXPECT_FALSE(fs::exists(test.folder.path("out.tif")));
 }
 
 TEST(HDPStereo_Mgm, wrong_calls)
