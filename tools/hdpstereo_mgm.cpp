@@ -36,6 +36,7 @@ static const char* const usage =
     "                   but with -m; else, or if too few points match, -30 and 30\n"
     "  -m FILE -M FILE  the same for each pixel, in fractions, too; no others occur. Not finite: no limit of its own\n"
     "  -s none          whole disparities; with anything else they have fractions (none)\n"
+    "  -l FILE          the map before the left-right check and the removal of small regions, by a second match\n"
     "  -Rd FILE         disparities of the right image\n"
     "  -confidence_consensusL FILE, -confidence_consensusR FILE  confidence from 0 to 1\n"
     "Accepted without effect: -O -P1 -P2 -p -t -truncDist -aP1 -aP2 -aThresh -S -wl -wr -Rc -confidence_costL\n"
@@ -71,7 +72,7 @@ public:
     Call(int argc, char** argv)
     {
         static const char* const known[] = {
-            "r", "R", "m", "M", "s", "Rd", "confidence_consensusL", "confidence_consensusR"
+            "r", "R", "m", "M", "s", "l", "Rd", "confidence_consensusL", "confidence_consensusR"
         };
         static const char* const ignored[] = { "O",
                                                "P1",
@@ -372,24 +373,28 @@ static void run(const Call& call)
     const Filters filters = readFilters();
     const Ptr<HDPTreeMatcher> matcher = createMatcher(call);
     requireWritable("OUT", call.out());
-    for (const char* name : { "Rd", "confidence_consensusL", "confidence_consensusR" })
+    for (const char* name : { "l", "Rd", "confidence_consensusL", "confidence_consensusR" })
         if (!call.value(name).empty())
             requireWritable(String("-") + name, call.value(name));
     Mat left = readImage(call.left()), right = readImage(call.right());
     const Rect leftImage(Point(), left.size()), rightImage(Point(), right.size());
     const DisparityRange range = readRange(call, left.size());
     makeAlike(left, right);
-    if (filters.isChecked)
-        matcher->setDisp12MaxDiff(filters.maxDifference);
-    matcher->setSpeckleWindowSize(filters.smallestRegion);
-    matcher->setSpeckleRange(1);
     takeRange(range, left, right, *matcher);
     if (!range.mins.empty())
         matcher->setDisparityRange(extended(-range.maxs, left.size(), none), extended(-range.mins, left.size(), none));
     Mat disparity, confidence;
+    if (!call.value("l").empty())
+    {
+        match(*matcher, left, right, disparity, confidence);
+        writeImage(call.value("l"), -disparity(leftImage));
+    }
+    if (filters.isChecked)
+        matcher->setDisp12MaxDiff(filters.maxDifference);
+    matcher->setSpeckleWindowSize(filters.smallestRegion);
+    matcher->setSpeckleRange(1);
     match(*matcher, left, right, disparity, confidence);
-    disparity = -disparity(leftImage);
-    writeImage(call.out(), disparity);
+    writeImage(call.out(), -disparity(leftImage));
     writeImage(call.value("confidence_consensusL"), confidence(leftImage));
     if (call.value("Rd").empty() && call.value("confidence_consensusR").empty())
         return;
@@ -409,8 +414,11 @@ static void run(const Call& call)
 int main(int argc, char** argv)
 {
     utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below
-    if (argc == 2 && (String(argv[1]) == "--help" || String(argv[1]) == "-h"))
+    const String only = argc == 2 ? argv[1] : "";
+    if (only == "--help" || only == "-h")
         return std::cout << usage << std::flush ? 0 : 1;
+    if (only == "--version")
+        return std::cout << "hdpstereo-mgm " << HDPSTEREO_VERSION << std::endl ? 0 : 1;
     try
     {
         const String threads = environment("OMP_NUM_THREADS", "");

@@ -103,6 +103,39 @@ TEST(HDPStereo_Mgm, signs_and_sizes)
     EXPECT_GT(agree, 0.9 * known);
 }
 
+TEST(HDPStereo_Mgm, map_before_the_check)
+{
+    MgmTest test;
+    const String options = "-r -31 -R 0 -s vfit";
+    const Mat all = test.match(options, "TESTLRRL=0");
+    const Mat checked = test.match(options, "REMOVESMALLCC=100");
+    const Mat again = test.match(options + " -l " + test.folder.path("all.tif"), "REMOVESMALLCC=100");
+    EXPECT_EQ(0, cv::norm(all, test.image("all.tif"), NORM_INF));
+    EXPECT_EQ(0, cv::countNonZero((checked == checked) != (again == again)));
+    EXPECT_EQ(0, cv::norm(checked, again, NORM_INF, checked == checked));
+    EXPECT_LT(cv::countNonZero(checked == checked), (int)all.total());
+}
+
+TEST(HDPStereo_Mgm, all_options_of_mgm)
+{
+    MgmTest test;
+    const Mat expected = test.match("-r -31 -R 0 -s vfit");
+    // s2p's call of mgm_multi, and what else both programs have
+    const char* const others[] = { "-S 6 -s vfit -t census -O 8 -wl wl.tif -wr wr.tif -P1 12.0 -P2 48.0",
+                                   "-s parabola -p census -truncDist inf -aP1 1 -aP2 1 -aThresh 5 -Rc cost.tif",
+                                   "-s cubic -confidence_costL a.tif -confidence_costR b.tif -confidence_pkrL c.tif",
+                                   "-s vfit -confidence_pkrR d.tif -inputCostVolume volume.bin" };
+    for (const String options : others)
+    {
+        SCOPED_TRACE(options);
+        const Mat map = test.match("-r -31 -R 0 " + options, "SUBPIX=2 MEDIAN=1 CENSUS_NCC_WIN=5 MINDIFF=1");
+        EXPECT_EQ(0, cv::countNonZero((map == map) != (expected == expected)));
+        EXPECT_EQ(0, cv::norm(map, expected, NORM_INF, map == map));
+    }
+    EXPECT_EQ(0, run(test.folder, "hdpstereo-mgm -h").status);
+    EXPECT_EQ(0u, run(test.folder, "hdpstereo-mgm --version").output.find("hdpstereo-mgm "));
+}
+
 TEST(HDPStereo_Mgm, unknown_range)
 {
     MgmTest test;
@@ -233,7 +266,7 @@ TEST(HDPStereo_Mgm, outputs_that_cannot_be)
     for (const String wrong : { "map.png", "map.jpg", "map", "map.none", "-" })
         EXPECT_EQ("error: OUT must be a file of floats, such as .tif, not '" + wrong + "'\n",
                   callFor("", images, wrong));
-    for (const String option : { "-Rd", "-confidence_consensusL", "-confidence_consensusR" })
+    for (const String option : { "-l", "-Rd", "-confidence_consensusL", "-confidence_consensusR" })
     {
         EXPECT_EQ("error: " + option + ": cannot write '/no/d6.tif'\n", callFor(option + " /no/d6.tif", images, out));
         EXPECT_EQ("error: " + option + " must be a file of floats, such as .tif, not 'map.png'\n",
