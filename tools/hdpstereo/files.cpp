@@ -3,9 +3,15 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "files.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <fstream>
+#include <iostream>
 #include <limits>
+#ifdef __unix__
+#include <sys/stat.h>
+#endif
 
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/imgcodecs.hpp"
@@ -13,7 +19,18 @@
 
 using namespace cv;
 
-String extensionOf(const String& path) { return path.substr(std::min(path.rfind('.'), path.size())); }
+String extensionOf(const String& path)
+{
+    String extension = path.substr(std::min(path.rfind('.'), path.size()));
+    for (char& letter : extension)
+        letter = (char)std::tolower((unsigned char)letter);
+    return extension;
+}
+
+static void failToWrite(const String& path, const String& why = String())
+{
+    CV_Error(Error::StsError, "cannot write '" + path + "'" + (why.empty() ? why : ": " + why));
+}
 
 void requireFile(const String& path)
 {
@@ -25,14 +42,42 @@ void requireFolderOf(const String& path)
 {
     const String folder = utils::fs::getParent(path);
     if (!folder.empty() && !utils::fs::isDirectory(folder))
-        CV_Error(Error::StsObjectNotFound, "cannot write '" + path + "': there is no folder '" + folder + "'");
+        failToWrite(path, "there is no folder '" + folder + "'");
+    if (utils::fs::isDirectory(path))
+        failToWrite(path, "it is a folder");
+    const PartFile part(path);
+    if (!std::ofstream(part.name().c_str(), std::ios::app))
+        failToWrite(path);
 }
 
 void requireImageWriter(const String& path)
 {
     requireFolderOf(path);
     if (!haveImageWriter(path))
-        CV_Error(Error::StsBadArg, "cannot write '" + path + "': no image format has this extension");
+        failToWrite(path, "no image format has this extension");
+}
+
+void requireMapWriter(const String& path)
+{
+    requireImageWriter(path);
+    const String extension = extensionOf(path);
+    const String formats[] = { ".png", ".pfm", ".tif", ".tiff", ".exr" };
+    if (std::count(std::begin(formats), std::end(formats), extension) == 0)
+        failToWrite(path, "disparities need .png, .pfm, .tif or .exr");
+    try
+    {
+        encode(extension, Mat(1, 1, extension == ".png" ? CV_16U : CV_32F, Scalar(0)));
+    }
+    catch (const cv::Exception&) // OpenEXR may be switched off
+    {
+        failToWrite(path, "this OpenCV does not write " + extension);
+    }
+}
+
+bool isSameFile(const String& path, const String& other)
+{
+    return utils::fs::exists(path) && utils::fs::exists(other) &&
+           utils::fs::canonical(path) == utils::fs::canonical(other);
 }
 
 std::vector<uchar> encode(const String& extension, const Mat& image)
@@ -48,15 +93,50 @@ void writeFile(const String& path, const std::vector<uchar>& bytes)
     file.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
     file.close();
     if (!file)
-        CV_Error(Error::StsError, "cannot write '" + path + "'");
+        failToWrite(path);
+}
+
+//! Whether another file may take the place of what has this name: not of a device or a pipe
+static bool isReplaceable(const String& path)
+{
+#ifdef __unix__
+    struct stat status;
+    return stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode);
+#else
+    (void)path;
+    return true;
+#endif
+}
+
+PartFile::PartFile(const String& path)
+    : path_(utils::fs::exists(path) ? utils::fs::canonical(path) : path), isOpen_(isReplaceable(path_)),
+      name_(isOpen_ ? path_ + ".part" : path_)
+{
+}
+
+PartFile::~PartFile()
+{
+    if (isOpen_)
+        std::remove(name_.c_str());
+}
+
+void PartFile::finish()
+{
+    if (!isOpen_)
+        return;
+#ifdef _WIN32
+    std::remove(path_.c_str()); // or rename() fails
+#endif
+    if (std::rename(name_.c_str(), path_.c_str()) != 0)
+        failToWrite(path_);
+    isOpen_ = false;
 }
 
 void writeWholeFile(const String& path, const std::vector<uchar>& bytes)
 {
-    const String part = path + ".part";
-    writeFile(part, bytes);
-    if (std::rename(part.c_str(), path.c_str()) != 0)
-        CV_Error(Error::StsError, "cannot write '" + path + "'");
+    PartFile part(path);
+    writeFile(part.name(), bytes);
+    part.finish();
 }
 
 Mat readImage(const String& path, int flags)
@@ -67,10 +147,11 @@ Mat readImage(const String& path, int flags)
     return image;
 }
 
-Mat readDisparity(const String& path)
+Mat readDisparity(const String& path) { return toDisparity(readImage(path, IMREAD_UNCHANGED), path); }
+
+Mat toDisparity(const Mat& image, const String& path)
 {
     const float none = std::numeric_limits<float>::quiet_NaN();
-    const Mat image = readImage(path, IMREAD_UNCHANGED);
     if (image.type() != CV_16UC1 && image.type() != CV_32FC1)
         CV_Error(Error::StsUnsupportedFormat, "'" + path + "' must have disparities of 16 bit, times 256, or floats");
     Mat disparity;
@@ -97,11 +178,23 @@ Mat readPicture(const String& path)
 
 std::vector<uchar> encodeDisparity(const String& extension, const Mat& disparity)
 {
+    const float none = std::numeric_limits<float>::infinity();
+    if (extension == ".tif" || extension == ".tiff") // whose readers know NaN
+    {
+        Mat map = disparity.clone();
+        map.setTo(std::numeric_limits<float>::quiet_NaN(), disparity == none);
+        return encode(extension, map);
+    }
     if (extension != ".png")
         return encode(extension, disparity);
+    const Mat outside = (disparity < 0) | (disparity >= 256);
+    const int lost = countNonZero(outside & (disparity < none));
+    if (lost > 0)
+        std::cerr << "warning: " << lost << " pixels have disparities below 0 or from 256 on, and PNG has none: take "
+                  << ".pfm, .tif or .exr" << std::endl;
     Mat disparity256;
     disparity.convertTo(disparity256, CV_16U, 256);
     disparity256.setTo(1, disparity256 == 0); // 0 stands for none
-    disparity256.setTo(0, (disparity < 0) | (disparity >= 256));
+    disparity256.setTo(0, outside);
     return encode(extension, disparity256);
 }

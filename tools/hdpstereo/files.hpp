@@ -8,6 +8,7 @@
 
 // Images and maps in files. All throw cv::Exception.
 
+//! In small letters
 cv::String extensionOf(const cv::String& path);
 
 //! Throws if there is no such file, or it is a folder.
@@ -16,24 +17,54 @@ void requireFile(const cv::String& path);
 //! Throws if the folder of a file to write is not there, or there is no image format of its extension.
 void requireImageWriter(const cv::String& path);
 
-//! Throws if the folder of a file to write is not there.
+//! The same; the format must have disparities, too.
+void requireMapWriter(const cv::String& path);
+
+//! Throws if the folder of a file to write is not there, or cannot be written to.
 void requireFolderOf(const cv::String& path);
+
+//! Whether both are there, and are one
+bool isSameFile(const cv::String& path, const cv::String& other);
 
 std::vector<uchar> encode(const cv::String& extension, const cv::Mat& image);
 
-//! A map in pixels, infinite where there is none, as --output says
+//! A map in pixels, infinite where there is none, as --output says. Warns of disparities that the format does not have.
 std::vector<uchar> encodeDisparity(const cv::String& extension, const cv::Mat& disparity);
 
 //! Unlike imwrite(), this notices a full disk.
 void writeFile(const cv::String& path, const std::vector<uchar>& bytes);
 
-//! Whole or not at all, whatever becomes of this program meanwhile
+//! A file that gets its name when it is whole, whatever becomes of this program meanwhile
+class PartFile
+{
+public:
+    explicit PartFile(const cv::String& path);
+    PartFile(const PartFile&) = delete;
+    PartFile& operator=(const PartFile&) = delete;
+    ~PartFile(); //!< removes what is not finished
+
+    //! To write to: beside the file, or a device itself
+    const cv::String& name() const { return name_; }
+
+    //! After it is closed
+    void finish();
+
+private:
+    cv::String path_;
+    bool isOpen_;
+    cv::String name_;
+};
+
+//! By a PartFile
 void writeWholeFile(const cv::String& path, const std::vector<uchar>& bytes);
 
 cv::Mat readImage(const cv::String& path, int flags);
 
 //! A map as encodeDisparity() writes it: CV_32F in pixels, NaN where there is none
 cv::Mat readDisparity(const cv::String& path);
+
+//! The same of what is read already
+cv::Mat toDisparity(const cv::Mat& image, const cv::String& path);
 
 //! Colours in 8 bit, or grey levels in 16 bit or floats of a picture that has them
 cv::Mat readPicture(const cv::String& path);

@@ -16,7 +16,7 @@ using cv::stereo::StereoRig;
 
 static void writeAndTell(const String& path, const std::vector<uchar>& bytes)
 {
-    writeFile(path, bytes);
+    writeWholeFile(path, bytes);
     std::cout << "written    " << path << std::endl;
 }
 
@@ -205,12 +205,7 @@ static void checkOptions(const CommandLineParser& parser)
     for (const char* option : { "min-disparity", "num-disparities" })
         if (parser.has(option))
             integerOf(parser, option);
-    for (const char* option : { "@out", "output", "picture", "depth" })
-        if (parser.has(option))
-            requireImageWriter(parser.get<String>(option));
-    for (const char* option : { "point-cloud", "save-findings" })
-        if (parser.has(option))
-            requireFolderOf(parser.get<String>(option));
+    checkOutputs(parser);
     for (const char* option : { "focal", "baseline" })
         if (parser.has(option) && !(numberOf(parser, option) > 0))
             CV_Error(Error::StsBadArg, format("--%s must be above 0", option));
@@ -235,6 +230,31 @@ static void writeDepth(const String& path, const StereoRig& rig, const Mat& disp
     Mat depth;
     rig.computeDepth(disparity, depth, extensionOf(path) == ".png" ? CV_16U : CV_32F, minDisparity);
     writeAndTell(path, encode(extensionOf(path), depth));
+}
+
+//! --sigma, --confidence and --reasons
+static void writeReliability(const CommandLineParser& parser, const HDPTreeMatcher& matcher)
+{
+    if (parser.has("sigma"))
+    {
+        const String path = parser.get<String>("sigma");
+        Mat sigma;
+        matcher.getDisparitySigma(sigma);
+        writeAndTell(path, encodeDisparity(extensionOf(path), sigma));
+    }
+    for (const char* option : { "confidence", "reasons" })
+        if (parser.has(option))
+        {
+            const String path = parser.get<String>(option);
+            Mat numbers;
+            if (option == String("reasons"))
+                matcher.getReasons(numbers);
+            else
+                matcher.getConfidence(numbers);
+            if (extensionOf(path) != ".png")
+                numbers.convertTo(numbers, CV_32F);
+            writeAndTell(path, encode(extensionOf(path), numbers));
+        }
 }
 
 //! --compare: the second run of either has its memory.
@@ -274,6 +294,7 @@ void matchPair(const CommandLineParser& parser)
     const String output = parser.get<String>(parser.has("output") ? "output" : "@out");
     if (!output.empty())
         writeAndTell(output, encodeDisparity(extensionOf(output), disparity));
+    writeReliability(parser, *matcher);
     if (parser.has("save-findings"))
     {
         const String path = parser.get<String>("save-findings");

@@ -126,16 +126,22 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
 
 size_t matchPairs(const CommandLineParser& parser)
 {
-    for (const char* option : { "output", "picture", "truth", "point-cloud", "depth", "compare", "save-findings" })
+    for (const char* option : { "output", "picture", "truth", "point-cloud", "depth", "compare", "save-findings",
+                                "sigma", "confidence", "reasons" })
         if (parser.has(option))
             CV_Error(Error::StsBadArg, format("--%s is for one pair, and not for --batch", option));
     const String format = parser.get<String>("format"), lefts = parser.get<String>("@left");
-    if (format != "png" && format != "pfm")
+    if (format != "png" && format != "pfm" && format != "tif")
         CV_Error(Error::StsBadArg, "--format=" + format + " is unknown, see --help");
+    if (format == "png")
+        requireNoNegativeDisparities(parser);
     const bool areFolders = utils::fs::isDirectory(lefts) || parser.has("@out"); // or are meant to be
     const String out = parser.get<String>(areFolders ? "@out" : "@right");
     if (out.empty())
         CV_Error(Error::StsBadArg, "--batch needs LEFTS RIGHTS OUT, three folders, or LIST OUT, a file and a folder");
+    for (const String& folder : { lefts, parser.get<String>("@right") })
+        if (areFolders && isSameFile(out, folder))
+            CV_Error(Error::StsBadArg, "OUT must be another folder than that of the images, '" + folder + "'");
     const std::vector<NamedPair> pairs =
         areFolders ? pairsOfFolders(lefts, parser.get<String>("@right")) : pairsOfList(lefts);
     if (pairs.empty())

@@ -39,21 +39,51 @@ int numDisparitiesOf(const CommandLineParser& parser, int width)
                                          : std::max((width / 5 + 15) / 16 * 16, 16);
 }
 
-//! --smallest and --largest, one of which may be missing; --prior and --prior-sigma
-static void setKnownDisparities(const CommandLineParser& parser, HDPTreeMatcher& matcher)
+void checkOutputs(const CommandLineParser& parser)
 {
-    const auto mapOf = [&](const char* option) {
-        return parser.has(option) ? readDisparity(parser.get<String>(option)) : Mat();
-    };
-    Mat smallest = mapOf("smallest"), largest = mapOf("largest");
-    const Mat prior = mapOf("prior"),
-              unlimited(std::max(smallest.rows, largest.rows), std::max(smallest.cols, largest.cols), CV_32F,
+    const char* const inputs[] = { "@left", "@right", "left-mask",   "right-mask",   "smallest", "largest",
+                                   "prior", "truth",  "calibration", "calibration2", "findings", "reprojection" };
+    for (const char* option :
+         { "@out", "output", "sigma", "depth", "confidence", "reasons", "picture", "point-cloud", "save-findings" })
+    {
+        const String path = parser.get<String>(option), name = option;
+        if (path.empty())
+            continue;
+        if (name == "point-cloud" || name == "save-findings")
+            requireFolderOf(path);
+        else if (name == "picture")
+            requireImageWriter(path);
+        else
+            requireMapWriter(path);
+        for (const String input : inputs)
+            if (isSameFile(path, parser.get<String>(input)))
+                CV_Error(Error::StsBadArg, "cannot write '" + path + "': it is " +
+                                               (input == "@left"    ? "LEFT"
+                                                : input == "@right" ? "RIGHT"
+                                                                    : "the file of --" + input));
+    }
+    const String map = parser.get<String>(parser.has("output") ? "output" : "@out");
+    if (extensionOf(map) == ".png")
+        requireNoNegativeDisparities(parser);
+}
+
+void requireNoNegativeDisparities(const CommandLineParser& parser)
+{
+    if (integerOf(parser, "min-disparity") < 0)
+        CV_Error(Error::StsBadArg, "PNG has no disparities below 0, and --min-disparity=" +
+                                       parser.get<String>("min-disparity") + " asks for some: take .tif, .pfm or .exr");
+}
+
+void setKnownDisparities(const CommandLineParser& parser, const Mat& smallest, const Mat& largest, const Mat& prior,
+                         HDPTreeMatcher& matcher)
+{
+    const Mat unlimited(std::max(smallest.rows, largest.rows), std::max(smallest.cols, largest.cols), CV_32F,
                         Scalar(std::numeric_limits<float>::quiet_NaN()));
     matcher.setDisparityRange(smallest.empty() ? unlimited : smallest, largest.empty() ? unlimited : largest);
     matcher.setPriorDisparity(prior, Mat(1, 1, CV_64F, Scalar(numberOf(parser, "prior-sigma"))));
 }
 
-Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
+Ptr<HDPTreeMatcher> createPlainMatcher(const CommandLineParser& parser, int width)
 {
     const std::map<String, int> presets = { { "ultrafast", HDPTreeMatcher::PRESET_ULTRAFAST },
                                             { "fast", HDPTreeMatcher::PRESET_FAST },
@@ -69,11 +99,20 @@ Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, numDisparities, preset->second);
     if (parser.has("findings"))
         matcher->setPairModel(cv::stereo::PairModel::load(parser.get<String>("findings")));
+    return matcher;
+}
+
+Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
+{
+    const Ptr<HDPTreeMatcher> matcher = createPlainMatcher(parser, width);
     const auto maskOf = [&](const char* option) {
         return parser.has(option) ? readImage(parser.get<String>(option), IMREAD_GRAYSCALE) : Mat();
     };
     matcher->setMasks(maskOf("left-mask"), maskOf("right-mask"));
-    setKnownDisparities(parser, *matcher);
+    const auto mapOf = [&](const char* option) {
+        return parser.has(option) ? readDisparity(parser.get<String>(option)) : Mat();
+    };
+    setKnownDisparities(parser, mapOf("smallest"), mapOf("largest"), mapOf("prior"), *matcher);
     return matcher;
 }
 

@@ -15,7 +15,20 @@ int integerOf(const cv::CommandLineParser& parser, const cv::String& option);
 //! --num-disparities, or what is usual for images of a width
 int numDisparitiesOf(const cv::CommandLineParser& parser, int width);
 
+//! Whether what is to be written for one pair can be, and is no input; before any work
+void checkOutputs(const cv::CommandLineParser& parser);
+
+//! For maps in PNG
+void requireNoNegativeDisparities(const cv::CommandLineParser& parser);
+
 cv::Ptr<cv::stereo::HDPTreeMatcher> createMatcher(const cv::CommandLineParser& parser, int width);
+
+//! Without what it has to know of each pixel: masks, ranges and prior
+cv::Ptr<cv::stereo::HDPTreeMatcher> createPlainMatcher(const cv::CommandLineParser& parser, int width);
+
+//! --smallest and --largest, --prior and --prior-sigma; maps that are empty are missing
+void setKnownDisparities(const cv::CommandLineParser& parser, const cv::Mat& smallest, const cv::Mat& largest,
+                         const cv::Mat& prior, cv::stereo::HDPTreeMatcher& matcher);
 
 // What the program does
 

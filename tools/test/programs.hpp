@@ -11,7 +11,9 @@
 #include <cstdlib>
 
 #ifdef __unix__
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace opencv_test {
 
@@ -44,6 +46,23 @@ inline Execution run(const DatasetFolder& folder, const String& command, const S
     const bool exited = status != -1 && WIFEXITED(status);
     EXPECT_TRUE(exited) << command;
     return { exited ? WEXITSTATUS(status) : -1, output.empty() ? readText(out) : String(), readText(err) };
+}
+
+//! The most that a program takes, in KiB
+inline long peakMemory(const DatasetFolder& folder, const String& command)
+{
+    const String line = "exec " + programFolder() + "/" + command + " >/dev/null 2>'" + folder.path("stderr") + "'";
+    const pid_t child = fork();
+    if (child == 0)
+    {
+        execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
+        _exit(127);
+    }
+    int status = -1;
+    struct rusage usage = rusage();
+    EXPECT_EQ(child, wait4(child, &status, 0, &usage));
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << readText(folder.path("stderr"));
+    return usage.ru_maxrss;
 }
 
 //! A pair of 160 x 120 pixels and 32 disparities, and three scenes of it: dataset/half/{a,b,c}

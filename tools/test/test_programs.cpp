@@ -9,8 +9,6 @@
 
 #ifdef __unix__
 #include <cstdio>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace opencv_test { namespace {
@@ -76,6 +74,28 @@ TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
     EXPECT_NEAR(-50 / 100. * first[2], first[0], 1e-4 * first[2]);
     EXPECT_NEAR(-40 / 100. * first[2], first[1], 1e-4 * first[2]);
 
+    // How far it is right, and why it is so; floats have all disparities, in whatever letters files are named.
+    const String far = " --output=" + folder.path("far.TIF") + " --sigma=" + folder.path("sigma.tif") +
+                       " --reasons=" + folder.path("reasons.png") + " --confidence=" + folder.path("confidence.pfm"),
+                 mask = " --left-mask=" + folder.path("mask.png");
+    Mat data(120, 160, CV_8U, Scalar(255));
+    data.rowRange(0, 30).setTo(0);
+    folder.write("mask.png", data);
+    const Execution told = run(folder, program + " --min-disparity=-8" + far + mask);
+    EXPECT_EQ(0, told.status) << told.errors;
+    const Mat below = cv::imread(folder.path("far.TIF"), IMREAD_UNCHANGED),
+              sigma = cv::imread(folder.path("sigma.tif"), IMREAD_UNCHANGED),
+              reasons = cv::imread(folder.path("reasons.png"), IMREAD_UNCHANGED),
+              confidence = cv::imread(folder.path("confidence.pfm"), IMREAD_UNCHANGED);
+    ASSERT_EQ(CV_32FC1, below.type());
+    EXPECT_EQ(0, cv::countNonZero((below < FLT_MAX) != data)); // NaN stands for none
+    ASSERT_EQ(CV_32FC1, sigma.type());
+    EXPECT_EQ(0, cv::countNonZero((sigma < FLT_MAX) != data));
+    ASSERT_EQ(CV_8UC1, reasons.type());
+    EXPECT_EQ(0, cv::countNonZero((reasons != cv::stereo::HDPTreeMatcher::REASON_MASKED) != data));
+    ASSERT_EQ(CV_32FC1, confidence.type());
+    EXPECT_EQ(0, cv::countNonZero((confidence > 0) & ~data));
+
     const Execution compared = run(folder, program + " --compare --picture=" + folder.path("picture.jpg") +
                                                " --truth=" + folder.path("dataset/a/disp_left.png"));
     EXPECT_EQ(0, compared.status) << compared.errors;
@@ -118,66 +138,6 @@ TEST(HDPStereo_Programs, findings_of_another_pair)
     EXPECT_EQ(1, run(folder, program + " --findings=" + map).status);
     EXPECT_EQ(1, run(folder, program + " --save-findings=/no/such/folder/rig.yml").status);
     EXPECT_EQ(1, run(folder, "hdpstereo --batch a b c --save-findings=" + model).status);
-}
-
-Mat greyFloats(const Mat& image)
-{
-    Mat floats;
-    cvtColor(image, floats, COLOR_BGR2GRAY);
-    floats.convertTo(floats, CV_32F, 0.01, -1);
-    return floats;
-}
-
-//! Tiles that know their place have no seams, whatever the file is read by.
-TEST(HDPStereo_Tiles, make_the_map_of_the_whole)
-{
-    const DatasetFolder folder;
-    const SyntheticPair pair = makeSlantedPlane(Size(1000, 600), 32, 9);
-    const String whole = folder.path("whole.pfm"), tiled = folder.path("tiled.tif"), model = folder.path("rig.yml");
-    for (const char* const extension : { "png", "tif", "tiff" })
-    {
-        SCOPED_TRACE(extension);
-        const String left = String("left.") + extension, right = String("right.") + extension;
-        const bool isFloat = extension == String("tiff");
-        folder.write(left, isFloat ? greyFloats(pair.left) : pair.left);
-        folder.write(right, isFloat ? greyFloats(pair.right) : pair.right);
-        const String images = " " + folder.path(left) + " " + folder.path(right) + " --num-disparities=32 ";
-        EXPECT_EQ(0, run(folder, "hdpstereo" + images + whole + " --save-findings=" + model).status);
-        const Mat expected = cv::imread(whole, IMREAD_UNCHANGED);
-        for (const bool isGiven : { false, true }) // what is found in reduced images is a bit different
-        {
-            if (!isGiven && extension != String("png"))
-                continue; // one kind of files is enough for that
-            const Execution result = run(folder, "hdpstereo --tiles --memory=96" + images + tiled +
-                                                     (isGiven ? " --findings=" + model : String()));
-            EXPECT_EQ(0, result.status) << result.errors;
-            EXPECT_EQ(String::npos, result.output.find("tiles      1 of")) << result.output;
-            const Mat map = cv::imread(tiled, IMREAD_UNCHANGED);
-            ASSERT_EQ(expected.size(), map.size());
-            EXPECT_LE(cv::countNonZero(cv::abs(expected - map) > (isGiven ? 0 : 1)), isGiven ? 6000 : 1500);
-        }
-    }
-    const String images = " " + folder.path("left.png") + " " + folder.path("right.png") + " ";
-    for (const String& wrong : { "--memory=1 out.tif" + String(), "--picture=a.png out.tif" + String(), String(),
-                                 "--memory=x out.tif" + String(), "/no/such/folder/out.tif" + String() })
-        EXPECT_EQ(1, run(folder, "hdpstereo --tiles" + images + wrong).status) << wrong;
-}
-
-//! The most that a program takes, in KiB
-long peakMemory(const DatasetFolder& folder, const String& command)
-{
-    const String line = "exec " + programFolder() + "/" + command + " >/dev/null 2>'" + folder.path("stderr") + "'";
-    const pid_t child = fork();
-    if (child == 0)
-    {
-        execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
-        _exit(127);
-    }
-    int status = -1;
-    struct rusage usage = rusage();
-    EXPECT_EQ(child, wait4(child, &status, 0, &usage));
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << readText(folder.path("stderr"));
-    return usage.ru_maxrss;
 }
 
 TEST(HDPStereo_Programs, rectifies_raw_pairs)
@@ -307,8 +267,8 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
     const DatasetFolder folder;
     writePair(folder);
     const String a = folder.path("dataset/a"), none = folder.path("none"), out = folder.path("out"),
-                 left = a + "/left.png", right = a + "/right.png", pair = " " + left + " " + right + " ",
-                 batch = " --batch " + a + " " + a + " " + out;
+                 truth = a + "/disp_left.png", left = a + "/left.png", right = a + "/right.png",
+                 pair = " " + left + " " + right + " ", batch = " --batch " + a + " " + a + " " + out;
     folder.writeText("words.yml", "no: [ calibration");
     const String words = folder.path("words.yml");
     const struct
@@ -337,8 +297,18 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
         { pair + none + "/map.png", "cannot write '" + none + "/map.png': there is no folder '" + none + "'" },
         { pair + "--picture=map.xyz", "cannot write 'map.xyz': no image format has this extension" },
         { pair + "--output=" + out, "cannot write '" + out + "': no image format has this extension" },
+        { pair + left, "cannot write '" + left + "': it is LEFT" },
+        { pair + "--picture=" + a + "/../a/right.png", "cannot write '" + a + "/../a/right.png': it is RIGHT" },
+        { pair + "--sigma=" + left, "cannot write '" + left + "': it is LEFT" },
+        { pair + "--truth=" + truth + " --output=" + truth, "cannot write '" + truth + "': it is the file of --truth" },
+        { pair + a, "cannot write '" + a + "': it is a folder" },
+        { pair + "map.jpg", "cannot write 'map.jpg': disparities need .png, .pfm, .tif or .exr" },
+        { pair + "--reasons=map.jpg", "cannot write 'map.jpg': disparities need .png, .pfm, .tif or .exr" },
+        { pair + "map.PNG --min-disparity=-3", "PNG has no disparities below 0, and --min-disparity=-3 asks for some" },
+        { batch + " --min-disparity=-3", "PNG has no disparities below 0, and --min-disparity=-3 asks for some" },
+        { " --batch " + a + " " + a + " " + a, "OUT must be another folder than that of the images, '" + a + "'" },
         { pair + "--save-findings=" + none + "/rig.yml", "cannot write '" + none + "/rig.yml': there is no folder" },
-        { " --tiles " + none + " " + right + " " + out, "cannot read the image '" + none + "'" },
+        { " --tiles " + none + " " + right + " " + out + ".tif", "cannot read the image '" + none + "'" },
         { " --tiles" + pair + out + ".tif --findings=" + none, "filename: '" + none + "' does not hold a pair model" },
         { " --tiles" + pair + out + ".tif --calibration=" + none, "--calibration does not go with --tiles" },
     };
@@ -434,7 +404,6 @@ TEST(HDPStereo_Programs, stereo_match_takes_ranges_and_a_prior)
         EXPECT_NE(String::npos, bad.errors.find(options.second)) << bad.errors;
         EXPECT_EQ(firstLine(bad.errors) + "\n", bad.errors);
     }
-    EXPECT_EQ(1, run(folder, "hdpstereo --tiles" + pairOf(folder) + " " + pfm + prior).status);
 }
 
 TEST(HDPStereo_Programs, stereo_match_finds_the_range)
