@@ -122,7 +122,7 @@ endif()
 if(HDPSTEREO_TOOLS)
   if(HDPSTEREO_TESTS_FROM)
     add_suites("${HDPSTEREO_TESTS_FROM}/bin/opencv_test_hdpstereo_tools" tools
-      "HDPSTEREO_PROGRAMS=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}" tools/test/test_programs.cpp tools/test/test_mgm.cpp)
+      "HDPSTEREO_PROGRAMS=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}" tools/test/test_programs.cpp tools/test/test_tiles.cpp tools/test/test_mgm.cpp)
   else()
     file(GLOB tools_test_sources CONFIGURE_DEPENDS tools/test/test_*.cpp)
     add_suites(opencv_test_hdpstereo_tools tools "" ${tools_test_sources})

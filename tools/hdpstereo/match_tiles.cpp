@@ -3,12 +3,13 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "files.hpp"
 #include "options.hpp"
-#include "windows.hpp"
+#include "windowed_pair.hpp"
 
 #include <cmath>
 #include <iostream>
-
-#include "opencv2/imgproc.hpp"
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 using namespace cv;
 using cv::stereo::HDPTreeMatcher;
@@ -21,41 +22,10 @@ const double overviewPixels = 3e6;
 
 const int margin = 128; // pixels that scanlines come from, beside what disparities need
 
-struct WindowedPair
-{
-    Ptr<ImageWindows> left, right;
-
-    Size size() const { return left->size(); }
-    bool fits() const { return left->bytesInMemory() == 0; }
-};
-
-WindowedPair openPair(const CommandLineParser& parser)
-{
-    const WindowedPair pair = { openImage(parser.get<String>("@left")), openImage(parser.get<String>("@right")) };
-    if (pair.left->size() != pair.right->size() || pair.left->type() != pair.right->type())
-        CV_Error(Error::StsUnmatchedSizes, "RIGHT must have the size and the type of LEFT");
-    return pair;
-}
-
-//! What an image becomes if it is halved some times, read by rows
-Mat reduced(ImageWindows& image, int times)
-{
-    const Size size(image.size().width >> times, image.size().height >> times);
-    Mat small(size, image.type());
-    const int rows = std::max(256 >> times, 1);
-    for (int y = 0; y < size.height; y += rows)
-    {
-        const int count = std::min(rows, size.height - y);
-        const Mat band = image.read(Rect(0, y << times, size.width << times, count << times));
-        resize(band, small.rowRange(y, y + count), Size(size.width, count), 0, 0, INTER_AREA);
-    }
-    return small;
-}
-
 //! Memory that a matcher takes, in bytes per pixel, at most; see BENCHMARK.md
 double bytesPerPixel(const String& preset)
 {
-    return preset == "ultrafast" ? 40 : preset == "fast" ? 85 : preset == "quality" ? 120 : 200;
+    return preset == "ultrafast" ? 70 : preset == "fast" ? 85 : preset == "quality" ? 120 : 200;
 }
 
 //! How a pair is cut
@@ -104,7 +74,7 @@ private:
 //! Pixels of a tile that fit into --memory, which are some at least
 double affordedPixels(const CommandLineParser& parser, double otherBytes)
 {
-    const double memory = numberOf(parser, "memory") * (1 << 20), fixed = 64 << 20; // of the program itself
+    const double memory = numberOf(parser, "memory") * (1 << 20), fixed = 72 << 20; // of the program itself
     const double perPixel = bytesPerPixel(parser.get<String>("preset")) + 16;       // and images, and map
     const double pixels = (memory - fixed - otherBytes) / perPixel;
     if (!(pixels > 256 * 256))
@@ -114,14 +84,15 @@ double affordedPixels(const CommandLineParser& parser, double otherBytes)
 }
 
 //! A matcher as the options say, with the model of this pair, estimated by itself
-Ptr<HDPTreeMatcher> matchAlone(const CommandLineParser& parser, int width, const Mat& left, const Mat& right,
-                               int minDisparity, int numDisparities)
+Ptr<HDPTreeMatcher> matchAlone(const CommandLineParser& parser, int width, const PairPart& pair, int minDisparity,
+                               int numDisparities)
 {
-    const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, width);
+    const Ptr<HDPTreeMatcher> matcher = createPlainMatcher(parser, width);
     matcher->setPairModel(PairModel());
+    matcher->setMasks(pair.leftMask, pair.rightMask);
     matcher->setMinDisparity(minDisparity);
     matcher->setNumDisparities(numDisparities);
-    computeDisparity(*matcher, left, right);
+    computeDisparity(*matcher, pair.left, pair.right);
     return matcher;
 }
 
@@ -147,13 +118,15 @@ void takeRange(const CommandLineParser& parser, const WindowedPair& pair, double
     else
     {
         times = timesHalved(pair.size(), pixels);
-        const Mat left = reduced(*pair.left, times), right = reduced(*pair.right, times);
-        const HDPTreeMatcher::Findings found = matchAlone(parser, pair.size().width, left, right, 0, 0)->getFindings();
+        const HDPTreeMatcher::Findings found =
+            matchAlone(parser, pair.size().width, pair.reduced(times), 0, 0)->getFindings();
         first = found.minDisparity;
         count = found.numDisparities;
     }
     matcher.setMinDisparity(first * (1 << times));
     matcher.setNumDisparities(count * (1 << times));
+    std::cout << format("%-11sdisparities %d..%d\n", "found", matcher.getMinDisparity(),
+                        matcher.getMinDisparity() + matcher.getNumDisparities() - 1);
 }
 
 //! What all tiles are matched with: --findings, or rows and light of the reduced pair and the rest of a part in the
@@ -167,8 +140,7 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
     const int side = (int)std::sqrt(std::min(overviewPixels, pixels));
     const Rect all(Point(), size), middle = Rect((size.width - side) / 2, (size.height - side) / 2, side, side) & all;
     const Rect part = times == 0 ? all : middle;
-    Ptr<HDPTreeMatcher> ofPart =
-        matchAlone(parser, size.width, pair.left->read(part), pair.right->read(part), min, count);
+    Ptr<HDPTreeMatcher> ofPart = matchAlone(parser, size.width, pair.read(part), min, count);
     layers = (int)ofPart->getFindings().searchRatios.size();
     if (parser.has("findings"))
         return PairModel::load(parser.get<String>("findings"));
@@ -177,8 +149,7 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
     if (times == 0)
         return found;
 
-    PairModel model = matchAlone(parser, size.width, reduced(*pair.left, times), reduced(*pair.right, times),
-                                 min >> times, (count >> times) + 1)
+    PairModel model = matchAlone(parser, size.width, pair.reduced(times), min >> times, (count >> times) + 1)
                           ->getPairModel()
                           .enlarged(times, size.width, size.height);
     if (found.noise > 0)
@@ -197,14 +168,36 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
 
 void checkTileOptions(const CommandLineParser& parser)
 {
-    for (const char* option : { "picture", "truth", "point-cloud", "compare", "batch", "smallest", "largest", "prior",
-                                "calibration", "calibration2", "depth" })
+    for (const char* option : { "picture", "truth", "point-cloud", "compare", "batch", "calibration", "calibration2",
+                                "depth", "sigma", "confidence", "reasons" })
         if (parser.has(option))
             CV_Error(Error::StsBadArg, format("--%s does not go with --tiles", option));
     if (!parser.has("@left") || !parser.has("@right") || parser.has("@out") == parser.has("output"))
         CV_Error(Error::StsBadArg, "--tiles needs LEFT RIGHT OUT");
     if (!(numberOf(parser, "memory") > 0))
         CV_Error(Error::StsBadArg, "--memory must be above 0");
+    checkOutputs(parser);
+}
+
+//! Tiles are of the images that --findings were found in, whose levels have as many bits.
+void checkFindings(const CommandLineParser& parser, const WindowedPair& pair)
+{
+    if (!parser.has("findings"))
+        return;
+    const String path = parser.get<String>("findings");
+    const PairModel model = PairModel::load(path);
+    const Size size(model.width, model.height), tile(model.tileWidth, model.tileHeight);
+    if (tile != size)
+        CV_Error(Error::StsBadArg, "--findings=" + path + " is of a tile; it must be of whole images");
+    if (size != pair.size())
+        CV_Error(Error::StsUnmatchedSizes,
+                 format("--findings=%s is of images of %d x %d pixels, and these have %d x %d", path.c_str(),
+                        size.width, size.height, pair.size().width, pair.size().height));
+    const auto nameOf = [](int depth) { return depth == CV_8U ? "8 bit" : depth == CV_16U ? "16 bit" : "floats"; };
+    if (model.depth != CV_MAT_DEPTH(pair.type()))
+        CV_Error(Error::StsUnmatchedFormats,
+                 format("--findings=%s is of images of %s, and these are of %s", path.c_str(), nameOf(model.depth),
+                        nameOf(CV_MAT_DEPTH(pair.type()))));
 }
 
 } // namespace
@@ -212,15 +205,20 @@ void checkTileOptions(const CommandLineParser& parser)
 void matchTiles(const CommandLineParser& parser)
 {
     checkTileOptions(parser);
-    const WindowedPair pair = openPair(parser);
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 1 << 17); // what tiles of another size do not need goes back to the system
+#endif
+    const WindowedPair pair(parser);
+    checkFindings(parser, pair);
     const Size size = pair.size();
     const String output = parser.get<String>(parser.has("output") ? "output" : "@out");
-    const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, size.width);
-    if (!pair.fits())
-        std::cout << "read whole " << parser.get<String>("@left") << ", " << parser.get<String>("@right") << std::endl;
+    const Ptr<HDPTreeMatcher> matcher = createPlainMatcher(parser, size.width);
+    pair.setKnownDisparities(parser, Rect(0, 0, 1, 1), *matcher); // throws if types are wrong
+    for (const String& path : pair.readWhole())
+        std::cout << "read whole " << path << std::endl;
     const bool writesTiles = isWrittenByTiles(output);
     const double area = (double)size.width * size.height;
-    const double pixels = affordedPixels(parser, area * (2. * pair.left->bytesInMemory() + (writesTiles ? 0 : 4)));
+    const double pixels = affordedPixels(parser, area * (pair.bytesInMemory() + (writesTiles ? 0 : 4)));
     if (matcher->getNumDisparities() == 0)
         takeRange(parser, pair, pixels, *matcher);
     int layers = 0;
@@ -233,7 +231,10 @@ void matchTiles(const CommandLineParser& parser)
     {
         const Rect whole = tiling.whole(i), inside = tiling.inside(i);
         matcher->setPairModel(model.tile(whole));
-        const Mat disparity = computeDisparity(*matcher, pair.left->read(whole), pair.right->read(whole));
+        const PairPart part = pair.read(whole);
+        matcher->setMasks(part.leftMask, part.rightMask);
+        pair.setKnownDisparities(parser, whole, *matcher);
+        const Mat disparity = computeDisparity(*matcher, part.left, part.right);
         map->write(disparity(inside - whole.tl()), inside);
     }
     map->finish();

@@ -7,7 +7,10 @@
 
 #include "opencv2/imgproc.hpp"
 
+#include <climits>
+#include <cmath>
 #ifdef HDPSTEREO_TIFF
+#include <cstdlib>
 #include <memory>
 #include <tiffio.h>
 #endif
@@ -16,17 +19,38 @@ using namespace cv;
 
 namespace {
 
+//! 255 where pixels are not what stands for no data, by all samples but a fourth one, alpha; empty if nothing does
+Mat maskOf(const Mat& pixels, double noData)
+{
+    if (std::isnan(noData)) // floats that are NaN need no mask
+        return Mat();
+    Scalar least = Scalar::all(noData), most = least;
+    if (pixels.channels() == 4)
+    {
+        least[3] = 0;
+        most[3] = USHRT_MAX;
+    }
+    Mat missing;
+    inRange(pixels, least, most, missing);
+    return ~missing;
+}
+
 class WholeImage : public ImageWindows
 {
 public:
-    explicit WholeImage(const String& path) : image_(readPicture(path)) {}
+    WholeImage(const String& path, double noData) : image_(readPicture(path)), noData_(noData) {}
     Size size() const CV_OVERRIDE { return image_.size(); }
     int type() const CV_OVERRIDE { return image_.type(); }
     int bytesInMemory() const CV_OVERRIDE { return (int)image_.elemSize(); }
-    Mat read(const Rect& part) CV_OVERRIDE { return image_(part); }
+    Mat read(const Rect& part, Mat& mask) CV_OVERRIDE
+    {
+        mask = maskOf(image_(part), noData_);
+        return image_(part);
+    }
 
 private:
     Mat image_;
+    double noData_;
 };
 
 class WholeMap : public MapTiles
@@ -34,7 +58,7 @@ class WholeMap : public MapTiles
 public:
     WholeMap(const String& path, Size size) : path_(path), map_(size, CV_32F) {}
     void write(const Mat& disparity, const Rect& part) CV_OVERRIDE { disparity.copyTo(map_(part)); }
-    void finish() CV_OVERRIDE { writeFile(path_, encodeDisparity(extensionOf(path_), map_)); }
+    void finish() CV_OVERRIDE { writeWholeFile(path_, encodeDisparity(extensionOf(path_), map_)); }
 
 private:
     String path_;
@@ -63,6 +87,26 @@ template <typename T> T fieldOf(TIFF* file, uint32_t tag)
     return value;
 }
 
+//! The level that stands for no data, which GDAL writes as text; NaN if there is none
+double noDataOf(TIFF* file)
+{
+    const uint32_t tag = 42113;
+    const TIFFField* const field = TIFFFindField(file, tag, TIFF_ANY);
+    uint32_t count = 0;
+    const char* characters = nullptr;
+    String text;
+    if (field && TIFFFieldPassCount(field)) // unless GDAL is loaded, too, libtiff does not know the tag
+    {
+        if (TIFFGetField(file, tag, &count, &characters))
+            text.assign(characters, count);
+    }
+    else if (field && TIFFGetField(file, tag, &characters))
+        text = characters;
+    char* end = nullptr;
+    const double level = std::strtod(text.c_str(), &end);
+    return end == text.c_str() ? std::numeric_limits<double>::quiet_NaN() : level;
+}
+
 //! A TIFF of strips or tiles, of one to four interleaved samples of 8 or 16 bit, or one of floats
 class TiffWindows : public ImageWindows
 {
@@ -75,6 +119,7 @@ public:
         bits_ = fieldOf<uint16_t>(f, TIFFTAG_BITSPERSAMPLE);
         samples_ = fieldOf<uint16_t>(f, TIFFTAG_SAMPLESPERPIXEL);
         isTiled_ = TIFFIsTiled(f) != 0;
+        noData_ = noDataOf(f);
         block_ = isTiled_
                      ? Size((int)fieldOf<uint32_t>(f, TIFFTAG_TILEWIDTH), (int)fieldOf<uint32_t>(f, TIFFTAG_TILELENGTH))
                      : Size(size_.width, (int)std::min<uint32_t>(fieldOf<uint32_t>(f, TIFFTAG_ROWSPERSTRIP),
@@ -92,14 +137,15 @@ public:
         const bool isWhole = (bits_ == 8 || bits_ == 16) && format == SAMPLEFORMAT_UINT && (isGrey || isColored),
                    isFloat = bits_ == 32 && format == SAMPLEFORMAT_IEEEFP && isGrey;
         return (isWhole || isFloat) && fieldOf<uint16_t>(f, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_CONTIG &&
-               size_.area() > 0 && block_.area() > 0 && (isTiled_ || block_.height < size_.height);
+               !size_.empty() && !block_.empty() && (isTiled_ || block_.height < size_.height);
     }
 
     Size size() const CV_OVERRIDE { return size_; }
     int type() const CV_OVERRIDE { return CV_MAKETYPE(depth(), depth() == CV_8U && samples_ > 1 ? 3 : 1); }
     int bytesInMemory() const CV_OVERRIDE { return 0; }
+    double noData() const { return noData_; }
 
-    Mat read(const Rect& part) CV_OVERRIDE
+    Mat read(const Rect& part, Mat& mask) CV_OVERRIDE
     {
         const int stored = CV_MAKETYPE(depth(), samples_);
         Mat pixels(part.size(), stored), block(block_, stored);
@@ -110,6 +156,7 @@ public:
                 const Rect inside = Rect(Point(x, y), block_) & part;
                 block(inside - Point(x, y)).copyTo(pixels(inside - part.tl()));
             }
+        mask = maskOf(pixels, noData_);
         Mat image;
         if (samples_ == 1)
             return pixels;
@@ -138,6 +185,7 @@ private:
     String path_;
     Tiff file_;
     Size size_, block_;
+    double noData_;
     int bits_, samples_;
     bool isTiled_;
 };
@@ -145,10 +193,10 @@ private:
 class TiffMap : public MapTiles
 {
 public:
-    TiffMap(const String& path, Size size, int side) : path_(path), side_(side)
+    TiffMap(const String& path, Size size, int side) : path_(path), part_(path), side_(side)
     {
         const bool isBig = (double)size.width * size.height * 4 > 4e9;
-        file_.reset(TIFFOpen(path.c_str(), isBig ? "w8" : "w"));
+        file_.reset(TIFFOpen(part_.name().c_str(), isBig ? "w8" : "w"));
         if (!file_)
             fail();
         TIFF* const f = file_.get();
@@ -178,14 +226,16 @@ public:
         if (!TIFFFlush(file_.get()))
             fail();
         file_.reset();
+        part_.finish();
     }
 
 private:
     void fail() const { CV_Error(Error::StsError, "cannot write '" + path_ + "'"); }
 
     String path_;
+    PartFile part_;
     int side_;
-    Tiff file_;
+    Tiff file_; // closed before what is not finished is removed
 };
 
 #endif
@@ -194,20 +244,22 @@ private:
 
 Ptr<ImageWindows> openImage(const String& path)
 {
+    double noData = std::numeric_limits<double>::quiet_NaN();
 #ifdef HDPSTEREO_TIFF
     if (isTiff(path))
     {
         TIFFSetErrorHandler(nullptr); // errors are exceptions
         TIFFSetWarningHandler(nullptr);
-        TIFF* const file = TIFFOpen(path.c_str(), "r");
+        TIFF* const file = TIFFOpen(path.c_str(), "rm"); // not mapped into memory, which the whole file would take
         if (!file)
             CV_Error(Error::StsError, "cannot read the image '" + path + "'");
         const Ptr<TiffWindows> windows = makePtr<TiffWindows>(path, file);
         if (windows->isReadable())
             return windows;
+        noData = windows->noData();
     }
 #endif
-    return makePtr<WholeImage>(path);
+    return makePtr<WholeImage>(path, noData);
 }
 
 bool isWrittenByTiles(const String& path)

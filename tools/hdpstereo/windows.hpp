@@ -18,8 +18,10 @@ public:
     virtual int type() const = 0;
     //! Bytes that are in memory for each pixel of the image
     virtual int bytesInMemory() const = 0;
-    //! A part of it, inside of the image: grey or BGR in 8 bit, or grey in 16 bit
-    virtual cv::Mat read(const cv::Rect& part) = 0;
+    /** A part of it, inside of the image: grey or BGR in 8 bit, or grey in 16 bit or floats.
+    @param mask Receives 0 where the file says that there is no data, by GDAL's tag of TIFF, and 255 elsewhere; empty if
+    it does not have that tag. */
+    virtual cv::Mat read(const cv::Rect& part, cv::Mat& mask) = 0;
 };
 
 //! Opens an image: TIFF is read by windows if it has strips or tiles and the program is built with libtiff; other
@@ -43,6 +45,7 @@ bool isWrittenByTiles(const cv::String& path);
 /** Creates the map.
 @param path FILE.tif: floats, NaN where there is no disparity, written by tiles if the program is built with libtiff. Or
 as --output, which is in memory.
+It gets its name when it is finished.
 @param size Of the map.
 @param side Of the tiles, a multiple of 16; those at the border may be smaller. */
 cv::Ptr<MapTiles> createMap(const cv::String& path, cv::Size size, int side);

@@ -1,0 +1,119 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "windowed_pair.hpp"
+
+#include "files.hpp"
+
+#include <limits>
+
+#include "opencv2/imgproc.hpp"
+
+using namespace cv;
+using cv::stereo::HDPTreeMatcher;
+
+WindowedPair::WindowedPair(const CommandLineParser& parser)
+    : left_(open(parser, "@left", "LEFT")), right_(open(parser, "@right", "RIGHT")),
+      leftMask_(open(parser, "left-mask", "--left-mask")), rightMask_(open(parser, "right-mask", "--right-mask")),
+      smallest_(open(parser, "smallest", "--smallest")), largest_(open(parser, "largest", "--largest")),
+      prior_(open(parser, "prior", "--prior"))
+{
+    if (left_.windows->type() != right_.windows->type())
+        CV_Error(Error::StsUnmatchedFormats, "RIGHT must have the type of LEFT");
+}
+
+WindowedPair::File WindowedPair::open(const CommandLineParser& parser, const char* option, const char* name)
+{
+    if (!parser.has(option))
+        return File();
+    const File file = { parser.get<String>(option), openImage(parser.get<String>(option)) };
+    const Size found = file.windows->size();
+    if (size_.empty())
+        size_ = found;
+    if (found != size_)
+        CV_Error(Error::StsUnmatchedSizes, format("%s must have the size of LEFT, %d x %d, not %d x %d", name,
+                                                  size_.width, size_.height, found.width, found.height));
+    return file;
+}
+
+int WindowedPair::bytesInMemory() const
+{
+    int bytes = 0;
+    for (const File& file : files())
+        bytes += file.windows ? file.windows->bytesInMemory() : 0;
+    return bytes;
+}
+
+std::vector<String> WindowedPair::readWhole() const
+{
+    std::vector<String> paths;
+    for (const File& file : files())
+        if (file.windows && file.windows->bytesInMemory() > 0)
+            paths.push_back(file.path);
+    return paths;
+}
+
+void WindowedPair::readSide(const File& image, const File& maskFile, const Rect& part, Mat& pixels, Mat& mask)
+{
+    pixels = image.windows->read(part, mask);
+    if (!maskFile.windows)
+        return;
+    Mat unused, given = maskFile.windows->read(part, unused);
+    if (given.channels() > 1)
+        cvtColor(given, given, COLOR_BGR2GRAY);
+    given = given != 0;
+    mask = mask.empty() ? given : Mat(mask & given);
+}
+
+PairPart WindowedPair::read(const Rect& part) const
+{
+    PairPart pair;
+    readSide(left_, leftMask_, part, pair.left, pair.leftMask);
+    readSide(right_, rightMask_, part, pair.right, pair.rightMask);
+    return pair;
+}
+
+PairPart WindowedPair::reduced(int times) const
+{
+    const Size small(size().width >> times, size().height >> times);
+    PairPart pair = { Mat(small, type()), Mat(small, type()), Mat(small, CV_8U), Mat(small, CV_8U) };
+    const int rows = std::max(256 >> times, 1);
+    for (int y = 0; y < small.height; y += rows)
+    {
+        const int count = std::min(rows, small.height - y);
+        const PairPart band = read(Rect(0, y << times, small.width << times, count << times));
+        const auto reduce = [&](const Mat& from, const Mat& to) {
+            if (from.empty())
+                to.rowRange(y, y + count).setTo(255);
+            else
+                resize(from, to.rowRange(y, y + count), Size(small.width, count), 0, 0, INTER_AREA);
+        };
+        reduce(band.left, pair.left);
+        reduce(band.right, pair.right);
+        reduce(band.leftMask, pair.leftMask);
+        reduce(band.rightMask, pair.rightMask);
+    }
+    for (Mat* const mask : { &pair.leftMask, &pair.rightMask })
+    {
+        *mask = *mask == 255; // of pixels that all have data
+        if (countNonZero(*mask) == (int)mask->total())
+            mask->release();
+    }
+    return pair;
+}
+
+Mat WindowedPair::readMap(const File& map, const Rect& part)
+{
+    if (!map.windows)
+        return Mat();
+    Mat mask;
+    Mat disparity = toDisparity(map.windows->read(part, mask), map.path);
+    if (!mask.empty())
+        disparity.setTo(std::numeric_limits<float>::quiet_NaN(), ~mask);
+    return disparity;
+}
+
+void WindowedPair::setKnownDisparities(const CommandLineParser& parser, const Rect& part, HDPTreeMatcher& matcher) const
+{
+    ::setKnownDisparities(parser, readMap(smallest_, part), readMap(largest_, part), readMap(prior_, part), matcher);
+}

@@ -1,0 +1,297 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// hdpstereo --tiles, and what it does not do to files
+
+#include "test_precomp.hpp"
+#include "programs.hpp"
+
+#ifdef __unix__
+#include <array>
+
+namespace opencv_test { namespace {
+
+//! A grey TIFF of strips, little-endian, with GDAL's tag of no data if there is a text
+void writeTiff(const String& path, const Mat& image, const String& noData = String())
+{
+    const int rows = 16, strips = (image.rows + rows - 1) / rows;
+    const size_t rowBytes = image.cols * image.elemSize();
+    String bytes("II*\0\0\0\0\0", 8);
+    const auto put = [&](size_t number, int count) {
+        for (int i = 0; i < count; ++i)
+            bytes += (char)(number >> 8 * i & 255);
+    };
+    for (int y = 0; y < image.rows; ++y)
+        bytes.append(image.ptr<char>(y), rowBytes);
+    const size_t offsets = bytes.size(), counts = offsets + 4 * strips, text = counts + 4 * strips;
+    for (int i = 0; i < strips; ++i)
+        put(8 + i * rows * rowBytes, 4);
+    for (int i = 0; i < strips; ++i)
+        put(std::min(rows, image.rows - i * rows) * rowBytes, 4);
+    bytes += noData + String(4, '\0');
+    const size_t directory = (bytes.size() + 1) / 2 * 2;
+    bytes.resize(directory);
+    const size_t textSize = noData.size() + 1, isFloat = image.depth() == CV_32F;
+    CV_Assert(noData.empty() || textSize > 4); // or it is in the field itself
+    const std::vector<std::array<size_t, 4>> fields = { { { 256, 4, 1, (size_t)image.cols } },
+                                                        { { 257, 4, 1, (size_t)image.rows } },
+                                                        { { 258, 3, 1, 8 * image.elemSize() } },
+                                                        { { 259, 3, 1, 1 } },
+                                                        { { 262, 3, 1, 1 } },
+                                                        { { 273, 4, (size_t)strips, offsets } },
+                                                        { { 277, 3, 1, 1 } },
+                                                        { { 278, 3, 1, (size_t)rows } },
+                                                        { { 279, 4, (size_t)strips, counts } },
+                                                        { { 339, 3, 1, isFloat ? 3u : 1u } },
+                                                        { { 42113, 2, textSize, text } } };
+    const size_t count = fields.size() - noData.empty();
+    put(count, 2);
+    for (size_t i = 0; i < count; ++i)
+    {
+        put(fields[i][0], 2);
+        put(fields[i][1], 2);
+        put(fields[i][2], 4);
+        put(fields[i][3], 4);
+    }
+    put(0, 4);
+    for (int i = 0; i < 4; ++i)
+        bytes[4 + i] = (char)(directory >> 8 * i & 255);
+    std::ofstream(path.c_str(), std::ios::binary) << bytes;
+}
+
+//! The pair in 16 bit, with room for a level of no data below
+Mat sixteenBit(const Mat& image)
+{
+    Mat grey;
+    cvtColor(image, grey, COLOR_BGR2GRAY);
+    grey.convertTo(grey, CV_16U, 16, 1000);
+    return grey;
+}
+
+Mat greyFloats(const Mat& image)
+{
+    Mat floats;
+    cvtColor(image, floats, COLOR_BGR2GRAY);
+    floats.convertTo(floats, CV_32F, 0.01, -1);
+    return floats;
+}
+
+//! Tiles that know their place have no seams, whatever the file is read by.
+TEST(HDPStereo_Tiles, make_the_map_of_the_whole)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSlantedPlane(Size(1000, 600), 32, 9);
+    const String whole = folder.path("whole.pfm"), tiled = folder.path("tiled.tif"), model = folder.path("rig.yml");
+    for (const char* const extension : { "png", "tif", "tiff" })
+    {
+        SCOPED_TRACE(extension);
+        const String left = String("left.") + extension, right = String("right.") + extension;
+        const bool isFloat = extension == String("tiff");
+        folder.write(left, isFloat ? greyFloats(pair.left) : pair.left);
+        folder.write(right, isFloat ? greyFloats(pair.right) : pair.right);
+        const String images = " " + folder.path(left) + " " + folder.path(right) + " --num-disparities=32 ";
+        EXPECT_EQ(0, run(folder, "hdpstereo" + images + whole + " --save-findings=" + model).status);
+        const Mat expected = cv::imread(whole, IMREAD_UNCHANGED);
+        for (const bool isGiven : { false, true }) // what is found in reduced images is a bit different
+        {
+            if (!isGiven && extension != String("png"))
+                continue; // one kind of files is enough for that
+            const Execution result = run(folder, "hdpstereo --tiles --memory=96" + images + tiled +
+                                                     (isGiven ? " --findings=" + model : String()));
+            EXPECT_EQ(0, result.status) << result.errors;
+            EXPECT_EQ(String::npos, result.output.find("tiles      1 of")) << result.output;
+            const Mat map = cv::imread(tiled, IMREAD_UNCHANGED);
+            ASSERT_EQ(expected.size(), map.size());
+            EXPECT_LE(cv::countNonZero(cv::abs(expected - map) > (isGiven ? 0 : 1)), isGiven ? 6000 : 1500);
+        }
+    }
+    const String images = " " + folder.path("left.png") + " " + folder.path("right.png") + " ";
+    for (const String& wrong : { "--memory=1 out.tif" + String(), "--picture=a.png out.tif" + String(), String(),
+                                 "--memory=x out.tif" + String(), "/no/such/folder/out.tif" + String() })
+        EXPECT_EQ(1, run(folder, "hdpstereo --tiles" + images + wrong).status) << wrong;
+}
+
+//! Inputs, and maps that are there, are as they were, and no part of a map is left.
+TEST(HDPStereo_Tiles, errors_change_no_file)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 21);
+    writeTiff(folder.path("left.tif"), sixteenBit(pair.left));
+    writeTiff(folder.path("right.tif"), sixteenBit(pair.right));
+    folder.write("deep.tif", pair.left);
+    writeTiff(folder.path("wide.tif"), Mat(120, 170, CV_16U, Scalar(5)));
+    const String left = folder.path("left.tif"), right = folder.path("right.tif"), out = folder.path("out.tif"),
+                 link = folder.path("link.tif"), model = folder.path("model.yml"), before = readText(left),
+                 images = left + " " + right + " ";
+    ASSERT_EQ(0, symlink(left.c_str(), link.c_str()));
+    const String program = "hdpstereo --num-disparities=32 ";
+    EXPECT_EQ(0, run(folder, program + images + " --save-findings=" + model).status);
+    PairModel changed = PairModel::load(model);
+    changed.width = changed.tileWidth = 150;
+    changed.save(folder.path("narrow.yml"));
+    changed = PairModel::load(model);
+    changed.depth = CV_8U;
+    changed.bits = 8;
+    changed.save(folder.path("bytes.yml"));
+    folder.write("map.png", Mat(120, 160, CV_8U));
+
+    const std::pair<String, String> wrong[] = {
+        { images + left, "cannot write '" + left + "': it is LEFT" },
+        { images + link, "cannot write '" + link + "': it is LEFT" },
+        { images + "--output=" + right, "cannot write '" + right + "': it is RIGHT" },
+        { images + out + " --findings=" + folder.path("narrow.yml"),
+          "--findings=" + folder.path("narrow.yml") + " is of images of 150 x 120 pixels, and these have 160 x 120" },
+        { images + out + " --findings=" + folder.path("bytes.yml"),
+          "--findings=" + folder.path("bytes.yml") + " is of images of 8 bit, and these are of 16 bit" },
+        { images + out + " --save-findings=/no/x.yml", "cannot write '/no/x.yml': there is no folder '/no'" },
+        { images + folder.path("out.xyz"), "cannot write '" + folder.path("out.xyz") + "': no image format has" },
+        { images + folder.path("out.jpg"), "cannot write '" + folder.path("out.jpg") + "': disparities need .png" },
+        { images + folder.path("out.png") + " --min-disparity=-8", "PNG has no disparities below 0" },
+        { left + " " + folder.path("wide.tif") + " " + out, "RIGHT must have the size of LEFT, 160 x 120, not 170" },
+        { left + " " + folder.path("deep.tif") + " " + out, "RIGHT must have the type of LEFT" },
+        { images + out + " --right-mask=" + folder.path("wide.tif"), "--right-mask must have the size of LEFT" },
+        { images + out + " --prior=" + folder.path("map.png"), "'" + folder.path("map.png") + "' must have dispariti" },
+        { images + out + " --prior=" + folder.path("wide.tif"), "--prior must have the size of LEFT" },
+        { images + out + " --prior=" + left + " --prior-sigma=x", "--prior-sigma=x is not a number" },
+    };
+    folder.writeText("out.tif", "an old map");
+    for (const auto& call : wrong)
+    {
+        const Execution result = run(folder, program + "--tiles " + call.first);
+        EXPECT_EQ(1, result.status) << call.first;
+        EXPECT_EQ("", result.output) << call.first;
+        EXPECT_EQ(0u, result.errors.find("error: " + call.second)) << call.first << "\n" << result.errors;
+        EXPECT_EQ(firstLine(result.errors) + "\n", result.errors);
+    }
+    EXPECT_TRUE(readText(out) == "an old map");
+    EXPECT_TRUE(readText(left) == before);
+    EXPECT_FALSE(fs::exists(out + ".part"));
+}
+
+//! Neither an old map nor a part of a new one
+TEST(HDPStereo_Tiles, a_map_is_whole_or_not_there)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSlantedPlane(Size(400, 1200), 32, 9);
+    const String left = folder.path("left.tif"), right = folder.path("right.tif"), out = folder.path("out.tif"),
+                 torn = folder.path("torn.tif"), model = folder.path("model.yml"),
+                 program = "hdpstereo --num-disparities=32 ", tiles = "--tiles --memory=96 --findings=" + model + " ";
+    writeTiff(left, sixteenBit(pair.left));
+    writeTiff(right, sixteenBit(pair.right));
+    EXPECT_EQ(0, run(folder, program + left + " " + right + " --save-findings=" + model).status);
+    folder.writeText("out.tif", "an old map");
+
+    String bytes = readText(left);
+    const int pixels = 2 * 400 * 1200, strips = 1200 / 16;
+    bytes[8 + pixels + 4 * strips - 1] = 0x70; // the last strip is where the file has ended
+    std::ofstream(torn.c_str(), std::ios::binary) << bytes;
+    const Execution failed = run(folder, program + tiles + torn + " " + right + " " + out);
+    EXPECT_EQ(1, failed.status);
+    EXPECT_EQ("error: cannot read the image '" + torn + "'\n", failed.errors);
+    EXPECT_TRUE(readText(out) == "an old map");
+    EXPECT_FALSE(fs::exists(out + ".part"));
+
+    EXPECT_EQ(0, run(folder, program + tiles + left + " " + right + " " + out).status);
+    EXPECT_EQ(CV_32FC1, cv::imread(out, IMREAD_UNCHANGED).type());
+    EXPECT_FALSE(fs::exists(out + ".part"));
+}
+
+//! What a file declares as no data, and masks, are as masks of the whole are; ranges and a prior, likewise.
+TEST(HDPStereo_Tiles, cut_all_that_is_known)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(700, 400), 32, 9);
+    const Rect empty(200, 150, 250, 150);
+    Mat mask(pair.left.size(), CV_8U, Scalar(255)), prior, smallest(mask.size(), CV_32F, Scalar(4));
+    mask(empty).setTo(0);
+    folder.write("mask.png", mask);
+    pair.truth.convertTo(prior, CV_32F);
+    writeTiff(folder.path("prior.tif"), prior);
+    writeTiff(folder.path("smallest.tif"), smallest);
+    const String out = folder.path("out.tif"), whole = folder.path("whole.tif"), mine = folder.path("rig.yml");
+    const String masks = " --left-mask=" + folder.path("mask.png") + " --right-mask=" + folder.path("mask.png");
+    const String known = " --prior=" + folder.path("prior.tif") + " --smallest=" + folder.path("smallest.tif");
+    for (const bool isFloat : { false, true })
+    {
+        SCOPED_TRACE(isFloat);
+        for (const String side : { "left", "right" })
+        {
+            Mat image = sixteenBit(side == "left" ? pair.left : pair.right);
+            if (isFloat)
+                image.convertTo(image, CV_32F);
+            writeTiff(folder.path(side + ".tif"), image);
+            image.setTo(isFloat ? -9999 : 300, ~mask);
+            writeTiff(folder.path("holed_" + side + ".tif"), image, isFloat ? "-9999" : "300.0");
+        }
+        const String images = " " + folder.path("left.tif") + " " + folder.path("right.tif") + " ",
+                     holed = " " + folder.path("holed_left.tif") + " " + folder.path("holed_right.tif") + " ",
+                     options = "--num-disparities=32 --preset=ultrafast",
+                     tiles = "hdpstereo --tiles --memory=96 " + options;
+        ASSERT_EQ(
+            0,
+            run(folder, "hdpstereo " + options + images + whole + masks + known + " --save-findings=" + mine).status);
+        const Mat expected = cv::imread(whole, IMREAD_UNCHANGED);
+        EXPECT_EQ(0, cv::countNonZero((expected < FLT_MAX) != mask)); // where it is NaN
+        for (const String& call : { images + out + masks, holed + out })
+        {
+            const Execution result = run(folder, tiles + call + known + " --findings=" + mine);
+            ASSERT_EQ(0, result.status) << result.errors;
+            EXPECT_EQ(String::npos, result.output.find("tiles      1 of")) << result.output;
+            const Mat map = cv::imread(out, IMREAD_UNCHANGED);
+            EXPECT_EQ(0, cv::countNonZero((map < FLT_MAX) != mask));
+            EXPECT_EQ(0, cv::countNonZero(map < 4));
+            EXPECT_LE(cv::countNonZero(cv::abs(expected - map) > 1), 2800);
+        }
+        // The reduced pair has no data there either.
+        const Execution found = run(folder, tiles + holed + out);
+        EXPECT_EQ(0, found.status) << found.errors;
+    }
+}
+
+//! The files of images are not mapped into memory; what matches them has as much as it may.
+TEST(HDPStereo_Tiles, take_the_memory_they_may)
+{
+    const DatasetFolder folder;
+    {
+        const SyntheticPair pair = makeSlantedPlane(Size(3600, 2400), 32, 9); // a fork's memory counts, too
+        writeTiff(folder.path("left.tif"), sixteenBit(pair.left));
+        writeTiff(folder.path("right.tif"), sixteenBit(pair.right));
+    }
+    const long peak =
+        peakMemory(folder, "hdpstereo --tiles --preset=ultrafast --memory=110 --num-disparities=32 " +
+                               folder.path("left.tif") + " " + folder.path("right.tif") + " " + folder.path("out.tif"));
+    EXPECT_LT(peak, std::getenv("ASAN_OPTIONS") ? LONG_MAX : 110 * 1024); // AddressSanitizer keeps what is freed
+}
+
+//! Of more pixels than a number of 32 bit has
+TEST(HDPStereo_Tiles, read_windows_of_huge_images)
+{
+    const DatasetFolder folder;
+    String bytes("II*\0\10\0\0\0\12\0", 10);
+    const auto put = [&](unsigned number, int count) {
+        for (int i = 0; i < count; ++i)
+            bytes += (char)(number >> 8 * i & 255);
+    };
+    const unsigned side = 60000, tile = 30000 / 16 * 16, tiles = 9;
+    const unsigned fields[][3] = { { 256, 1, side },  { 257, 1, side }, { 258, 1, 8 },    { 259, 1, 1 },
+                                   { 262, 1, 1 },     { 277, 1, 1 },    { 322, 1, tile }, { 323, 1, tile },
+                                   { 324, tiles, 8 }, { 325, tiles, 8 } };
+    for (const auto& field : fields)
+    {
+        put(field[0], 2);
+        put(4, 2);
+        put(field[1], 4);
+        put(field[2], 4);
+    }
+    put(0, 4);
+    std::ofstream(folder.path("huge.tif").c_str(), std::ios::binary) << bytes;
+    const String image = folder.path("huge.tif") + " ";
+    const Execution result = run(folder, "hdpstereo --tiles --memory=1 " + image + image + folder.path("out.tif"));
+    EXPECT_EQ(1, result.status);
+    EXPECT_EQ(0u, result.errors.find("error: --memory must be more than ")) << result.errors;
+}
+
+}} // namespace opencv_test
+
+#endif
