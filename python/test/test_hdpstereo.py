@@ -624,6 +624,25 @@ class Matching(Test):
         del matcher
         self.assertSame(before, trees)
 
+    def test_sigma_and_reasons(self):
+        matcher = HDPTreeMatcher(0, 32)
+        self.assertEqual((None, None), (matcher.getDisparitySigma(), matcher.getReasons()))
+        matcher.setDisp12MaxDiff(1)
+        mask = np.full(LEFT.shape[:2], 255, np.uint8)
+        mask[:20] = 0
+        matcher.setMasks(mask, None)
+        disparity = matcher.compute(LEFT, RIGHT)
+        sigma, reasons = matcher.getDisparitySigma(), matcher.getReasons()
+        self.assertEqual((np.float32, disparity.shape), (sigma.dtype, sigma.shape))
+        self.assertEqual((np.uint8, disparity.shape), (reasons.dtype, reasons.shape))
+        self.assertSame(disparity < 0, np.isinf(sigma))
+        self.assertGreater(sigma.min(), 0)
+        self.assertSame(mask == 0, reasons == HDPTreeMatcher.REASON_MASKED)
+        matched = (reasons == HDPTreeMatcher.REASON_MATCHED) & (disparity >= 0) & (TRUTH > 0)
+        self.assertGreater(matched.mean(), 0.5)
+        error = np.abs(disparity / 16.0 - TRUTH)
+        self.assertGreater(np.mean(error[matched] <= 2 * sigma[matched]), 0.9)
+
     def test_other_threads_run_meanwhile(self):
         matcher = HDPTreeMatcher(0, 64, HDPTreeMatcher.PRESET_TREE)
         large = [np.tile(image, (4, 4, 1)) for image in (LEFT, RIGHT)]

@@ -366,6 +366,26 @@ class hdpstereo_test(TestCase):
         self.assertRaises(cv.error, matcher.compute, self.left, self.right[:-1])
         self.assertIsNone(matcher.getConfidence())
 
+    def test_sigma_and_reasons(self):
+        matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
+        self.assertIsNone(matcher.getDisparitySigma())
+        self.assertIsNone(matcher.getReasons())
+        matcher.setDisp12MaxDiff(1)
+        mask = np.full(self.left.shape[:2], 255, np.uint8)
+        mask[:20] = 0
+        matcher.setMasks(mask, None)
+        disparity = matcher.compute(self.left, self.right)
+        sigma, reasons = matcher.getDisparitySigma(), matcher.getReasons()
+        self.assertEqual((np.float32, disparity.shape), (sigma.dtype, sigma.shape))
+        self.assertEqual((np.uint8, disparity.shape), (reasons.dtype, reasons.shape))
+        self.assertSame(disparity < 0, np.isinf(sigma))
+        self.assertGreater(sigma.min(), 0)
+        self.assertSame(mask == 0, reasons == cv.stereo.HDPTreeMatcher_REASON_MASKED)
+        matched = (reasons == cv.stereo.HDPTreeMatcher_REASON_MATCHED) & (disparity >= 0) & (self.truth > 0)
+        self.assertGreater(matched.mean(), 0.5)
+        error = np.abs(disparity / 16.0 - self.truth)
+        self.assertGreater(np.mean(error[matched] <= 2 * sigma[matched]), 0.9)
+
     def test_row_alignment(self):
         moved = np.roll(self.right, 2, axis=0)  # the right camera looks 2 rows higher
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
