@@ -10,13 +10,16 @@ usage:
     hdp_dask.py LEFTS RIGHTS OUT [--scheduler=tcp://HOST:8786] [--workers=2] [--preset=fast]
                 [--min-disparity=0] [--num-disparities=128] [--format=png] [--tile=1152]
 
-LEFTS and RIGHTS are folders with files of the same names, of 8 or 16 bit. OUT gets the maps: PNG of 16 bit, disparity *
-256, 0 = none, for disparities from 0 to 255; or TIFF of floats, NaN = none, for any. All machines have to see the three
-under the same names. Maps that are there are kept: run again, it does what is left. OUT/options.json says what made
-them; with other options it stops. LEFTS and RIGHTS may also be the two files of one large pair: it is cut into tiles,
-which are matched with one model of the pair, OUT/model.yml, so that there are no seams; OUT/map.tif is put together when
-all tiles are there. Without a scheduler, it makes a cluster of this machine. On Debian: apt install
-python3-distributed python3-opencv
+LEFTS and RIGHTS are folders with files of the same names, of 8 bit, 16 bit or floats. OUT gets the maps: PNG of 16
+bit, disparity * 256, 0 = none, for disparities from 0 to 255; or TIFF of floats, NaN = none, for any. All machines
+have to see the three under the same names. Maps that are there are kept: run again, it does what is left.
+OUT/options.json says what made them; with other options it stops. LEFTS and RIGHTS may also be the two files of one
+large pair: it is cut into tiles, which are matched with one model of the pair, OUT/model.yml, so that there are no
+seams; OUT/map.tif is put together when all tiles are there, in memory. With rasterio, TIFF is read by windows, so that
+a worker never has more than a tile, and what it declares as no data has no disparity; other images, and TIFF without
+rasterio, are read whole for each tile. --num-disparities=0 finds the disparities, of one large pair once for all
+tiles. Without a scheduler, it makes a cluster of this machine. On Debian: apt install python3-distributed
+python3-opencv python3-rasterio
 '''
 
 import argparse
@@ -25,85 +28,129 @@ import os
 import pathlib
 import socket
 import sys
+import warnings
 
 from distributed import Client, as_completed
 
 PICTURES = {'.bmp', '.jpeg', '.jpg', '.pgm', '.png', '.ppm', '.tif', '.tiff', '.webp'}
 
 
-def match(left, right, output, options):
-    '''Runs on a worker, which need not have this file.'''
+def open_raster(path):
+    '''Of TIFF, if there is rasterio: what is read by windows. Else None.'''
+    try:
+        import rasterio
+    except ImportError:
+        return None
+    if path.suffix.lower() not in ('.tif', '.tiff'):
+        return None
+    warnings.simplefilter('ignore', rasterio.errors.NotGeoreferencedWarning)  # coordinates are not looked at
+    try:
+        return rasterio.open(path)
+    except rasterio.errors.RasterioError:
+        raise ValueError("cannot read the image '%s'" % path)
+
+
+def read(path, window=None, size=None):
+    '''A window (x, y, width, height) of an image, at a size (width, height), and its mask: colours in 8 bit, or grey.
+
+    Runs on a worker, which need not have this file.'''
     import cv2
-    import hdpstereo
     import numpy as np
 
-    images = [cv2.imread(str(path), cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH) for path in (left, right)]
-    for path, image in zip((left, right), images):
+    raster, mask = open_raster(path), None
+    if raster:
+        from rasterio.enums import Resampling
+        from rasterio.windows import Window
+
+        with raster:
+            part = Window(*(window or (0, 0, raster.width, raster.height)))
+            shape = (size or (part.width, part.height))[::-1]
+            bands = [3, 2, 1] if raster.count >= 3 else [1]
+            image = raster.read(bands, window=part, out_shape=(len(bands),) + shape, resampling=Resampling.average)
+            image = np.ascontiguousarray(image.transpose(1, 2, 0)) if len(bands) > 1 else image[0]
+            mask = raster.dataset_mask(window=part, out_shape=shape, resampling=Resampling.nearest)
+    else:
+        image = cv2.imread(str(path), cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH)
+        if image is None:  # TIFF of grey floats is no colour image
+            image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
         if image is None:
             raise ValueError("cannot read the image '%s'" % path)
-    images = [cv2.cvtColor(image, cv2.COLOR_BGR2GRAY) if image.dtype == np.uint16 else image for image in images]
-    matcher = hdpstereo.HDPTreeMatcher.create(options['min_disparity'], options['num_disparities'], options['preset'])
-    disparity = matcher.compute(*images, as_float=True)
-    if output.suffix == '.png':
-        known = (disparity >= 0) & (disparity < 256)
-        disparity = np.where(known, np.maximum(disparity * 256, 1), 0).astype(np.uint16)
+        if window:
+            x, y, width, height = window
+            image = image[y:y + height, x:x + width]
+        if size:
+            image = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+    if image.ndim == 3 and image.dtype != np.uint8:
+        image = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
+    return image.astype(np.float32) if image.dtype == np.float64 else image, mask
 
-    # Under another name first: whatever becomes of this worker, a map is whole or not there. Dask may run a pair twice.
+
+def compute(matcher, left, right, window=None, size=None):
+    '''Disparities of a window of both images'''
+    (left, left_mask), (right, right_mask) = (read(path, window, size) for path in (left, right))
+    matcher.setMasks(left_mask, right_mask)
+    return matcher.compute(left, right, as_float=True)
+
+
+def write(output, disparity):
+    '''Under another name first: whatever becomes of this worker, a map is whole or not there. Dask may run a pair
+    twice.'''
+    import cv2
+
     part = '%s.%s.%d.part' % (output, socket.gethostname(), os.getpid())
     with open(part, 'wb') as f:
         f.write(cv2.imencode(output.suffix, disparity)[1])
     os.replace(part, output)
 
 
-def read(path):
-    '''An image, grey if it is of 16 bit; a worker keeps those it has read.'''
-    import cv2
+def match(left, right, output, options):
+    '''A pair'''
+    import hdpstereo
     import numpy as np
-    from distributed import get_worker
 
-    try:
-        kept = get_worker().__dict__.setdefault('images_of_hdp_dask', {})
-    except ValueError:  # this is no worker
-        kept = {}
-    if path not in kept:
-        image = cv2.imread(str(path), cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH)
-        if image is None:
-            raise ValueError("cannot read the image '%s'" % path)
-        kept[path] = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY) if image.dtype == np.uint16 else image
-    return kept[path]
+    matcher = hdpstereo.HDPTreeMatcher.create(options['min_disparity'], options['num_disparities'], options['preset'])
+    disparity = compute(matcher, left, right)
+    if output.suffix == '.png':
+        if np.nanmin(disparity) < 0 or np.nanmax(disparity) >= 256:
+            raise ValueError('PNG is for disparities from 0 to 255, take --format=tif')
+        disparity = np.where(np.isnan(disparity), 0, np.maximum(disparity * 256, 1)).astype(np.uint16)
+    write(output, disparity)
+
+
+def size_of(path):
+    '''Width and height'''
+    raster = open_raster(path)
+    if not raster:
+        return read(path)[0].shape[1::-1]
+    with raster:
+        return raster.width, raster.height
 
 
 def find_model(left, right, options):
-    '''What all tiles are matched with: that of the pair, halved until it has some megapixels.'''
-    import cv2
+    '''What all tiles are matched with: that of the pair, halved until it has some megapixels. If there is no range of
+    disparities, it is found there.'''
     import hdpstereo
 
-    (height, width), times = left.shape[:2], 0
+    (width, height), times = size_of(left), 0
     while (height >> times) * (width >> times) > 3e6:
         times += 1
-    size = (width >> times, height >> times)
-    small = [cv2.resize(image[:size[1] << times, :size[0] << times], size, interpolation=cv2.INTER_AREA)
-             for image in (left, right)]
-    matcher = hdpstereo.HDPTreeMatcher.create(options['min_disparity'] >> times,
-                                              (options['num_disparities'] >> times) + 1, options['preset'])
-    matcher.compute(*small)
+    size, number = (width >> times, height >> times), options['num_disparities']
+    matcher = hdpstereo.HDPTreeMatcher.create(options['min_disparity'] >> times, number and (number >> times) + 1,
+                                              options['preset'])
+    compute(matcher, left, right, (0, 0, size[0] << times, size[1] << times), size)
     return matcher.getPairModel().enlarged(times, width, height)
 
 
 def match_tile(left, right, tile, inside, model, output, options):
     '''A tile of a pair, with its margins; inside: what is kept of it. Both are (x, y, width, height).'''
-    import cv2
     import hdpstereo
 
     x, y, width, height = tile
     matcher = hdpstereo.HDPTreeMatcher.create(options['min_disparity'], options['num_disparities'], options['preset'])
     matcher.setPairModel(hdpstereo.PairModel.load(model).tile(x, y, width, height))
-    disparity = matcher.compute(*[read(path)[y:y + height, x:x + width] for path in (left, right)], as_float=True)
+    disparity = compute(matcher, left, right, tile)
     first, top = inside[0] - x, inside[1] - y
-    part = '%s.%s.%d.part' % (output, socket.gethostname(), os.getpid())
-    with open(part, 'wb') as f:
-        f.write(cv2.imencode('.tif', disparity[top:top + inside[3], first:first + inside[2]])[1])
-    os.replace(part, output)
+    write(output, disparity[top:top + inside[3], first:first + inside[2]])
 
 
 def cut(width, height, options):
@@ -122,16 +169,22 @@ def cut(width, height, options):
 def match_tiles(args, options, cluster):
     '''One pair. Returns the exit status.'''
     import cv2
+    import hdpstereo
     import numpy as np
 
     paths = [path.resolve() for path in (args.lefts, args.rights)]
     out, model = args.out.resolve(), args.out.resolve() / 'model.yml'
-    left, right = (read(path) for path in paths)
-    height, width = left.shape[:2]
+    (width, height), size = (size_of(path) for path in paths)
+    if size != (width, height):
+        raise ValueError('the images must be of one size, not %d x %d and %d x %d' % (width, height, *size))
     if not model.exists():
         part = out / 'part.model.yml'
-        find_model(left, right, options).save(part)
+        find_model(*paths, options).save(part)
         os.replace(part, model)
+    if options['num_disparities'] == 0:
+        found = hdpstereo.PairModel.load(model)
+        options = dict(options, min_disparity=found.minDisparity, num_disparities=found.numDisparities)
+        print('found disparities %d..%d' % (found.minDisparity, found.minDisparity + found.numDisparities - 1))
     tiles = {out / ('%d_%d.tif' % inside[:2]): (tile, inside) for tile, inside in cut(width, height, options)}
     missing = [path for path in tiles if not path.exists()]
     print('%d tiles, %d of them are there' % (len(tiles), len(tiles) - len(missing)))
@@ -139,12 +192,14 @@ def match_tiles(args, options, cluster):
         futures = [client.submit(match_tile, *paths, *tiles[path], model, path, options, pure=False)
                    for path in missing]
         for done, future in enumerate(as_completed(futures), 1):
-            future.result()
+            error = future.exception()
+            if error:
+                raise ValueError(error)
             print('%d/%d' % (done, len(missing)))
     whole = np.empty((height, width), np.float32)
     for path, (_, (x, y, columns, rows)) in tiles.items():
         whole[y:y + rows, x:x + columns] = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
-    cv2.imwrite(str(out / 'map.tif'), whole)
+    write(out / 'map.tif', whole)
     return 0
 
 
@@ -166,10 +221,13 @@ def main():
     parser.add_argument('--workers', type=int, default=2, help='of the cluster of this machine (default: 2)')
     parser.add_argument('--preset', default='fast', choices=['ultrafast', 'fast', 'quality', 'tree', 'paper'])
     parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity (default: 0)')
-    parser.add_argument('--num-disparities', type=int, default=128, help='number of disparities (default: 128)')
+    parser.add_argument('--num-disparities', type=int, default=128,
+                        help='number of disparities; 0: found in the pair (default: 128)')
     parser.add_argument('--format', default='png', choices=['png', 'tif'], help='of the maps (default: png)')
     parser.add_argument('--tile', type=int, default=1152, help='side of the tiles of one pair, a multiple of 384')
     args = parser.parse_args()
+    if args.num_disparities < 0 or (args.num_disparities == 0 and args.min_disparity != 0):
+        sys.exit('error: --num-disparities must be > 0, or 0 without --min-disparity, which is found then, too')
     cluster = {'address': args.scheduler} if args.scheduler else {
         'n_workers': args.workers, 'threads_per_worker': 1, 'dashboard_address': None}
     if args.lefts.is_file() and args.rights.is_file():
@@ -179,7 +237,10 @@ def main():
         options = {name: getattr(args, name) for name in ('preset', 'min_disparity', 'num_disparities', 'tile')}
         options.update(left=str(args.lefts.resolve()), right=str(args.rights.resolve()))
         keep_options(args.out / 'options.json', options)
-        return match_tiles(args, options, cluster)
+        try:
+            return match_tiles(args, options, cluster)
+        except (ValueError, RuntimeError, OSError) as error:
+            sys.exit('error: %s' % error)
     for folder in args.lefts, args.rights:
         if not folder.is_dir():
             sys.exit("error: there is no folder '%s'" % folder)

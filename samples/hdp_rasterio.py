@@ -10,14 +10,16 @@ usage:
     hdp_rasterio.py LEFT RIGHT OUT [--window=X,Y,WIDTH,HEIGHT] [--min-disparity=0] [--num-disparities=128]
                     [--preset=fast] [--tile=1152]
 
-LEFT and RIGHT are of one size, of any number of columns, in formats of GDAL: 8 bit, 16 bit or float; of more bands than
-one, 8 bit has the first three, all others the first. What a raster declares as no data has no disparity and no
-influence. OUT is a GeoTIFF of floats, NaN = none, with the coordinates of the left raster; of the window alone, if there
-is one. Tiles are matched with one model of the pair, found in its overviews, so that there are no seams; memory is that
-of a tile. On Debian: apt install python3-rasterio python3-opencv
+LEFT and RIGHT are of one size, of any number of columns, in formats of GDAL: 8 bit, 16 bit or float; of more bands
+than one, 8 bit has the first three, all others the first. What a raster declares as no data has no disparity and no
+influence. OUT is a GeoTIFF of floats, NaN = none, with the coordinates of the left raster; of the window alone, if
+there is one. Tiles are matched with one model of the pair, found in its overviews, so that there are no seams, and so
+is the range of disparities if --num-disparities is 0; memory is that of a tile. On Debian: apt install
+python3-rasterio python3-opencv
 '''
 
 import argparse
+import os
 import sys
 
 import hdpstereo
@@ -47,15 +49,20 @@ def match(matcher, rasters, window, size):
 
 
 def find_model(rasters, args):
-    '''What all tiles are matched with: that of the pair, halved until it has some megapixels'''
+    '''What all tiles are matched with: that of the pair, halved until it has some megapixels. If there is no range of
+    disparities, it is found there.'''
     width, height, times = rasters[0].width, rasters[0].height, 0
     while (height >> times) * (width >> times) > 3e6:
         times += 1
-    size = (width >> times, height >> times)
-    matcher = hdpstereo.HDPTreeMatcher.create(args.min_disparity >> times, (args.num_disparities >> times) + 1,
+    size, number = (width >> times, height >> times), args.num_disparities
+    matcher = hdpstereo.HDPTreeMatcher.create(args.min_disparity >> times, number and (number >> times) + 1,
                                               args.preset)
     match(matcher, rasters, Window(0, 0, size[0] << times, size[1] << times), size)
-    return matcher.getPairModel().enlarged(times, width, height)
+    model = matcher.getPairModel().enlarged(times, width, height)
+    if number == 0:
+        args.min_disparity, args.num_disparities = model.minDisparity, model.numDisparities
+        print('found disparities %d..%d' % (model.minDisparity, model.minDisparity + model.numDisparities - 1))
+    return model
 
 
 def cut(window, width, height, args):
@@ -71,26 +78,15 @@ def cut(window, width, height, args):
                          min(y + kept.height + MARGIN, height) - y0), kept
 
 
-def main():
-    parser = argparse.ArgumentParser(description='Disparities of a rectified pair of rasters.')
-    parser.add_argument('left', help='left raster')
-    parser.add_argument('right', help='right raster, of its size')
-    parser.add_argument('out', help='GeoTIFF for the map')
-    parser.add_argument('--window', help='X,Y,WIDTH,HEIGHT in pixels (default: all)')
-    parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity (default: 0)')
-    parser.add_argument('--num-disparities', type=int, default=128, help='number of disparities (default: 128)')
-    parser.add_argument('--preset', default='fast', choices=['ultrafast', 'fast', 'quality', 'tree', 'paper'])
-    parser.add_argument('--tile', type=int, default=1152, help='side of a tile (default: 1152)')
-    args = parser.parse_args()
-    if args.tile <= 0:
-        sys.exit('error: --tile must be > 0')
-    try:
-        rasters = [rasterio.open(name) for name in (args.left, args.right)]
-    except rasterio.errors.RasterioIOError as error:
-        sys.exit('error: %s' % error)
-    left, right = rasters
+def open_rasters(args):
+    '''Both, and the window. Raises ValueError.'''
+    left, right = (rasterio.open(name) for name in (args.left, args.right))
     if right.shape != left.shape:
-        sys.exit("error: '%s' must have the size of '%s'" % (args.right, args.left))
+        raise ValueError("'%s' must have the size of '%s'" % (args.right, args.left))
+    if (right.dtypes[0], right.count >= 3) != (left.dtypes[0], left.count >= 3):
+        raise ValueError("'%s' must have the type and the bands of '%s'" % (args.right, args.left))
+    if left.dtypes[0] not in ('uint8', 'uint16', 'float32'):
+        raise ValueError("'%s' must be of uint8, uint16 or float32, not %s" % (args.left, left.dtypes[0]))
     whole = Window(0, 0, left.width, left.height)
     try:
         window = Window(*[int(number) for number in args.window.split(',')]) if args.window else whole
@@ -98,20 +94,56 @@ def main():
     except (TypeError, ValueError, rasterio.errors.WindowError):
         inside = False
     if not inside:
-        sys.exit('error: --window must be X,Y,WIDTH,HEIGHT inside of %d x %d pixels' % (left.width, left.height))
+        raise ValueError('--window must be X,Y,WIDTH,HEIGHT inside of %d x %d pixels' % (left.width, left.height))
+    return (left, right), window
 
-    model = find_model(rasters, args)
-    matcher = hdpstereo.HDPTreeMatcher.create(args.min_disparity, args.num_disparities, args.preset)
+
+def match_rasters(args):
+    '''Errors are ValueError, or those of rasterio and of the system.'''
+    if args.tile <= 0:
+        raise ValueError('--tile must be > 0')
+    if args.num_disparities < 0 or (args.num_disparities == 0 and args.min_disparity != 0):
+        raise ValueError('--num-disparities must be > 0, or 0 without --min-disparity, which is found then, too')
+    rasters, window = open_rasters(args)
+    if os.path.realpath(args.out) in [os.path.realpath(name) for name in (args.left, args.right)]:
+        raise ValueError("OUT must not be an input, '%s'" % args.out)
+    left = rasters[0]
     profile = dict(driver='GTiff', dtype='float32', count=1, nodata=np.nan, width=window.width, height=window.height,
                    crs=left.crs, transform=left.window_transform(window), compress='deflate')
-    with rasterio.open(args.out, 'w', **profile) as out:
-        for tile, kept in cut(window, left.width, left.height, args):
-            matcher.setPairModel(model.tile(tile.col_off, tile.row_off, tile.width, tile.height))
-            disparity = match(matcher, rasters, tile, (tile.width, tile.height))
-            top, first = kept.row_off - tile.row_off, kept.col_off - tile.col_off
-            out.write(disparity[top:top + kept.height, first:first + kept.width], 1,
-                      window=Window(kept.col_off - window.col_off, kept.row_off - window.row_off, kept.width,
-                                    kept.height))
+    part = args.out + '.part'  # a map that is there is kept until the new one is whole
+    try:
+        with rasterio.open(part, 'w', **profile) as out:
+            model = find_model(rasters, args)
+            matcher = hdpstereo.HDPTreeMatcher.create(args.min_disparity, args.num_disparities, args.preset)
+            for tile, kept in cut(window, left.width, left.height, args):
+                matcher.setPairModel(model.tile(tile.col_off, tile.row_off, tile.width, tile.height))
+                disparity = match(matcher, rasters, tile, (tile.width, tile.height))
+                top, first = kept.row_off - tile.row_off, kept.col_off - tile.col_off
+                out.write(disparity[top:top + kept.height, first:first + kept.width], 1,
+                          window=Window(kept.col_off - window.col_off, kept.row_off - window.row_off, kept.width,
+                                        kept.height))
+        os.replace(part, args.out)
+    finally:
+        if os.path.exists(part):
+            os.remove(part)
+
+
+def main():
+    parser = argparse.ArgumentParser(description='Disparities of a rectified pair of rasters.')
+    parser.add_argument('left', help='left raster')
+    parser.add_argument('right', help='right raster, of its size')
+    parser.add_argument('out', help='GeoTIFF for the map')
+    parser.add_argument('--window', help='X,Y,WIDTH,HEIGHT in pixels (default: all)')
+    parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity (default: 0)')
+    parser.add_argument('--num-disparities', type=int, default=128,
+                        help='number of disparities; 0: found in the pair (default: 128)')
+    parser.add_argument('--preset', default='fast', choices=['ultrafast', 'fast', 'quality', 'tree', 'paper'])
+    parser.add_argument('--tile', type=int, default=1152, help='side of a tile (default: 1152)')
+    args = parser.parse_args()
+    try:
+        match_rasters(args)
+    except (ValueError, OSError, rasterio.errors.RasterioError, rasterio.errors.WindowError) as error:
+        sys.exit('error: %s' % error)
 
 
 if __name__ == '__main__':

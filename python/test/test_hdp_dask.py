@@ -108,6 +108,27 @@ def main():
         assert again.startswith('16 tiles, 15 of them are there\n1/1\n'), again
         np.testing.assert_array_equal(whole, cv2.imread(str(folder / 'tiles' / 'map.tif'), cv2.IMREAD_UNCHANGED))
 
+        # Grey floats, the range found once for all tiles, NaN without data; a sentence for each mistake
+        scene = cv2.GaussianBlur(rng.rand(1500, 2200).astype(np.float32), (0, 0), 3)
+        left = scene[:, :2100].copy()
+        left[:200, :300] = np.nan
+        cv2.imwrite(str(folder / 'left.tif'), left)
+        cv2.imwrite(str(folder / 'right.tif'), scene[:, 20:2120])
+        command[2:6] = ['left.tif', 'right.tif', 'floats', '--num-disparities=0']
+        command[-1] = '--tile=1152'
+        found = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True, check=True).stdout
+        first, last = (int(number) for number in found.split()[2].split('..'))
+        assert found.startswith('found disparities ') and first <= 20 <= last < 100, found
+        whole = cv2.imread(str(folder / 'floats' / 'map.tif'), cv2.IMREAD_UNCHANGED)
+        assert np.isnan(whole[:200, :300]).all() and np.mean(abs(whole[:, 350:] - 20) < 0.5) > 0.99, whole
+        for right, option, error in (('none.tif', '--tile=1152', 'none.tif'),
+                                     ('left.png', '--tile=1152', 'of one size'),
+                                     ('right.tif', '--min-disparity=3', '--num-disparities must be > 0, or 0 without')):
+            (folder / 'none.tif').write_text('no picture')
+            command[3:5] = [right, 'wrong_' + right]
+            wrong = subprocess.run(command + [option], cwd=folder, stderr=subprocess.PIPE, text=True, check=False)
+            assert wrong.returncode == 1 and error in wrong.stderr and 'Traceback' not in wrong.stderr, wrong.stderr
+
 
 if __name__ == '__main__':
     main()

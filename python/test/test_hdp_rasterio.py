@@ -51,8 +51,13 @@ def make_pair(folder):
     return truth
 
 
-def run(folder, *arguments):
-    return subprocess.run([sys.executable, str(SAMPLE), 'left.tif', 'right.tif', 'out.tif', '--num-disparities=64',
+def check_error(result, error):
+    assert result.returncode == 1 and 'error: ' in result.stdout and error in result.stdout, result.stdout
+    assert 'Traceback' not in result.stdout, result.stdout
+
+
+def run(folder, *arguments, out='out.tif'):
+    return subprocess.run([sys.executable, str(SAMPLE), 'left.tif', 'right.tif', out, '--num-disparities=64',
                            *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
@@ -94,10 +99,31 @@ def main():
         wrong = np.mean(~(np.abs(floats - truth)[judged] <= 0.5))
         assert np.isnan(floats[:100, :150]).all() and wrong < 0.01, wrong
 
+        result = run(folder, '--tile=500', '--num-disparities=0')
+        assert result.returncode == 0 and result.stdout.startswith('found disparities '), result.stdout
+        found, _ = load(folder)
+        wrong = np.mean(~(np.abs(found - truth)[judged] <= 0.5))
+        assert wrong < 0.01, wrong
+
         for window in '1900,0,200,100', '0,0,10', 'left':
             result = run(folder, '--window=' + window)
             assert result.returncode == 1 and 'error: --window must be X,Y,WIDTH,HEIGHT inside of 2000 x 900' in \
                 result.stdout, result.stdout
+        before, left = (folder / 'out.tif').read_bytes(), (folder / 'left.tif').read_bytes()
+        for options, error in ((['--num-disparities=3000'], 'minDisparity and numDisparities must keep'),
+                               (['--num-disparities=-1'], '--num-disparities must be > 0'),
+                               (['--tile=0'], '--tile must be'),
+                               (['--num-disparities=0', '--min-disparity=2'], '--num-disparities must be > 0')):
+            check_error(run(folder, *options), error)
+        for out, error in (('left.tif', 'OUT must not be an input'), ('no/such/folder/out.tif', 'no/such/folder')):
+            check_error(run(folder, out=out), error)
+        save(folder / 'right.tif', np.ones((HEIGHT, WIDTH), np.uint8))
+        check_error(run(folder), "'right.tif' must have the type and the bands of 'left.tif'")
+        save(folder / 'left.tif', np.ones((HEIGHT, WIDTH), np.int16))
+        save(folder / 'right.tif', np.ones((HEIGHT, WIDTH), np.int16))
+        check_error(run(folder), "'left.tif' must be of uint8, uint16 or float32, not int16")
+        assert (folder / 'out.tif').read_bytes() == before and not (folder / 'out.tif.part').exists()
+        (folder / 'left.tif').write_bytes(left)
         save(folder / 'right.tif', np.ones((HEIGHT, 100), np.uint16))
         result = run(folder)
         assert result.returncode == 1 and "'right.tif' must have the size of 'left.tif'" in result.stdout, result.stdout
