@@ -124,17 +124,23 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
     writeWholeFile(path, std::vector<uchar>(text.begin(), text.end()));
 }
 
-size_t matchPairs(const CommandLineParser& parser)
+static void checkBatchOptions(const CommandLineParser& parser)
 {
     for (const char* option : { "output", "picture", "truth", "point-cloud", "depth", "compare", "save-findings",
                                 "sigma", "confidence", "reasons" })
         if (parser.has(option))
             CV_Error(Error::StsBadArg, format("--%s is for one pair, and not for --batch", option));
-    const String format = parser.get<String>("format"), lefts = parser.get<String>("@left");
+    const String format = parser.get<String>("format");
     if (format != "png" && format != "pfm" && format != "tif")
         CV_Error(Error::StsBadArg, "--format=" + format + " is unknown, see --help");
     if (format == "png")
         requireNoNegativeDisparities(parser);
+}
+
+size_t matchPairs(const CommandLineParser& parser)
+{
+    checkBatchOptions(parser);
+    const String format = parser.get<String>("format"), lefts = parser.get<String>("@left");
     const bool areFolders = utils::fs::isDirectory(lefts) || parser.has("@out"); // or are meant to be
     const String out = parser.get<String>(areFolders ? "@out" : "@right");
     if (out.empty())
