@@ -3,7 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // HDPTreeMatcher for JavaScript. Methods have the names of the header; images are objects of width, height and data,
-// Params and Findings objects with their fields. The tree strategy is no field, but has its accessors.
+// Params and Findings objects with their fields. The tree strategy is no field, but has its accessors. A PairModel is the
+// text of its file.
 
 #include <emscripten/bind.h>
 
@@ -114,9 +115,11 @@ cv::Mat fromJavaScript(const val& image, const char* name)
     return result;
 }
 
-//! An image that may be left out: null
+//! An image that may be left out: null; or a number
 cv::Mat toInput(const val& image, const char* name)
 {
+    if (image.isNumber())
+        return cv::Mat(1, 1, CV_64F, cv::Scalar(image.as<double>()));
     return image.isNull() || image.isUndefined() ? cv::Mat() : fromJavaScript(image, name);
 }
 
@@ -167,6 +170,33 @@ std::string getTreeStrategy(const HDPTreeMatcher& self)
     return "RT";
 }
 
+//! YAML, as PairModel::save() writes it
+std::string getPairModel(const HDPTreeMatcher& self)
+{
+    cv::FileStorage storage(".yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    storage << "pairModel"
+            << "{";
+    self.getPairModel().write(storage);
+    storage << "}";
+    return storage.releaseAndGetString();
+}
+
+//! The text of a file of a PairModel; null: pairs are estimated again
+void setPairModel(HDPTreeMatcher& self, const val& text)
+{
+    run([&] {
+        cv::stereo::PairModel model;
+        if (!text.isNull())
+        {
+            const cv::FileStorage storage(text.as<std::string>(), cv::FileStorage::READ | cv::FileStorage::MEMORY);
+            if (!storage["pairModel"].isMap())
+                CV_Error(cv::Error::StsParseError, "pairModel is missing");
+            model.read(storage["pairModel"]);
+        }
+        self.setPairModel(model);
+    });
+}
+
 } // namespace
 
 EMSCRIPTEN_BINDINGS(hdpstereo)
@@ -180,6 +210,8 @@ EMSCRIPTEN_BINDINGS(hdpstereo)
         .function("compute", &compute)
         .function("setTreeStrategy", &setTreeStrategy)
         .function("getTreeStrategy", &getTreeStrategy)
+        .function("getPairModel", &getPairModel)
+        .function("setPairModel", &setPairModel)
         .function("clear", emscripten::optional_override([](HDPTreeMatcher& self) { self.clear(); }))
 #define METHODS
 #include "methods.inc"

@@ -91,7 +91,46 @@ test('all results of a run', () => {
     assert.ok(trees.data instanceof Int32Array && intervals.data.length === 2 * trees.data.length);
     assert.ok(matcher.getLayerPrior(0).length > 10);
     matcher.setDisparityDepth(5); // CV_32F
+    const sigma = matcher.getDisparitySigma(),
+        reasons = matcher.getReasons();
+    assert.ok(sigma.data instanceof Float32Array && sigma.data.every(value => value > 0 && value < 100));
+    assert.ok(reasons.data.includes(hdp.REASON_MATCHED) && reasons.data.includes(hdp.REASON_OCCLUDED));
     const { data } = matcher.compute(left, right);
     assert.ok(data instanceof Float32Array && data.every((value, i) => 16 * value === map.data[i]));
+    matcher.delete();
+});
+
+test('what is known beforehand', () => {
+    const matcher = hdp.HDPTreeMatcher.create(0, 0, hdp.PRESET_FAST),
+        { left, right } = pairs[0].images,
+        { width, height } = left;
+    const empty = matcher.getPairModel();
+    matcher.compute(left, right);
+    const { minDisparity, numDisparities } = matcher.getFindings(),
+        model = matcher.getPairModel();
+    assert.ok(numDisparities > 30 && numDisparities < 128, `${numDisparities}`);
+    assert.match(model, /width: 640/);
+    assert.notEqual(model, empty);
+
+    const mask = { width, height, data: new Uint8Array(width * height).fill(255) };
+    mask.data.fill(0, 0, 100);
+    matcher.setMasks(mask, null);
+    matcher.setPairModel(model);
+    const { data } = matcher.compute(left, right);
+    assert.ok(data.subarray(0, 100).every(value => value === 16 * (minDisparity - 1)));
+    assert.ok(
+        matcher
+            .getReasons()
+            .data.subarray(0, 100)
+            .every(value => value === hdp.REASON_MASKED),
+    );
+    assert.equal(matcher.getPairModel(), model);
+    assert.throws(() => matcher.setPairModel('some notes'));
+    assert.throws(() => matcher.setPairModel('%YAML:1.0\n---\nnoise: 1\n'), /pairModel is missing/);
+    matcher.setPairModel(null);
+
+    const prior = { width, height, data: new Float32Array(width * height).fill(NaN) };
+    matcher.setPriorDisparity(prior, 0.5);
+    assert.throws(() => matcher.setPriorDisparity({ ...prior, data: prior.data.fill(1) }, -1), /sigma must be finite/);
     matcher.delete();
 });
