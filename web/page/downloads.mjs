@@ -16,20 +16,27 @@ function encodePng({ width, height, disparity, invalid }) {
     return encode({ width, height, data, channels: 1, depth: 16 });
 }
 
-// Floating point, the last row first, infinite where there is none
-function encodePfm({ width, height, disparity, invalid }) {
+// Floating point, the last row first
+function encodeFloats({ width, height }, valueOf) {
     const header = new TextEncoder().encode(`Pf\n${width} ${height}\n-1.0\n`);
     const bytes = new Uint8Array(header.length + 4 * width * height),
         view = new DataView(bytes.buffer);
     bytes.set(header);
     let at = header.length;
     for (let y = height - 1; y >= 0; y--)
-        for (let x = 0; x < width; x++, at += 4) {
-            const value = disparity[y * width + x];
-            view.setFloat32(at, value === invalid ? Infinity : value / scale, true);
-        }
+        for (let x = 0; x < width; x++, at += 4) view.setFloat32(at, valueOf(y * width + x), true);
     return bytes;
 }
+
+// Infinite where there is none
+function encodePfm(result) {
+    const { disparity, invalid } = result;
+    return encodeFloats(result, i => (disparity[i] === invalid ? Infinity : disparity[i] / scale));
+}
+
+const encodeSigma = result => encodeFloats(result, i => result.sigma[i]);
+
+const encodeFindings = ({ model }) => new TextEncoder().encode(model);
 
 // What point(x, y, z, i) gets of each pixel i with a depth; x to the right, y down, z away from the camera
 export function forEachPoint(result, point, step = 1) {
@@ -80,7 +87,7 @@ function encodePly(result) {
     return bytes;
 }
 
-const encoders = { png: encodePng, pfm: encodePfm, ply: encodePly };
+const encoders = { png: encodePng, pfm: encodePfm, ply: encodePly, sigma: encodeSigma, findings: encodeFindings };
 
 export function encodeDownload({ kind, result }) {
     return encoders[kind](result);

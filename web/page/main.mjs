@@ -130,7 +130,7 @@ let stillRange = null; // numDisparities and minDisparity of the pair before the
 
 const video = new Video({
     async match(frame, isWanted) {
-        const answer = await client.frame(frame),
+        const answer = await client.frame(frame, view.needsWhole),
             { settings } = video;
         if (!isWanted()) return;
         view.showLeft(answer.left);
@@ -196,14 +196,16 @@ function closeVideo() {
 
 async function download(kind) {
     if (!view.result) return;
-    const { width, height, disparity, confidence, invalid, left } = view.result;
+    if (kind === 'sigma' && !view.result.sigma)
+        throw new Error('A video has expected errors while they are shown: choose “Expected error” above the picture.');
+    const { width, height, disparity, confidence, sigma, invalid, left, model } = view.result;
     const bytes = await client.encode({
         kind,
-        result: { width, height, disparity, confidence, invalid, left, ...view.camera },
+        result: { width, height, disparity, confidence, sigma, invalid, left, model, ...view.camera },
     });
     const link = document.createElement('a');
     link.href = URL.createObjectURL(new Blob([bytes]));
-    link.download = `disparity.${kind}`;
+    link.download = { sigma: 'sigma.pfm', findings: 'findings.yml' }[kind] ?? `disparity.${kind}`;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }

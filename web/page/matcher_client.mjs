@@ -63,8 +63,9 @@ export class MatcherClient {
         return this.#request('setVideo', { settings });
     }
 
-    frame(frame) {
-        return this.#request('frame', { frame }, false, [frame.data.buffer]);
+    // isWhole: with sigma and reasons, which may be null if not
+    frame(frame, isWhole) {
+        return this.#request('frame', { frame, isWhole }, false, [frame.data.buffer]);
     }
 
     get isMatching() {

@@ -5,6 +5,7 @@
 // Images and maps on canvases
 
 import { channelsOf, levelsOf } from './image_data.mjs';
+import { reasonWords } from './reasons.mjs';
 
 // The turbo colour map, from blue to red, at equal distances; the ends, nearly black, are left out.
 const turbo = [0x4458cb, 0x3e9bfe, 0x18d6cb, 0x46f783, 0xa4fc3b, 0xe1dc37, 0xfda330, 0xef5a11, 0xc32402];
@@ -71,12 +72,12 @@ export function colorOf(disparity, [low, high]) {
     return [colors[index], colors[index + 1], colors[index + 2]];
 }
 
-export function drawDisparity(canvas, { width, height, disparity, confidence }, { range, invalid, threshold }) {
-    const [low, high] = range,
-        scale = 255 / (high - low);
+// Values in their colours; those that isMissing() are not there.
+function drawValues(canvas, { width, height, confidence }, values, [low, high], isMissing, threshold) {
+    const scale = 255 / (high - low);
     draw(canvas, width, height, (i, pixels, at) => {
-        const value = disparity[i];
-        if (value === invalid) {
+        const value = values[i];
+        if (isMissing(value)) {
             [pixels[at], pixels[at + 1], pixels[at + 2]] = rejected;
         } else if (confidence[i] < threshold) {
             [pixels[at], pixels[at + 1], pixels[at + 2]] = greyed;
@@ -89,6 +90,23 @@ export function drawDisparity(canvas, { width, height, disparity, confidence }, 
     });
 }
 
+export function drawDisparity(canvas, result, { range, invalid, threshold }) {
+    drawValues(canvas, result, result.disparity, range, value => value === invalid, threshold);
+}
+
+// What sigma is one colour from, in pixels
+export const largestSigma = 2;
+
+export function drawSigma(canvas, result, { threshold }) {
+    drawValues(canvas, result, result.sigma, [0, largestSigma], value => value === Infinity, threshold);
+}
+
+export function drawReasons(canvas, { width, height, reasons }) {
+    draw(canvas, width, height, (i, pixels, at) => {
+        [pixels[at], pixels[at + 1], pixels[at + 2]] = reasonWords[reasons[i]].color;
+    });
+}
+
 export function drawConfidence(canvas, { width, height, confidence }, { threshold }) {
     draw(canvas, width, height, (i, pixels, at) => {
         const value = confidence[i];
@@ -97,7 +115,7 @@ export function drawConfidence(canvas, { width, height, confidence }, { threshol
     });
 }
 
-// Of the disparities, or of the confidence
+// Of the confidence, or of anything else
 export function drawScale(canvas, isConfidence) {
     draw(canvas, 256, 1, (i, pixels, at) => {
         for (let c = 0; c < 3; c++) pixels[at + c] = isConfidence ? i : colors[3 * i + c];

@@ -2,12 +2,23 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The last map as the visitor wants to see it: disparities, confidence or points, with the left image beside it
+// The last map as the visitor wants to see it: disparities, what is known of each, or points, with the left image beside
+// it
 
 import { inPixels, rangeOf, scale } from './disparities.mjs';
 import { showFindings } from './findings.mjs';
 import { attempt, showError } from './messages.mjs';
-import { colorRange, drawConfidence, drawDisparity, drawImage, drawScale } from './picture.mjs';
+import {
+    colorRange,
+    drawConfidence,
+    drawDisparity,
+    drawImage,
+    drawReasons,
+    drawScale,
+    drawSigma,
+    largestSigma,
+} from './picture.mjs';
+import { reasonWords, showLegend } from './reasons.mjs';
 
 const get = id => document.getElementById(id);
 
@@ -63,12 +74,17 @@ export class ResultView {
         this.#showPoints().catch(showError);
     }
 
+    // Whether frames of a video need what takes time
+    get needsWhole() {
+        return this.#view === 'sigma' || this.#view === 'reasons';
+    }
+
     #view = 'disparity';
     #cloud = null;
 
     #choose(view) {
         this.#view = view;
-        get('confidence-note').hidden = view !== 'confidence';
+        for (const name of ['confidence', 'sigma']) get(`${name}-note`).hidden = view !== name;
         for (const button of document.querySelectorAll('[data-view]'))
             button.setAttribute('aria-pressed', button.dataset.view === view);
         if (this.result && view !== 'points') {
@@ -78,23 +94,39 @@ export class ResultView {
         return this.#showPoints();
     }
 
+    // What the last result has of it: the next frame of a video has the rest.
+    get #shown() {
+        return this.needsWhole && !this.result.sigma ? 'disparity' : this.#view;
+    }
+
     #drawMap() {
         if (!this.result) return;
         const map = get('map'),
             { range, invalid } = this.result,
             { threshold } = this.camera;
-        if (this.#view === 'confidence') drawConfidence(map, this.result, { threshold });
-        else drawDisparity(map, this.result, { range, invalid, threshold });
-        map.setAttribute('aria-label', this.#view === 'confidence' ? 'Confidence' : 'Disparity map');
+        const [label, drawView] = {
+            confidence: ['Confidence', () => drawConfidence(map, this.result, { threshold })],
+            sigma: ['Expected error', () => drawSigma(map, this.result, { threshold })],
+            reasons: ['Reasons', () => drawReasons(map, this.result)],
+        }[this.#shown] ?? ['Disparity map', () => drawDisparity(map, this.result, { range, invalid, threshold })];
+        drawView();
+        map.setAttribute('aria-label', label);
     }
 
     #drawScale() {
-        const isConfidence = this.#view === 'confidence',
-            { range } = this.result;
-        get('scale-low').textContent = isConfidence ? '0' : inPixels(range[0]);
-        get('scale-high').textContent = isConfidence ? '255' : inPixels(range[1]);
-        get('scale-unit').textContent = isConfidence ? 'confidence' : 'pixels, far to near';
-        drawScale(get('scale-bar'), isConfidence);
+        const { range } = this.result,
+            isOfReasons = this.#shown === 'reasons';
+        const [low, high, unit] = {
+            confidence: ['0', '255', 'confidence'],
+            sigma: ['0', `${largestSigma} and more`, 'pixels'],
+        }[this.#shown] ?? [inPixels(range[0]), inPixels(range[1]), 'pixels, far to near'];
+        get('scale-low').textContent = low;
+        get('scale-high').textContent = high;
+        get('scale-unit').textContent = unit;
+        drawScale(get('scale-bar'), this.#shown === 'confidence');
+        get('scale').hidden = isOfReasons;
+        get('legend').hidden = !isOfReasons;
+        if (isOfReasons) showLegend(get('legend'), this.result.reasons);
     }
 
     async #showPoints() {
@@ -118,7 +150,7 @@ export class ResultView {
     #readOut(event) {
         const output = get('readout'),
             box = get('left').getBoundingClientRect(),
-            { width = 0, height = 0, disparity, confidence, invalid } = this.result ?? {};
+            { width = 0, height = 0, disparity, confidence, sigma, reasons, invalid } = this.result ?? {};
         const x = Math.floor(((event.clientX - box.left) / box.width) * width);
         const y = Math.floor(((event.clientY - box.top) / box.height) * height);
         output.hidden = !(x >= 0 && y >= 0 && x < width && y < height);
@@ -128,8 +160,13 @@ export class ResultView {
             { focal, baseline } = this.camera;
         const depth =
             get('focal').value && value > 0 ? `, depth ${((focal * baseline * scale) / value).toPrecision(3)}` : '';
+        const error = sigma ? ` ± ${sigma[i].toFixed(2)}` : '';
         output.textContent =
             `(${x}, ${y})  ` +
-            (value === invalid ? 'rejected' : `${inPixels(value, 2)} px${depth}, confidence ${confidence[i]}`);
+            (value !== invalid
+                ? `${inPixels(value, 2)}${error} px${depth}, confidence ${confidence[i]}`
+                : reasons
+                  ? reasonWords[reasons[i]].text
+                  : 'rejected');
     }
 }

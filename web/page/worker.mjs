@@ -73,21 +73,27 @@ function findings(matcher) {
     };
 }
 
-function resultOf(matcher, disparity, start) {
-    const confidence = matcher.getConfidence();
+// isWhole: with sigma and reasons, which take half as long as a map
+function resultOf(matcher, disparity, start, isWhole) {
+    const { minDisparity, numDisparities } = matcher.getFindings();
     return {
         width: disparity.width,
         height: disparity.height,
         disparity: disparity.data,
-        minDisparity: matcher.getFindings().minDisparity,
-        confidence: confidence.data,
+        minDisparity,
+        numDisparities,
+        confidence: matcher.getConfidence().data,
+        sigma: isWhole ? matcher.getDisparitySigma().data : null,
+        reasons: isWhole ? matcher.getReasons().data : null,
         milliseconds: disparity.milliseconds,
         elapsed: performance.now() - start,
         found: findings(matcher),
+        model: matcher.getPairModel(),
     };
 }
 
-const transferable = result => [result.disparity.buffer, result.confidence.buffer];
+const transferable = ({ disparity, confidence, sigma, reasons }) =>
+    [disparity, confidence, sigma, reasons].filter(Boolean).map(({ buffer }) => buffer);
 
 const actions = {
     async start({ name, module, documentation, threads }) {
@@ -119,7 +125,7 @@ const actions = {
         const start = performance.now(),
             matcher = createMatcher(settings);
         try {
-            const result = resultOf(matcher, matcher.compute(pair.left, pair.right), start);
+            const result = resultOf(matcher, matcher.compute(pair.left, pair.right), start, true);
             return [result, transferable(result)];
         } finally {
             matcher.delete();
@@ -134,10 +140,10 @@ const actions = {
         return [{}];
     },
 
-    frame({ frame }) {
+    frame({ frame, isWhole }) {
         const start = performance.now(),
             [left, right] = halvesOf(frame);
-        const result = { ...resultOf(video, video.compute(left, right), start), left };
+        const result = { ...resultOf(video, video.compute(left, right), start, isWhole), left };
         return [result, [...transferable(result), left.data.buffer]];
     },
 

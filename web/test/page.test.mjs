@@ -84,8 +84,8 @@ async function openBuiltIn() {
     assert.equal(await page.isVisible('#message'), false);
 }
 
-async function sameMap(pair, preset) {
-    const expected = floatsOfPfm(matchNatively(pair, preset, 'expected.pfm'));
+async function sameMap(pair, preset, options = []) {
+    const expected = floatsOfPfm(matchNatively(pair, preset, 'expected.pfm', options));
     assert.deepEqual(floatsOfPfm(await download('pfm')), expected);
 }
 
@@ -183,19 +183,26 @@ test('the wipe shows the left image on one side and the map on the other', async
     const center = await page.locator('#pictures').boundingBox();
     await page.mouse.click(center.x + center.width / 2, center.y + center.height / 2);
     assert.ok(Math.abs((await page.inputValue('#wipe')) - 50) < 3);
-    assert.match(await page.textContent('#readout'), /\(\d+, \d+\) {2}[\d.]+ px, depth [\d.]+, confidence \d+/);
+    assert.match(
+        await page.textContent('#readout'),
+        /\(\d+, \d+\) {2}[\d.]+ ± [\d.]+ px, depth [\d.]+, confidence \d+/,
+    );
 });
 
+// The share of the map in a colour
+const shareOf = color =>
+    page.evaluate(([red, green, blue]) => {
+        const map = document.getElementById('map'),
+            { data } = map.getContext('2d').getImageData(0, 0, map.width, map.height);
+        let count = 0;
+        for (let i = 0; i < data.length; i += 4)
+            count += data[i] === red && data[i + 1] === green && data[i + 2] === blue;
+        return count / (data.length / 4);
+    }, color);
+const none = [20, 22, 26];
+
 test('what has little confidence is grey', async () => {
-    const greyShare = () =>
-        page.evaluate(() => {
-            const map = document.getElementById('map'),
-                { data } = map.getContext('2d').getImageData(0, 0, map.width, map.height);
-            let grey = 0;
-            for (let i = 0; i < data.length; i += 4)
-                grey += data[i] === 120 && data[i + 1] === 124 && data[i + 2] === 132;
-            return grey / (data.length / 4);
-        });
+    const greyShare = () => shareOf([120, 124, 132]);
     assert.equal(await greyShare(), 0);
     assert.ok(await page.isHidden('#confidence-note'));
     await page.fill('#threshold', '90');
@@ -245,7 +252,7 @@ async function openFiles(files, button = '#choose-pair') {
             ? file
             : {
                   name: basename(file),
-                  mimeType: file.endsWith('png') ? 'image/png' : 'video/webm',
+                  mimeType: { png: 'image/png', webm: 'video/webm' }[file.split('.').at(-1)] ?? 'text/plain',
                   buffer: readFileSync(file),
               },
     );
@@ -281,6 +288,39 @@ test('what the matcher found, and a parameter that changes the map', async () =>
     await page.click('#reset');
     await matched();
     assert.deepEqual(await download('pfm'), before);
+});
+
+test('how much disparities may be wrong, and why they are what they are', async () => {
+    await page.evaluate(() => document.querySelectorAll('details.group').forEach(group => (group.open = true)));
+    await setNumber('disp12MaxDiff', 1);
+    await matched();
+    await page.click('[data-view=sigma]');
+    assert.ok(await page.isVisible('#sigma-note'));
+    assert.equal(await page.textContent('#scale-unit'), 'pixels');
+    const disparity = floatsOfPfm(await download('pfm')),
+        sigma = floatsOfPfm(await download('sigma'));
+    assert.ok(sigma.every((value, i) => value > 0 && Number.isFinite(value) === Number.isFinite(disparity[i])));
+    const rejected = sigma.filter(value => value === Infinity).length / sigma.length;
+    assert.ok(rejected > 0.01);
+    assert.ok(Math.abs((await shareOf(none)) - rejected) < 1e-6);
+    await page.screenshot({ path: join(workFolder, 'sigma.png') });
+
+    await page.click('[data-view=reasons]');
+    assert.ok((await page.isHidden('#scale')) && (await page.isHidden('#sigma-note')));
+    const legend = await page.locator('#legend li').allTextContents();
+    const shares = legend.map(text => Number(text.match(/, ([\d.]+) %$/)[1]));
+    assert.match(legend[0], /^seen in both images/);
+    assert.ok(Math.abs(shares.reduce((sum, share) => sum + share, 0) - 100) < 0.3, `${legend}`);
+    assert.ok(Math.abs(await shareOf([62, 155, 254])) > 0.5);
+    const i = sigma.indexOf(Infinity),
+        [x, y] = [i % 640, 479 - Math.floor(i / 640)], // the last row comes first
+        box = await page.locator('#pictures').boundingBox();
+    await page.dispatchEvent('#pictures', 'pointermove', {
+        clientX: box.x + ((x + 0.5) * box.width) / 640,
+        clientY: box.y + ((y + 0.5) * box.height) / 480,
+    });
+    assert.match(await page.textContent('#readout'), /rejected: left and right disagree|hidden|beyond/);
+    await page.screenshot({ path: join(workFolder, 'reasons.png') });
 });
 
 test('a swapped pair gets a hint', async () => {
@@ -449,6 +489,15 @@ test('a video of frames side by side runs live, with and without temporal predic
     await page.check('#temporal');
     await more(5);
     assert.match(await page.textContent('#times'), /temporal prediction/);
+    await page.click('[data-download=sigma]');
+    assert.match(await errorText(), /choose “Expected error”/);
+    await page.click('[data-view=sigma]');
+    await more(3);
+    assert.equal(floatsOfPfm(await download('sigma')).length, 320 * 240);
+    await page.click('[data-view=reasons]');
+    await more(3);
+    assert.match(await page.textContent('#legend'), /seen in both images/);
+    await page.click('[data-view=disparity]');
     await page.click('#pause');
     await page.waitForTimeout(300);
     const paused = await frames();
@@ -503,6 +552,10 @@ test('screenshots: light, dark, and a phone', async () => {
         }
         await look.screenshot({ path: join(workFolder, `${name}.png`), fullPage: name === 'phone' });
         assert.equal(await look.evaluate(() => document.documentElement.scrollWidth > innerWidth), false, name);
+        const ends = await look.evaluate(() =>
+            [...document.querySelectorAll('[data-view]')].map(button => button.getBoundingClientRect().right),
+        );
+        assert.ok(Math.max(...ends) < (options.viewport?.width ?? 1440), `${name}: ${ends}`);
         await opened.close();
     }
 });
