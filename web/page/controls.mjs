@@ -16,14 +16,7 @@ const groups = [
     ['Layers', ['numLayers', 'maxTopDisparities', 'finestLayer']],
     [
         'Filters',
-        [
-            'useSubpixel',
-            'fillOcclusions',
-            'disparityMedianSize',
-            'disp12MaxDiff',
-            'speckleWindowSize',
-            'speckleRange',
-        ],
+        ['useSubpixel', 'fillOcclusions', 'disparityMedianSize', 'disp12MaxDiff', 'speckleWindowSize', 'speckleRange'],
     ],
     ['Cameras', ['maxRowOffset', 'useLightAlignment', 'noiseThreshold']],
     ['Algorithm', ['treeStrategy', 'matchingCost', 'aggregation', 'topAggregation', 'usePrediction', 'disparityPrior']],
@@ -51,11 +44,13 @@ export class Controls {
         this.changes = {};
         this.fields = new Map();
         this.#addPresets(document.getElementById('presets'));
-        const range = document.getElementById('range-controls');
-        range.append(
-            this.#range('numDisparities', 'Disparities', 1, 512, 64),
-            this.#range('minDisparity', 'Smallest disparity', -128, 128, 0),
-        );
+        document
+            .getElementById('range-controls')
+            .append(
+                this.#rangeFinder(),
+                this.#range('numDisparities', 'Disparities', 1, 512, 64),
+                this.#range('minDisparity', 'Smallest disparity', -128, 128, 0),
+            );
         this.#addGroups(document.getElementById('groups'));
         document.getElementById('reset').onclick = () => {
             this.changes = {};
@@ -68,13 +63,13 @@ export class Controls {
     get settings() {
         return {
             preset: this.preset,
-            minDisparity: this.minDisparity,
-            numDisparities: this.numDisparities,
+            minDisparity: this.findsRange ? 0 : this.minDisparity,
+            numDisparities: this.findsRange ? 0 : this.numDisparities,
             changes: { ...this.changes },
         };
     }
 
-    // For images of another size
+    // For images of another size, or as it was found
     suggestRange(numDisparities, minDisparity = 0) {
         this.numDisparities = numDisparities;
         this.minDisparity = minDisparity;
@@ -110,6 +105,33 @@ export class Controls {
         }
     }
 
+    // Whether the matcher finds the range; the last one found is where the visitor goes on by hand.
+    #rangeFinder() {
+        const input = element('input', { type: 'checkbox', role: 'switch', id: 'find-range' });
+        this.#finder = input;
+        input.onchange = () => {
+            for (const name of ['numDisparities', 'minDisparity']) this.fields.get(name).disable(input.checked);
+            this.changed();
+        };
+        return element(
+            'div',
+            { className: 'parameter' },
+            element(
+                'div',
+                { className: 'line' },
+                element('label', { htmlFor: input.id, textContent: 'Find the range' }),
+                input,
+            ),
+            element('small', { textContent: 'It is then found in the pair, with a margin, which takes a bit longer.' }),
+        );
+    }
+
+    get findsRange() {
+        return this.#finder.checked;
+    }
+
+    #finder = null;
+
     #describe(name) {
         return this.documentation.parameters.find(p => p.name === name) ?? treeStrategy;
     }
@@ -134,15 +156,17 @@ export class Controls {
             show: shown => {
                 slider.value = number.value = shown;
             },
+            disable: isDisabled => {
+                slider.disabled = number.disabled = isDisabled;
+            },
         });
-        const node = element(
+        return element(
             'div',
             { className: 'parameter' },
             element('div', { className: 'line' }, element('label', { htmlFor: id, textContent: title }), number),
             slider,
             element('small', { textContent: brief }),
         );
-        return node;
     }
 
     #addGroups(parent) {

@@ -32,7 +32,7 @@ export function pairProblem({ noise, rows }) {
 }
 
 export function showFindings(result) {
-    const { noise, noiseThreshold, rows, light, ratios, times } = result.found;
+    const { noise, noiseThreshold, rows, light, range, ratios, times } = result.found;
     const problem = pairProblem(result.found);
     get('problem').textContent = problem ?? '';
     get('problem').hidden = !problem;
@@ -73,10 +73,14 @@ export function showFindings(result) {
             .map(([ratio, layer]) => `${(100 * ratio).toFixed(0)} % in layer ${layer}`)
             .join(', ') + ' of the range',
     );
+    if (range.sought) {
+        const { minDisparity, numDisparities } = result;
+        addFinding('Range', `${minDisparity} to ${minDisparity + numDisparities - 1} pixels, found`);
+    }
     addFinding(
-        'Range',
+        'Disparities',
         `${inPixels(result.smallest)} to ${inPixels(result.largest)} pixels` +
-            (result.rejected ? `, ${((100 * result.rejected) / result.disparity.length).toFixed(1)} % rejected` : ''),
+            (result.rejected ? `, none in ${((100 * result.rejected) / result.disparity.length).toFixed(1)} %` : ''),
     );
 
     const longest = Math.max(...times.milliseconds);

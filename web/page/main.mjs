@@ -24,7 +24,7 @@ let runs = 0; // so that a late answer is not taken for the last one
 
 // Runs
 
-const describe = ({ width, height }, { numDisparities, preset }) =>
+const describe = ({ width, height, numDisparities }, { preset }) =>
     `${width} × ${height} pixels, ${numDisparities} disparities, ${preset}`;
 
 async function match() {
@@ -40,6 +40,7 @@ async function match() {
     try {
         const answer = await client.match(settings);
         if (run !== runs) return;
+        if (settings.numDisparities === 0) controls.suggestRange(answer.numDisparities, answer.minDisparity);
         view.show(answer, left);
         showStatus(
             `${describe(answer, settings)}: ${answer.milliseconds.toFixed(0)} ms` +
@@ -158,7 +159,7 @@ async function openVideo(open) {
     get('video-bar').hidden = false;
     get('pause').textContent = 'Pause';
     document.body.classList.add('is-video');
-    stillRange ??= [controls.settings.numDisparities, controls.settings.minDisparity];
+    stillRange ??= [controls.numDisparities, controls.minDisparity];
     controls.suggestRange(Math.max(Math.ceil(width / 2 / 5 / 16) * 16, 16));
     clearError();
     await restartVideo();

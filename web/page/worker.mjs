@@ -68,6 +68,7 @@ function findings(matcher) {
         noiseThreshold: matcher.getNoiseThreshold(),
         rows: { sought: matcher.getMaxRowOffset() > 0, moved: found.areRowsMoved, model: found.rows },
         light: { sought: matcher.getUseLightAlignment(), changed: found.isLightChanged, model: found.light },
+        range: { sought: matcher.getNumDisparities() === 0 },
         ratios: found.searchRatios,
         times: { stages: found.stages, milliseconds: found.stageTimes },
     };

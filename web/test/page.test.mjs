@@ -290,6 +290,32 @@ test('what the matcher found, and a parameter that changes the map', async () =>
     assert.deepEqual(await download('pfm'), before);
 });
 
+test('a range that is not known is found, and stays to go on with', async () => {
+    await page.check('#find-range');
+    await matched();
+    await sameMap({ ...builtIn, numDisparities: 0 }, 'FAST');
+    const [, first, last] = (await page.textContent('#found')).match(/Range *(-?\d+) to (\d+) pixels, found/);
+    const count = last - first + 1;
+    assert.match(await status(), new RegExp(`640 × 480 pixels, ${count} disparities, FAST`));
+    assert.match(await page.textContent('#code-cpp'), /create\(\s*0, 0, /);
+    assert.ok(await page.isDisabled('#parameter-numDisparities'));
+    await page.uncheck('#find-range');
+    await matched();
+    assert.equal(await page.inputValue('#parameter-numDisparities'), String(count));
+    await sameMap({ ...builtIn, minDisparity: Number(first), numDisparities: count }, 'FAST');
+    assert.ok(!(await page.textContent('#found')).includes('pixels, found'));
+
+    const blank = ['left', 'right'].map(side =>
+        writePng(`bare_${side}.png`, { width: 64, height: 48, channels: 1, data: new Uint8Array(64 * 48) }),
+    );
+    await page.check('#find-range');
+    await matched();
+    await openFiles(blank);
+    assert.match(await errorText(), /too few corners match to find its range/);
+    await page.uncheck('#find-range');
+    await matched();
+});
+
 test('how much disparities may be wrong, and why they are what they are', async () => {
     await page.evaluate(() => document.querySelectorAll('details.group').forEach(group => (group.open = true)));
     await setNumber('disp12MaxDiff', 1);
