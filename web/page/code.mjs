@@ -37,13 +37,27 @@ function changesInCode(settings, documentation, isPython) {
     return setters + fields;
 }
 
-export function codeOf(settings, documentation) {
+function knownInCode({ leftMask, rightMask, disparity, sigma, findings }, isPython) {
+    const call = isPython ? 'matcher.' : 'matcher->',
+        end = isPython ? '\n' : ';\n',
+        mask = (image, side) =>
+            image ? (isPython ? `${side}_mask` : `${side}Mask`) : isPython ? 'None' : 'cv::noArray()',
+        model = isPython ? 'hdpstereo.PairModel.load' : 'cv::stereo::PairModel::load';
+    return (
+        (leftMask || rightMask ? `${call}setMasks(${mask(leftMask, 'left')}, ${mask(rightMask, 'right')})${end}` : '') +
+        (disparity ? `${call}setPriorDisparity(known, ${sigma})${end}` : '') +
+        (findings ? `${call}setPairModel(${model}("findings.yml"))${end}` : '')
+    );
+}
+
+export function codeOf(settings, known, documentation) {
     const { minDisparity, numDisparities, preset } = settings;
     const cpp =
         'using cv::stereo::HDPTreeMatcher;\n' +
         'auto matcher = HDPTreeMatcher::create(\n' +
         `    ${minDisparity}, ${numDisparities}, HDPTreeMatcher::PRESET_${preset});\n` +
         changesInCode(settings, documentation, false) +
+        knownInCode(known, false) +
         'cv::Mat disparity;\n' +
         'matcher->compute(left, right, disparity); // 16 * disparity';
     const python =
@@ -51,6 +65,7 @@ export function codeOf(settings, documentation) {
         'matcher = hdpstereo.HDPTreeMatcher.create(\n' +
         `    ${minDisparity}, ${numDisparities}, hdpstereo.HDPTreeMatcher.PRESET_${preset})\n` +
         changesInCode(settings, documentation, true) +
+        knownInCode(known, true) +
         'disparity = matcher.compute(left, right)  # 16 * disparity';
     return { cpp, python };
 }

@@ -6,6 +6,7 @@
 
 import { codeOf } from './code.mjs';
 import { Controls } from './controls.mjs';
+import { addSlots, checkKnown, dataOf, keptFor, nothing, readKnown, showKnown, sortFiles } from './known.mjs';
 import { MatcherClient } from './matcher_client.mjs';
 import { attempt, clearError, setBusy, showError, showStatus } from './messages.mjs';
 import { builtIn, checkPair, readBuiltIn, readImage, readPair } from './pair_files.mjs';
@@ -20,6 +21,7 @@ const view = new ResultView();
 let controls = null,
     documentation = null;
 let images = { left: null, right: null }; // { name, image }
+let known = nothing; // of the pair
 let runs = 0; // so that a late answer is not taken for the last one
 
 // Runs
@@ -60,7 +62,7 @@ function matchSoon() {
 }
 
 function showCode() {
-    const { cpp, python } = codeOf(controls.settings, documentation);
+    const { cpp, python } = codeOf(controls.settings, dataOf(video.isOpen ? nothing : known), documentation);
     get('code-cpp').textContent = cpp;
     get('code-python').textContent = python;
 }
@@ -83,12 +85,15 @@ function drawThumbnail(side) {
     context.drawImage(whole, (canvas.width - width) / 2, (canvas.height - height) / 2, width, height);
 }
 
-async function setImages(chosen, numDisparities) {
+async function setImages(chosen, chosenKnown, numDisparities) {
     const { left, right } = chosen;
     if (left && right) checkPair(chosen);
+    checkKnown(chosenKnown, (left ?? right)?.image);
     const before = closeVideo();
     const isOtherSize = images.left?.image.width !== left?.image.width;
     images = chosen;
+    known = chosenKnown;
+    showKnown(known);
     drawThumbnail('left');
     drawThumbnail('right');
     if (!left || !right)
@@ -100,29 +105,54 @@ async function setImages(chosen, numDisparities) {
         controls.suggestRange(numDisparities ?? Math.max(Math.ceil(left.image.width / 5 / 16) * 16, 16));
     else if (before) controls.suggestRange(...before);
     view.showLeft(left.image);
-    await client.setPair(left.image, right.image);
+    await client.setPair(left.image, right.image, dataOf(known));
     await match();
 }
 
-const decode = file => client.decode(file);
+// What is known, of the pair that is there
+async function setKnown(change) {
+    const chosen = { ...known, ...change },
+        { left, right } = images;
+    checkKnown(chosen, (left ?? right)?.image);
+    known = chosen;
+    showKnown(known);
+    if (!left || !right) return;
+    await client.setPair(left.image, right.image, dataOf(known));
+    await match();
+}
+
+const decode = (file, kind) => client.decode(file, kind);
 
 async function openFiles(files) {
     if (files.length === 0) return;
     if (files[0].type.startsWith('video/')) return openVideo(() => video.openFile(files[0]));
-    const pair = await readPair(files, decode);
+    const sorted = sortFiles(files),
+        chosen = await readKnown(sorted.known, decode);
+    if (sorted.pair.length === 0) return setKnown(chosen);
+    const pair = await readPair(sorted.pair, decode);
     get('focal').value = '';
-    await setImages(pair);
+    await setImages(pair, { ...keptFor(known, pair.left.image), ...chosen });
 }
 
 async function openSide(side, file) {
-    if (file) await setImages({ ...images, [side]: await readImage(file, decode) });
+    if (!file) return;
+    const chosen = await readImage(file, decode);
+    await setImages({ ...images, [side]: chosen }, keptFor(known, chosen.image));
+}
+
+function swap() {
+    const { leftMask, rightMask } = known;
+    return setImages(
+        { left: images.right, right: images.left },
+        { ...nothing, leftMask: rightMask, rightMask: leftMask },
+    );
 }
 
 async function openBuiltIn() {
     const pair = await readBuiltIn(decode);
     get('focal').value = builtIn.focal;
     get('baseline').value = builtIn.baseline;
-    await setImages(pair, builtIn.numDisparities);
+    await setImages(pair, keptFor(known, pair.left.image), builtIn.numDisparities);
 }
 
 // Video
@@ -226,13 +256,21 @@ function listen() {
     get('built-in').onclick = attempt(openBuiltIn);
     get('open-video').onclick = () => choose('file-video', ([file]) => file && openVideo(() => video.openFile(file)));
     get('open-camera').onclick = attempt(() => openVideo(() => video.openCamera()));
-    get('swap').onclick = attempt(() => setImages({ left: images.right, right: images.left }));
+    get('swap').onclick = attempt(swap);
+    addSlots(
+        (slot, accept) => {
+            get('file-known').accept = accept;
+            choose('file-known', async ([file]) => file && setKnown(await readKnown({ [slot]: file }, decode)));
+        },
+        attempt(slot => setKnown({ [slot]: null })),
+    );
+    get('known-sigma').onchange = attempt(() => setKnown({}));
     get('temporal').onchange = attempt(restartVideo);
     get('pause').onclick = attempt(async () => {
         await video.togglePause();
         get('pause').textContent = video.isPaused ? 'Continue' : 'Pause';
     });
-    get('stop-video').onclick = attempt(() => (images.left && images.right ? setImages(images) : openBuiltIn()));
+    get('stop-video').onclick = attempt(() => (images.left && images.right ? setImages(images, known) : openBuiltIn()));
     get('cancel').onclick = () => {
         runs++;
         client.cancel();

@@ -35,17 +35,17 @@ export class MatcherClient {
         return start('hdpstereo', 1);
     }
 
-    // Of the next match()
-    async setPair(left, right) {
-        this.pair = { left, right };
+    // Of the next match(); known: see dataOf() in known.mjs
+    async setPair(left, right, known) {
+        this.pair = { left, right, known };
         this.cancel();
         await this.#request('setPair', this.pair);
     }
 
     // The run for the images before is not waited for.
-    decode(file) {
+    decode(file, kind = 'image') {
         this.cancel();
-        return this.#request('decode', { file });
+        return this.#request('decode', { file, kind });
     }
 
     encode(request) {

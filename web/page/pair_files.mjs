@@ -8,7 +8,7 @@ import { halvesOf } from './image_data.mjs';
 
 export const builtIn = { focal: 620, baseline: 0.19, numDisparities: 64 };
 
-const sizeOf = ({ width, height }) => `${width} × ${height}`;
+export const sizeOf = ({ width, height }) => `${width} × ${height}`;
 
 // Throws what keeps two images from being matched.
 export function checkPair({ left, right }) {
@@ -22,7 +22,7 @@ export function checkPair({ left, right }) {
 }
 
 // left.png before right.png, L before R, 0 before 1
-function inOrder(files) {
+export function inOrder(files) {
     const { compare } = new Intl.Collator('en', { numeric: true });
     return [...files].sort((a, b) => compare(a.name, b.name));
 }

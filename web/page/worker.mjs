@@ -7,6 +7,7 @@
 import { encodeDownload } from './downloads.mjs';
 import { halvesOf } from './image_data.mjs';
 import { decodeImage } from './images.mjs';
+import { decodeDisparity, decodeFindings, decodeMask } from './known_files.mjs';
 
 let hdp = null;
 let parameters = []; // as parameters.json has them
@@ -61,6 +62,28 @@ function createMatcher(settings) {
     return matcher;
 }
 
+function applyKnown(matcher, { leftMask, rightMask, disparity, sigma, findings }) {
+    matcher.setMasks(leftMask, rightMask);
+    matcher.setPriorDisparity(disparity, sigma);
+    matcher.setPairModel(findings);
+}
+
+function checkFindings(text) {
+    const matcher = hdp.HDPTreeMatcher.create(0, 0, hdp.PRESET_FAST);
+    try {
+        matcher.setPairModel(text);
+    } finally {
+        matcher.delete();
+    }
+}
+
+const decoders = {
+    image: decodeImage,
+    mask: decodeMask,
+    disparity: decodeDisparity,
+    findings: file => decodeFindings(file, checkFindings),
+};
+
 function findings(matcher) {
     const found = matcher.getFindings();
     return {
@@ -112,13 +135,13 @@ const actions = {
         return [{ presets: presetValues(presets), version: hdp.openCVVersion, threads: hdp.getNumThreads() }];
     },
 
-    async decode({ file }) {
-        const image = await decodeImage(file);
-        return [image, [image.data.buffer]];
+    async decode({ file, kind }) {
+        const decoded = await decoders[kind](file);
+        return [decoded, kind === 'findings' ? [] : [decoded.data.buffer]];
     },
 
-    setPair({ left, right }) {
-        pair = { left, right };
+    setPair({ left, right, known }) {
+        pair = { left, right, known };
         return [{}];
     },
 
@@ -126,6 +149,7 @@ const actions = {
         const start = performance.now(),
             matcher = createMatcher(settings);
         try {
+            applyKnown(matcher, pair.known);
             const result = resultOf(matcher, matcher.compute(pair.left, pair.right), start, true);
             return [result, transferable(result)];
         } finally {

@@ -316,6 +316,94 @@ test('a range that is not known is found, and stays to go on with', async () => 
     await matched();
 });
 
+test('masks: with the pair or after it, of either image', async () => {
+    const black = (name, [x0, x1], size = [640, 480]) => {
+        const [width, height] = size,
+            data = new Uint8Array(width * height);
+        for (let i = 0; i < data.length; i++) data[i] = i % width >= x0 && i % width < x1 ? 0 : 255;
+        return writePng(name, { width, height, channels: 1, data });
+    };
+    const left = black('mask_left.png', [100, 200]),
+        right = black('mask_right.png', [300, 340]);
+    const options = [`--left-mask=${left}`, `--right-mask=${right}`];
+    await openFiles([right, ...builtIn.files, left]);
+    await matched();
+    await setNumber('numDisparities', 64);
+    await matched();
+    await sameMap(builtIn, 'FAST', options);
+    assert.ok(Math.abs((await shareOf(none)) - 100 / 640) < 1e-6);
+    assert.match(await page.textContent('#known summary'), /: mask of the left image, mask of the right image$/);
+    assert.match(await page.textContent('#code-cpp'), /setMasks\(leftMask, rightMask\);/);
+
+    await page.click('#known summary');
+    await page.click('[data-remove=leftMask]');
+    await matched();
+    await sameMap(builtIn, 'FAST', options.slice(1));
+    assert.equal(await shareOf(none), 0);
+    assert.match(await page.textContent('#code-python'), /setMasks\(None, right_mask\)/);
+    await openFiles(black('small_mask.png', [0, 10], [64, 48]), '[data-choose=leftMask]');
+    assert.match(await errorText(), /small_mask\.png is for images of 64 × 48 pixels\. These have 640 × 480\./);
+    await page.click('#swap');
+    await matched();
+    assert.match(await page.textContent('#known summary'), /: mask of the left image$/);
+    await openBuiltIn(); // another pair
+    await sameMap(builtIn, 'FAST');
+});
+
+test('disparities that are about known, and findings of another pair', async () => {
+    const plain = await download('pfm'),
+        [prior, findings] = ['disparity.pfm', 'findings.yml'].map(name => join(workFolder, name));
+    writeFileSync(prior, matchNatively(builtIn, 'QUALITY', 'prior.pfm'));
+    await openFiles(prior);
+    await matched();
+    await sameMap(builtIn, 'FAST', [`--prior=${prior}`]);
+    assert.notDeepEqual(await download('pfm'), plain);
+    await page.click('#known summary');
+    await page.fill('#known-sigma', '2');
+    await page.dispatchEvent('#known-sigma', 'change');
+    await matched();
+    await sameMap(builtIn, 'FAST', [`--prior=${prior}`, '--prior-sigma=2']);
+    const png = join(workFolder, 'prior.png');
+    matchNatively(builtIn, 'QUALITY', 'prior.png');
+    await openFiles(png, '[data-choose=disparity]');
+    await matched();
+    await sameMap(builtIn, 'FAST', [`--prior=${png}`, '--prior-sigma=2']);
+    await openFiles(builtIn.files[0], '[data-choose=disparity]');
+    assert.match(await errorText(), /built-in_left\.png is no map of disparities/);
+    await openBuiltIn();
+
+    await openFiles(poor.files);
+    await matched();
+    writeFileSync(findings, await download('findings'));
+    const { width, height, channels } = poor.images.left,
+        size = width * channels;
+    const files = ['left', 'right'].map(side => {
+        const data = poor.images[side].data.slice(); // the upper half is bare
+        data.fill(128, 0, size * (height >> 1));
+        return writePng(`bare_${side}.png`, { width, height, channels, data });
+    });
+    await page.check('#find-range');
+    await matched();
+    await openFiles([...files, findings]);
+    await matched();
+    await sameMap({ files, minDisparity: 0, numDisparities: 0 }, 'FAST', [`--findings=${findings}`]);
+    assert.match(
+        await page.textContent('#code-python'),
+        /setPairModel\(hdpstereo\.PairModel\.load\("findings\.yml"\)\)/,
+    );
+    await openFiles(files); // stay for pairs of this size
+    await matched();
+    await sameMap({ files, minDisparity: 0, numDisparities: 0 }, 'FAST', [`--findings=${findings}`]);
+    const wrong = { name: 'notes.yml', mimeType: 'text/yaml', buffer: Buffer.from('some notes') };
+    await openFiles(wrong, '[data-choose=findings]');
+    assert.match(await errorText(), /notes\.yml has no findings/);
+    await page.uncheck('#find-range');
+    await matched();
+    await openBuiltIn();
+    assert.equal(await page.textContent('#known-summary'), '');
+    await sameMap(builtIn, 'FAST');
+});
+
 test('how much disparities may be wrong, and why they are what they are', async () => {
     await page.evaluate(() => document.querySelectorAll('details.group').forEach(group => (group.open = true)));
     await setNumber('disp12MaxDiff', 1);
