@@ -22,6 +22,8 @@ HDP_TUNABLE(int, minSupport, 10, "corners", "fewer are no evidence of a range");
 // All pixels
 HDP_TUNABLE(double, reach, 1.5, "share of the corners' range",
             "that is searched before it and behind it: more costs time and errors");
+HDP_TUNABLE(double, endShare, 0.05, "share of what is searched",
+            "at its ends: what is found there goes on beyond; more searches twice more often");
 HDP_TUNABLE(double, minConfidence, 15, "confidence",
             "of disparities that count: less believes errors, more misses what is near and small");
 HDP_TUNABLE(double, leftOut, 0.0005, "share of the disparities", "at each end that may be wrong");
@@ -87,14 +89,12 @@ int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks
     return support;
 }
 
-//! Of the layer below that of the corners, with more than their disparities. found: in pixels of the image
-bool RangeSearch::matchPixels(const PairMasks& masks, const Range& corners, Range& found)
+//! Of the layer below that of the corners. disparities, found: in pixels of the image
+bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, Range& found)
 {
     const int layer = std::max(coarse_.layer - 1, 0), scale = 1 << layer;
-    const double beside = reach * corners.size(), first = corners.start - beside, last = corners.end + beside;
-    const double unit = 1 << (coarse_.layer - layer);
     const int columns = coarse_.left[layer].cols;
-    const Range searched = limited(first * unit, last * unit, columns);
+    const Range searched = limited((double)disparities.start / scale, (double)disparities.end / scale, columns);
     if (!matcher_)
     {
         matcher_ = HDPTreeMatcher::create(0, 16, HDPTreeMatcher::PRESET_FAST);
@@ -125,13 +125,33 @@ bool RangeSearch::matchPixels(const PairMasks& masks, const Range& corners, Rang
     return true;
 }
 
+//! With more disparities than those of the corners, and more again if some are found at the ends. found: in pixels of
+//! the image
+bool RangeSearch::searchAround(const PairMasks& masks, const Range& corners, Range& found)
+{
+    const auto around = [](const Range& range) {
+        const double beside = reach * range.size();
+        return Range(cvFloor(range.start - beside), cvCeil(range.end + beside));
+    };
+    const int unit = 1 << coarse_.layer;
+    const Range searched = around(Range(corners.start * unit, corners.end * unit));
+    if (!matchPixels(masks, searched, found))
+        return false;
+    const double ofEnd = endShare * searched.size();
+    Range more;
+    if ((found.start <= searched.start + ofEnd || found.end >= searched.end - ofEnd) &&
+        matchPixels(masks, around(found), more))
+        found = Range(std::min(found.start, more.start), std::max(found.end, more.end));
+    return true;
+}
+
 Range RangeSearch::find(const Mat& left, const Mat& right, const PairMasks& masks, bool isFrame)
 {
     const Range last = isFrame && left.size() == lastSize_ ? last_ : Range();
     last_ = Range();
     Range corners, found;
     const int support = matchCorners(left, right, masks, corners);
-    const bool isFound = support >= minSupport && matchPixels(masks, corners, found);
+    const bool isFound = support >= minSupport && searchAround(masks, corners, found);
     if (!isFound && last.empty())
         CV_Error(Error::StsBadArg, "numDisparities must be > 0 for this pair: too few corners match to find its range");
     Range range = last;

@@ -16,8 +16,8 @@ CV_EXPORTS Range supportedDisparities(const std::vector<CornerMatch>& matches, i
 
 /** The range of disparities of pairs whose caller does not know it, of any sign. Corners are matched over the whole
 width of a coarse layer, in both directions. What they span is enlarged by as much and more, and all pixels of the layer
-below are matched over that: bare surfaces and near things have no corners. The disparities that stand the left-right
-check there, with a margin, are the range. */
+below are matched over that, once more where disparities are found at its ends: bare surfaces and near things have no
+corners. The disparities that stand the left-right check there, with a margin, are the range. */
 class CV_EXPORTS RangeSearch
 {
 public:
@@ -36,7 +36,8 @@ public:
 
 private:
     int matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, Range& range);
-    bool matchPixels(const PairMasks& masks, const Range& corners, Range& found);
+    bool matchPixels(const PairMasks& masks, const Range& disparities, Range& found);
+    bool searchAround(const PairMasks& masks, const Range& corners, Range& found);
 
     Range last_; // of the frame before; empty: there is none
     Size lastSize_;

@@ -192,6 +192,37 @@ std::vector<CornerMatch> surface()
     return matches;
 }
 
+//! A slanted surface that comes nearer and has corners at its far end alone, before two that stand upright
+TEST(HDPStereo_RangeSearch, goes_on_where_disparities_end_with_what_was_searched)
+{
+    const Size size(600, 300);
+    const float nearest = 60;
+    for (int seed = 1; seed <= 3; ++seed)
+    {
+        RNG rng(seed);
+        Mat right(size, CV_32F), left, mapX(size, CV_32F), mapY(size, CV_32F);
+        rng.fill(right, RNG::UNIFORM, -1, 1);
+        cv::GaussianBlur(right, right, Size(), 1.2);
+        right = right * 300 + 128;
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+            {
+                const bool isSlanted = x > 380 && x < 500 && y > 100 && y < 200;
+                const float behind = y > 150 ? 14.f : 10.f, before = 12 + (nearest - 12) * (float)(y - 100) / 100;
+                mapX.at<float>(y, x) = (float)x - (isSlanted ? before : behind);
+                mapY.at<float>(y, x) = (float)y;
+            }
+        cv::remap(right, left, mapX, mapY, INTER_LINEAR, BORDER_REFLECT);
+        left.convertTo(left, CV_8U);
+        right.convertTo(right, CV_8U);
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+        match(*matcher, left, right);
+        EXPECT_LE(foundRange(*matcher).start, 10);
+        EXPECT_GT(foundRange(*matcher).end, nearest);
+        EXPECT_LT(foundRange(*matcher).end, 2 * nearest);
+    }
+}
+
 TEST(HDPStereo_RangeSearch, single_corners_do_not_count)
 {
     std::vector<CornerMatch> matches = surface();
