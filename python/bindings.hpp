@@ -4,6 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_PYTHON_BINDINGS_HPP
 #define OPENCV_HDPSTEREO_PYTHON_BINDINGS_HPP
 
+#include <functional>
+
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -69,6 +71,8 @@ std::string nameOf(const py::object& filename);
 
 void writeText(const py::object& filename, const std::string& text);
 void writeFile(const py::object& filename, const cv::Algorithm& algorithm);
-std::string readFile(const py::object& filename);
+
+//! Calls read() with the text of a file; its cv::Exception gets the name.
+void readFile(const py::object& filename, const std::function<void(const std::string& text)>& read);
 
 #endif

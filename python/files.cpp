@@ -37,10 +37,17 @@ void writeFile(const py::object& filename, const cv::Algorithm& algorithm)
     writeText(filename, toText(algorithm, nameOf(filename)));
 }
 
-std::string readFile(const py::object& filename)
+void readFile(const py::object& filename, const std::function<void(const std::string& text)>& read)
 {
     const py::object file = py::module_::import("io").attr("open")(filename, "r", py::arg("encoding") = "utf-8");
     const std::string text = file.attr("read")().cast<std::string>();
     file.attr("close")();
-    return text;
+    try
+    {
+        read(text);
+    }
+    catch (const cv::Exception& e) // which does not know the name
+    {
+        CV_Error(e.code, "filename: '" + nameOf(filename) + "': " + e.err);
+    }
 }

@@ -321,8 +321,7 @@ Raises ValueError if a value is not valid; the matcher is unchanged then.)doc");
         py::arg("filename"),
         "Writes all parameters, the prediction model and the name of the tree strategy to an XML, YAML or JSON file.");
     const auto read = [](Matcher& self, const py::object& filename) {
-        const std::string text = readFile(filename);
-        self.run([&](HDPTreeMatcher& m) { fromText(m, text); });
+        readFile(filename, [&](const std::string& text) { self.run([&](HDPTreeMatcher& m) { fromText(m, text); }); });
     };
     matcher.def("read", read, py::arg("filename"), R"doc(
 Reads what save() has written.

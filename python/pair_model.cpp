@@ -126,8 +126,13 @@ Raises ValueError if the model is empty or of a tile, or sizes do not fit.)doc")
         [](const PairModel& self, const py::object& filename) { writeText(filename, toText(self, nameOf(filename))); },
         py::arg("filename"), "Writes the model to an XML, YAML or JSON file, by its extension.");
     type.def_static(
-        "load", [](const py::object& filename) { return fromText(readFile(filename)); }, py::arg("filename"),
-        "Reads what save() has written; raises ValueError if a value is missing or not valid.");
+        "load",
+        [](const py::object& filename) {
+        PairModel loaded;
+        readFile(filename, [&](const std::string& text) { loaded = fromText(text); });
+        return loaded;
+        },
+        py::arg("filename"), "Reads what save() has written; raises ValueError if a value is missing or not valid.");
     type.def(py::pickle([](const PairModel& self) { return py::make_tuple(toText(self, ".yml")); },
                         [](const py::tuple& state) { return fromText(state[0].cast<std::string>()); }));
 }

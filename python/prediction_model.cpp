@@ -38,7 +38,7 @@ half that size (2 layers).)doc");
         "load",
         [](const py::object& filename) {
         const cv::Ptr<Model> loaded = Model::create();
-        fromText(*loaded, readFile(filename));
+        readFile(filename, [&](const std::string& text) { fromText(*loaded, text); });
         return loaded;
         },
         py::arg("filename"), "Reads a model that save() has written; raises ValueError if the file does not hold one.");

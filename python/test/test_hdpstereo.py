@@ -815,7 +815,7 @@ class Storage(Test):
         matcher.setTreeStrategy(SegmentTree(300))
         change(matcher, gamma=7)
         matcher.save(self.path / 'own.yml')
-        text = 'treeStrategy: set a strategy named SegmentTree before reading'
+        text = "filename: '%s': treeStrategy: set a strategy named SegmentTree before reading" % (self.path / 'own.yml')
         self.assertRaisesText(ValueError, text, HDPTreeMatcher.load, self.path / 'own.yml')
         other = HDPTreeMatcher(0, 32)
         other.setTreeStrategy(SegmentTree(300))
@@ -834,7 +834,8 @@ class Storage(Test):
         for bad in ('', 'no file of this kind', good[:len(good) // 2], good.replace('gamma: 20', 'gamma: -20')):
             (self.path / 'bad.yml').write_text(bad)
             self.assertRaises(ValueError, matcher.read, self.path / 'bad.yml')
-            self.assertRaises(ValueError, DisparityPredictionModel.load, self.path / 'bad.yml')
+            for load in DisparityPredictionModel.load, HDPTreeMatcher.load, hdpstereo.PairModel.load:
+                self.assertRaisesRegex(ValueError, "filename: '.*bad.yml': ", load, self.path / 'bad.yml')
         self.assertEqual(before, parameters(matcher))
 
     def test_model(self):
