@@ -125,23 +125,30 @@ bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, 
     return true;
 }
 
-//! With more disparities than those of the corners, and more again if some are found at the ends. found: in pixels of
-//! the image
+//! With more disparities than those of the corners, and more again if some are found at the ends: surfaces may go on
+//! there. What is at the ends then, too, is errors. found: in pixels of the image
 bool RangeSearch::searchAround(const PairMasks& masks, const Range& corners, Range& found)
 {
     const auto around = [](const Range& range) {
         const double beside = reach * range.size();
         return Range(cvFloor(range.start - beside), cvCeil(range.end + beside));
     };
+    const auto withoutEnds = [](const Range& range) {
+        const double ofEnd = endShare * range.size();
+        return Range(cvFloor(range.start + ofEnd), cvCeil(range.end - ofEnd));
+    };
     const int unit = 1 << coarse_.layer;
-    const Range searched = around(Range(corners.start * unit, corners.end * unit));
-    if (!matchPixels(masks, searched, found))
+    const Range first = around(Range(corners.start * unit, corners.end * unit)), inFirst = withoutEnds(first);
+    if (!matchPixels(masks, first, found))
         return false;
-    const double ofEnd = endShare * searched.size();
+    const Range second = around(found), inSecond = withoutEnds(second);
     Range more;
-    if ((found.start <= searched.start + ofEnd || found.end >= searched.end - ofEnd) &&
-        matchPixels(masks, around(found), more))
-        found = Range(std::min(found.start, more.start), std::max(found.end, more.end));
+    if ((found.start > inFirst.start && found.end < inFirst.end) || !matchPixels(masks, second, more))
+        return true;
+    if (more.start > inSecond.start)
+        found.start = std::min(found.start, more.start);
+    if (more.end < inSecond.end)
+        found.end = std::max(found.end, more.end);
     return true;
 }
 

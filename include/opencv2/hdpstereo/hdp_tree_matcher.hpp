@@ -47,7 +47,7 @@ column. getConfidence() tells how reliable each disparity is, getFindings() what
 - minDisparity, numDisparities: the range of disparities in pixels, minDisparity to minDisparity + numDisparities - 1.
   minDisparity has any sign; a negative one adds up to numDisparities columns on the left of the images. numDisparities
   is > 0, and not necessarily a multiple of 16, or 0: both are found in the pair, see Findings::numDisparities, and the
-  parameter minDisparity has no meaning. This takes 10 to 40 ms, and a range that is 40 to 130 % larger than necessary.
+  parameter minDisparity has no meaning. This takes 10 to 60 ms, and the range is about twice as large as necessary.
   A pair in which fewer than 10 corners have matches, as in images without texture, is an error. The frames of a video
   keep the range of the first one while it has all disparities that are found, and is not twice as large.
 - the preset, see HDPTreeMatcher::Preset: what to spend on accuracy.
