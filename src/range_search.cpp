@@ -89,8 +89,8 @@ int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks
     return support;
 }
 
-//! Of the layer below that of the corners. disparities, found: in pixels of the image
-bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, Range& found)
+//! Of the layer below that of the corners. disparities, those that count, found: in pixels of the image
+bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, const Range& counting, Range& found)
 {
     const int layer = std::max(coarse_.layer - 1, 0), scale = 1 << layer;
     const int columns = coarse_.left[layer].cols;
@@ -113,7 +113,8 @@ bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, 
         for (int x = 0; x < columns; ++x)
         {
             const float disparity = disparity_.at<float>(y, x);
-            if (disparity >= searched.start && confidence_.at<uchar>(y, x) >= minConfidence)
+            if (disparity >= searched.start && disparity * scale >= counting.start &&
+                disparity * scale <= counting.end && confidence_.at<uchar>(y, x) >= minConfidence)
                 disparities_.push_back(disparity);
         }
     if (disparities_.empty())
@@ -138,17 +139,14 @@ bool RangeSearch::searchAround(const PairMasks& masks, const Range& corners, Ran
         return Range(cvFloor(range.start + ofEnd), cvCeil(range.end - ofEnd));
     };
     const int unit = 1 << coarse_.layer;
-    const Range first = around(Range(corners.start * unit, corners.end * unit)), inFirst = withoutEnds(first);
-    if (!matchPixels(masks, first, found))
+    const Range first = around(Range(corners.start * unit, corners.end * unit)), inside = withoutEnds(first);
+    if (!matchPixels(masks, first, first, found))
         return false;
-    const Range second = around(found), inSecond = withoutEnds(second);
+    const Range second = around(found);
     Range more;
-    if ((found.start > inFirst.start && found.end < inFirst.end) || !matchPixels(masks, second, more))
-        return true;
-    if (more.start > inSecond.start)
-        found.start = std::min(found.start, more.start);
-    if (more.end < inSecond.end)
-        found.end = std::max(found.end, more.end);
+    if ((found.start <= inside.start || found.end >= inside.end) &&
+        matchPixels(masks, second, withoutEnds(second), more))
+        found = Range(std::min(found.start, more.start), std::max(found.end, more.end));
     return true;
 }
 

@@ -36,7 +36,7 @@ public:
 
 private:
     int matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, Range& range);
-    bool matchPixels(const PairMasks& masks, const Range& disparities, Range& found);
+    bool matchPixels(const PairMasks& masks, const Range& disparities, const Range& counting, Range& found);
     bool searchAround(const PairMasks& masks, const Range& corners, Range& found);
 
     Range last_; // of the frame before; empty: there is none

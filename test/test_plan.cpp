@@ -192,7 +192,34 @@ TEST(HDPStereo_Plan, a_range_that_is_not_set)
         const PairPlan ofModel = hdp::plan(unset, imageSize, CV_8UC3, model);
         EXPECT_FALSE(ofModel.looksForRange) << preset;
         EXPECT_EQ(textOf(hdp::plan(set, imageSize, CV_8UC3, model)), textOf(ofModel)) << preset;
+
+        hdp::PairInputs inputs;
+        Mat smallest(2, 3, CV_32F, Scalar(-8.5)), largest(2, 3, CV_32F, Scalar(40));
+        largest.at<float>(1, 1) = 66.5f;
+        hdp::setRange(smallest, largest, inputs);
+        const PairPlan ofRanges = hdp::plan(unset, imageSize, CV_8UC3, PairModel(), inputs);
+        EXPECT_FALSE(ofRanges.looksForRange) << preset;
+        EXPECT_EQ(textOf(hdp::plan(set, imageSize, CV_8UC3, PairModel(), inputs)), textOf(ofRanges)) << preset;
+        smallest.at<float>(0, 2) = std::numeric_limits<float>::quiet_NaN();
+        hdp::setRange(smallest, largest, inputs);
+        EXPECT_TRUE(hdp::plan(unset, imageSize, CV_8UC3, PairModel(), inputs).looksForRange) << preset;
     }
+}
+
+TEST(HDPStereo_Plan, ranges_of_all_pixels)
+{
+    const auto rangeOf = [](double smallest, double largest, int width) {
+        hdp::PairInputs inputs;
+        hdp::setRange(Mat(1, 1, CV_32F, Scalar(smallest)), Mat(1, 1, CV_32F, Scalar(largest)), inputs);
+        return hdp::rangeOf(inputs, width);
+    };
+    EXPECT_EQ(Range(-3, 9), rangeOf(-2.5, 7.5, 100));
+    EXPECT_EQ(Range(-99, 100), rangeOf(-2000, 2000, 100)) << "no pixel has others";
+    EXPECT_EQ(Range(99, 100), rangeOf(300, 310, 100)) << "nor any of these";
+    EXPECT_EQ(Range(-99, -98), rangeOf(-310, -300, 100));
+    EXPECT_EQ(Range(-2047, 2048), rangeOf(-1e9, 1e9, 5000)) << "as CV_16S has";
+    EXPECT_TRUE(rangeOf(std::numeric_limits<double>::infinity() * -1, 3, 100).empty()) << "is not limited";
+    EXPECT_TRUE(hdp::rangeOf(hdp::PairInputs(), 100).empty());
 }
 
 //! What is known of a pair is used on all layers, or nowhere.

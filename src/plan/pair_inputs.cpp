@@ -4,6 +4,7 @@
 #include "../precomp.hpp"
 #include "pair_inputs.hpp"
 #include "pair_plan.hpp"
+#include "../base/vectorized.hpp"
 #include "../pair/image_pyramid.hpp"
 
 #include <cfloat>
@@ -57,6 +58,14 @@ void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inp
                         -limit, beyond));
     smallest.convertTo(inputs.smallest, CV_32F);
     largest.convertTo(inputs.largest, CV_32F);
+    inputs.range = Range();
+    if (inputs.hasRanges() && checkRange(inputs.smallest) && checkRange(inputs.largest)) // no NaN
+    {
+        double first, last;
+        minMaxLoc(inputs.smallest, &first, nullptr);
+        minMaxLoc(inputs.largest, nullptr, &last);
+        inputs.range = Range(cvFloor(std::max(first, 1. - limit)), cvCeil(std::min(last, limit - 1.)) + 1);
+    }
     ++inputs.changes;
 }
 
@@ -76,6 +85,14 @@ void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inpu
     inputs.prior = disparity;
     inputs.sigma = sigma;
     ++inputs.changes;
+}
+
+Range rangeOf(const PairInputs& inputs, int width)
+{
+    if (inputs.range.empty())
+        return Range();
+    const int start = clamped(inputs.range.start, 1 - width, width - 1);
+    return Range(start, clamped(inputs.range.end, start + 1, width));
 }
 
 void checkInputs(const PairInputs& inputs, Size size)

@@ -16,6 +16,7 @@ struct PairInputs
 {
     Mat leftMask, rightMask; // CV_8UC1, 0 where there is no data; empty: there is everywhere
     Mat smallest, largest;   // CV_32FC1, disparities of the pixels; empty: there are no ranges
+    Range range;             // that has all of them, if both limit each pixel; else empty
     Mat prior, sigma;        // CV_32FC1, disparities that are about known; empty: none are
     int changes = 0;         // of the ranges or of the prior
 
@@ -26,8 +27,11 @@ struct PairInputs
 
 // What a caller tells, copied; see the methods of HDPTreeMatcher. They throw if it is not that, and change nothing.
 void setMasks(InputArray left, InputArray right, PairInputs& inputs);
-void setRange(InputArray smallest, InputArray largest, PairInputs& inputs);
+CV_EXPORTS void setRange(InputArray smallest, InputArray largest, PairInputs& inputs);
 void setPrior(InputArray disparity, InputArray sigma, PairInputs& inputs);
+
+//! The disparities that pixels of images of this width may have, if all of them are limited; else empty.
+CV_EXPORTS Range rangeOf(const PairInputs& inputs, int width);
 
 //! Throws if an input is not for images of this size.
 void checkInputs(const PairInputs& inputs, Size size);

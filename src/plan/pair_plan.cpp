@@ -297,9 +297,13 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
 {
     PairPlan plan;
     MatcherParameters p = parameters;
-    plan.looksForRange = p.numDisparities == 0 && model.empty();
     if (p.numDisparities == 0)
-        p = model.empty() ? withRange(p, 0, 1) : withRange(p, model.minDisparity, model.numDisparities);
+    {
+        const Range ofModel(model.minDisparity, model.minDisparity + model.numDisparities);
+        const Range known = model.empty() ? rangeOf(inputs, size.width) : ofModel;
+        plan.looksForRange = known.empty();
+        p = known.empty() ? withRange(p, 0, 1) : withRange(p, known.start, known.size());
+    }
     if (!p.usePrediction) // there are no layers, and the plain tree algorithm matches the image
         p.aggregation = M::AGGREGATION_TREES;
     checkCombinations(p, size, inputs.hasPrior());
