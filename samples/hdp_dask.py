@@ -126,12 +126,12 @@ def size_of(path):
         return raster.width, raster.height
 
 
-def find_model(left, right, options):
+def find_model(left, right, width, height, options):
     '''What all tiles are matched with: that of the pair, halved until it has some megapixels. If there is no range of
     disparities, it is found there.'''
     import hdpstereo
 
-    (width, height), times = size_of(left), 0
+    times = 0
     while (height >> times) * (width >> times) > 3e6:
         times += 1
     size, number = (width >> times, height >> times), options['num_disparities']
@@ -179,7 +179,7 @@ def match_tiles(args, options, cluster):
         raise ValueError('the images must be of one size, not %d x %d and %d x %d' % (width, height, *size))
     if not model.exists():
         part = out / 'part.model.yml'
-        find_model(*paths, options).save(part)
+        find_model(*paths, width, height, options).save(part)
         os.replace(part, model)
     if options['num_disparities'] == 0:
         found = hdpstereo.PairModel.load(model)

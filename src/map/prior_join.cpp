@@ -60,7 +60,7 @@ public:
         for (size_t i = 0; i < points.size(); ++i)
         {
             const Point place = points[i].place;
-            cells_[place.y / reach_ * grid_.width + place.x / reach_].push_back((int)i);
+            cells_[cellOf(place)].push_back((int)i);
             before_[i] = winners.ptr<ushort>(place.y)[place.x] * (1.f / subpixelScale);
         }
     }
@@ -173,10 +173,8 @@ private:
         return sum;
     }
 
-    Vec2d& cellOf(int index, Mat& cells) const
-    {
-        return cells.at<Vec2d>(points_[index].place.y / reach_, points_[index].place.x / reach_);
-    }
+    //! Of the grid, row by row
+    int cellOf(Point place) const { return place.y / reach_ * grid_.width + place.x / reach_; }
 
     //! A claim counts unless the costs contradict it, or those around: what many have in common may be wrong as well,
     //! and their mean tells that better.
@@ -185,13 +183,13 @@ private:
         Mat claims(grid_, CV_64FC2, Scalar::all(0)); // the sum of their excess, and their number
         for (size_t i = 0; i < points_.size(); ++i)
             if (states_[i] == CLAIMS)
-                cellOf((int)i, claims) += Vec2d(excess_[i], 1);
+                claims.ptr<Vec2d>()[cellOf(points_[i].place)] += Vec2d(excess_[i], 1);
         boxFilter(claims, claims, -1, Size(2 * around + 1, 2 * around + 1), Point(-1, -1), false, BORDER_CONSTANT);
         const int area = windowSide * windowSide;
         for (size_t i = 0; i < points_.size(); ++i)
             if (states_[i] == CLAIMS)
             {
-                const Vec2d sums = cellOf((int)i, claims);
+                const Vec2d sums = claims.ptr<Vec2d>()[cellOf(points_[i].place)];
                 const bool isContradicted =
                     excess_[i] > contradiction * area || sums[0] > contradictionAround * area * sums[1];
                 states_[i] = isContradicted ? FAILS : COUNTS;

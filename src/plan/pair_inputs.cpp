@@ -13,6 +13,8 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
+const int limit = (SHRT_MAX + 1) / StereoMatcher::DISP_SCALE; // of disparities in CV_16S
+
 //! Without the type that an empty array may have
 Mat toMat(InputArray array) { return array.empty() ? Mat() : array.getMat(); }
 
@@ -50,7 +52,6 @@ void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inp
     const int less = smallest.empty() ? 0 : countNonZero(largest < smallest);
     if (less > 0)
         CV_Error(Error::StsOutOfRange, format("largest must not be less than smallest, as it is in %d pixels", less));
-    const int limit = (SHRT_MAX + 1) / StereoMatcher::DISP_SCALE; // of a CV_16S map
     const int beyond = smallest.empty() ? 0 : countNonZero((smallest >= limit) | (largest < -limit));
     if (beyond > 0)
         CV_Error(Error::StsOutOfRange,
@@ -58,14 +59,6 @@ void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inp
                         -limit, beyond));
     smallest.convertTo(inputs.smallest, CV_32F);
     largest.convertTo(inputs.largest, CV_32F);
-    inputs.range = Range();
-    if (inputs.hasRanges() && checkRange(inputs.smallest) && checkRange(inputs.largest)) // no NaN
-    {
-        double first, last;
-        minMaxLoc(inputs.smallest, &first, nullptr);
-        minMaxLoc(inputs.largest, nullptr, &last);
-        inputs.range = Range(cvFloor(std::max(first, 1. - limit)), cvCeil(std::min(last, limit - 1.)) + 1);
-    }
     ++inputs.changes;
 }
 
@@ -89,10 +82,14 @@ void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inpu
 
 Range rangeOf(const PairInputs& inputs, int width)
 {
-    if (inputs.range.empty())
+    if (!inputs.hasRanges() || !checkRange(inputs.smallest) || !checkRange(inputs.largest)) // NaN
         return Range();
-    const int start = clamped(inputs.range.start, 1 - width, width - 1);
-    return Range(start, clamped(inputs.range.end, start + 1, width));
+    double first, last;
+    minMaxLoc(inputs.smallest, &first, nullptr);
+    minMaxLoc(inputs.largest, nullptr, &last);
+    const double most = std::min(width, limit) - 1;
+    const int start = cvFloor(clamped(first, -most, most));
+    return Range(start, cvCeil(clamped(last, (double)start, most)) + 1);
 }
 
 void checkInputs(const PairInputs& inputs, Size size)

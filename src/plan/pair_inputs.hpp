@@ -16,7 +16,6 @@ struct PairInputs
 {
     Mat leftMask, rightMask; // CV_8UC1, 0 where there is no data; empty: there is everywhere
     Mat smallest, largest;   // CV_32FC1, disparities of the pixels; empty: there are no ranges
-    Range range;             // that has all of them, if both limit each pixel; else empty
     Mat prior, sigma;        // CV_32FC1, disparities that are about known; empty: none are
     int changes = 0;         // of the ranges or of the prior
 
