@@ -55,50 +55,53 @@ struct ByteLanes
         : v(_mm256_inserti128_si256(_mm256_castsi128_si256(first.val), second.val, 1))
     {
     }
-    static ByteLanes repeat(int byte) { return v256_setall_u8((uchar)byte); }
-    static ByteLanes load(const uchar* bytes) { return v256_load(bytes); }
-    static ByteLanes load(const uchar* const* bytes, ptrdiff_t offset)
+    static CV_ALWAYS_INLINE ByteLanes repeat(int byte) { return v256_setall_u8((uchar)byte); }
+    static CV_ALWAYS_INLINE ByteLanes load(const uchar* bytes) { return v256_load(bytes); }
+    static CV_ALWAYS_INLINE ByteLanes load(const uchar* const* bytes, ptrdiff_t offset)
     {
         return ByteLanes(v_load(bytes[0] + offset), v_load(bytes[1] + offset));
     }
-    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, ptrdiff_t offset)
+    static CV_ALWAYS_INLINE ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, ptrdiff_t offset)
     {
         return ByteLanes(v_load_halves(low[0] + offset, high[0] + offset),
                          v_load_halves(low[1] + offset, high[1] + offset));
     }
     //! The group at bytes as the first or the last one, and 0, 1, .. 15 in the other one
-    static ByteLanes first(const uchar* bytes) { return ByteLanes(v_load(bytes), laneNumbers()); }
-    static ByteLanes last(const uchar* bytes) { return ByteLanes(laneNumbers(), v_load(bytes)); }
+    static CV_ALWAYS_INLINE ByteLanes first(const uchar* bytes) { return ByteLanes(v_load(bytes), laneNumbers()); }
+    static CV_ALWAYS_INLINE ByteLanes last(const uchar* bytes) { return ByteLanes(laneNumbers(), v_load(bytes)); }
     //! The group at bytes, then the first one of before
-    static ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes& before)
+    static CV_ALWAYS_INLINE ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes& before)
     {
         return ByteLanes(v_load(bytes), v_uint8x16(_mm256_castsi256_si128(before.v.val)));
     }
     //! The last group of before, then that at bytes
-    static ByteLanes shiftInLast(const ByteLanes& before, const uchar* bytes)
+    static CV_ALWAYS_INLINE ByteLanes shiftInLast(const ByteLanes& before, const uchar* bytes)
     {
         return ByteLanes(v_uint8x16(_mm256_extracti128_si256(before.v.val, 1)), v_load(bytes));
     }
-    void storeFirst(uchar* bytes) const { v_store_low(bytes, v); }
-    void storeLast(uchar* bytes) const { v_store_high(bytes, v); }
+    CV_ALWAYS_INLINE void storeFirst(uchar* bytes) const { v_store_low(bytes, v); }
+    CV_ALWAYS_INLINE void storeLast(uchar* bytes) const { v_store_high(bytes, v); }
 #else
-    static ByteLanes repeat(int byte) { return v_setall_u8((uchar)byte); }
-    static ByteLanes load(const uchar* bytes) { return v_load(bytes); }
-    static ByteLanes load(const uchar* const* bytes, ptrdiff_t offset) { return v_load(bytes[0] + offset); }
-    static ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, ptrdiff_t offset)
+    static CV_ALWAYS_INLINE ByteLanes repeat(int byte) { return v_setall_u8((uchar)byte); }
+    static CV_ALWAYS_INLINE ByteLanes load(const uchar* bytes) { return v_load(bytes); }
+    static CV_ALWAYS_INLINE ByteLanes load(const uchar* const* bytes, ptrdiff_t offset)
+    {
+        return v_load(bytes[0] + offset);
+    }
+    static CV_ALWAYS_INLINE ByteLanes loadHalves(const uchar* const* low, const uchar* const* high, ptrdiff_t offset)
     {
         return v_load_halves(low[0] + offset, high[0] + offset);
     }
-    static ByteLanes first(const uchar* bytes) { return v_load(bytes); }
-    static ByteLanes last(const uchar* bytes) { return v_load(bytes); }
-    static ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes&) { return v_load(bytes); }
-    static ByteLanes shiftInLast(const ByteLanes&, const uchar* bytes) { return v_load(bytes); }
-    void storeFirst(uchar* bytes) const { v_store(bytes, v); }
-    void storeLast(uchar* bytes) const { v_store(bytes, v); }
+    static CV_ALWAYS_INLINE ByteLanes first(const uchar* bytes) { return v_load(bytes); }
+    static CV_ALWAYS_INLINE ByteLanes last(const uchar* bytes) { return v_load(bytes); }
+    static CV_ALWAYS_INLINE ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes&) { return v_load(bytes); }
+    static CV_ALWAYS_INLINE ByteLanes shiftInLast(const ByteLanes&, const uchar* bytes) { return v_load(bytes); }
+    CV_ALWAYS_INLINE void storeFirst(uchar* bytes) const { v_store(bytes, v); }
+    CV_ALWAYS_INLINE void storeLast(uchar* bytes) const { v_store(bytes, v); }
 #endif
-    void store(uchar* bytes) const { v_store(bytes, v); }
+    CV_ALWAYS_INLINE void store(uchar* bytes) const { v_store(bytes, v); }
 
-    static v_uint8x16 laneNumbers()
+    static CV_ALWAYS_INLINE v_uint8x16 laneNumbers()
     {
         static const uchar numbers[] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
         return v_load(numbers);
@@ -106,31 +109,37 @@ struct ByteLanes
 
     // Sums and differences are saturated.
 #if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9 // operators; all later versions have functions
-    ByteLanes operator+(const ByteLanes& b) const { return v + b.v; }
-    ByteLanes operator-(const ByteLanes& b) const { return v - b.v; }
-    ByteLanes operator&(const ByteLanes& b) const { return v & b.v; }
-    ByteLanes operator|(const ByteLanes& b) const { return v | b.v; }
-    ByteLanes operator^(const ByteLanes& b) const { return v ^ b.v; }
-    Vector equals(const ByteLanes& b) const { return v == b.v; }
+    CV_ALWAYS_INLINE ByteLanes operator+(const ByteLanes& b) const { return v + b.v; }
+    CV_ALWAYS_INLINE ByteLanes operator-(const ByteLanes& b) const { return v - b.v; }
+    CV_ALWAYS_INLINE ByteLanes operator&(const ByteLanes& b) const { return v & b.v; }
+    CV_ALWAYS_INLINE ByteLanes operator|(const ByteLanes& b) const { return v | b.v; }
+    CV_ALWAYS_INLINE ByteLanes operator^(const ByteLanes& b) const { return v ^ b.v; }
+    CV_ALWAYS_INLINE Vector equals(const ByteLanes& b) const { return v == b.v; }
 #else
-    ByteLanes operator+(const ByteLanes& b) const { return v_add(v, b.v); }
-    ByteLanes operator-(const ByteLanes& b) const { return v_sub(v, b.v); }
-    ByteLanes operator&(const ByteLanes& b) const { return v_and(v, b.v); }
-    ByteLanes operator|(const ByteLanes& b) const { return v_or(v, b.v); }
-    ByteLanes operator^(const ByteLanes& b) const { return v_xor(v, b.v); }
-    Vector equals(const ByteLanes& b) const { return v_eq(v, b.v); }
+    CV_ALWAYS_INLINE ByteLanes operator+(const ByteLanes& b) const { return v_add(v, b.v); }
+    CV_ALWAYS_INLINE ByteLanes operator-(const ByteLanes& b) const { return v_sub(v, b.v); }
+    CV_ALWAYS_INLINE ByteLanes operator&(const ByteLanes& b) const { return v_and(v, b.v); }
+    CV_ALWAYS_INLINE ByteLanes operator|(const ByteLanes& b) const { return v_or(v, b.v); }
+    CV_ALWAYS_INLINE ByteLanes operator^(const ByteLanes& b) const { return v_xor(v, b.v); }
+    CV_ALWAYS_INLINE Vector equals(const ByteLanes& b) const { return v_eq(v, b.v); }
 #endif
-    ByteLanes max(const ByteLanes& b) const { return v_max(v, b.v); }
-    ByteLanes min(const ByteLanes& b) const { return v_min(v, b.v); }
-    ByteLanes difference(const ByteLanes& b) const { return v_absdiff(v, b.v); } // its absolute value
+    CV_ALWAYS_INLINE ByteLanes max(const ByteLanes& b) const { return v_max(v, b.v); }
+    CV_ALWAYS_INLINE ByteLanes min(const ByteLanes& b) const { return v_min(v, b.v); }
+    CV_ALWAYS_INLINE ByteLanes difference(const ByteLanes& b) const { return v_absdiff(v, b.v); } // its absolute value
 
     //! Half of each lane, rounded down
-    ByteLanes half() const { return ByteLanes(v_reinterpret_as_u8(v_shr<1>(v_reinterpret_as_u16(v)))) & repeat(127); }
+    CV_ALWAYS_INLINE ByteLanes half() const
+    {
+        return ByteLanes(v_reinterpret_as_u8(v_shr<1>(v_reinterpret_as_u16(v)))) & repeat(127);
+    }
     //! A quarter of each lane, rounded down
-    ByteLanes quarter() const { return ByteLanes(v_reinterpret_as_u8(v_shr<2>(v_reinterpret_as_u16(v)))) & repeat(63); }
+    CV_ALWAYS_INLINE ByteLanes quarter() const
+    {
+        return ByteLanes(v_reinterpret_as_u8(v_shr<2>(v_reinterpret_as_u16(v)))) & repeat(63);
+    }
 
     //! The number of bits that are set in each lane
-    ByteLanes countBits() const
+    CV_ALWAYS_INLINE ByteLanes countBits() const
     {
 #if HDP_LANES_AVX2 && CV_AVX512_ICL
         return _mm256_popcnt_epi8(v.val);
@@ -146,7 +155,7 @@ struct ByteLanes
     }
 
     //! The same of three together. Without an instruction for it, their sums and carries take two counts, not three.
-    static ByteLanes countBits(const ByteLanes& a, const ByteLanes& b, const ByteLanes& c)
+    static CV_ALWAYS_INLINE ByteLanes countBits(const ByteLanes& a, const ByteLanes& b, const ByteLanes& c)
     {
 #if HDP_LANES_NEON || HDP_LANES_WASM
         return a.countBits() + b.countBits() + c.countBits();
@@ -157,7 +166,7 @@ struct ByteLanes
     }
 
     //! The byte in place `at`, of the first 16, in all lanes of its group
-    template <int at> static ByteLanes repeatByte(const uchar* const* bytes)
+    template <int at> static CV_ALWAYS_INLINE ByteLanes repeatByte(const uchar* const* bytes)
     {
 #if HDP_LANES_AVX2
         return _mm256_shuffle_epi8(load(bytes, 0).v.val, _mm256_set1_epi8(at));
@@ -176,7 +185,7 @@ struct ByteLanes
     }
 
     //! The byte in place `at` of 16, in all lanes of all groups
-    template <int at> static ByteLanes repeatByte(const uchar* bytes)
+    template <int at> static CV_ALWAYS_INLINE ByteLanes repeatByte(const uchar* bytes)
     {
 #if HDP_LANES_AVX2
         return _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(v_load(bytes).val), _mm256_set1_epi8(at));
@@ -186,7 +195,7 @@ struct ByteLanes
     }
 
     //! Lane i of a group receives lane i - 1, the first one 0.
-    ByteLanes toNext() const
+    CV_ALWAYS_INLINE ByteLanes toNext() const
     {
 #if HDP_LANES_AVX2
         return _mm256_slli_si256(v.val, 1);
@@ -196,7 +205,7 @@ struct ByteLanes
     }
 
     //! Lane i of a group receives lane i + 1, the last one 0.
-    ByteLanes toPrevious() const
+    CV_ALWAYS_INLINE ByteLanes toPrevious() const
     {
 #if HDP_LANES_AVX2
         return _mm256_srli_si256(v.val, 1);
@@ -206,7 +215,7 @@ struct ByteLanes
     }
 
     //! Lane i of all receives the sum of lanes floor(i / 2) and ceil(i / 2).
-    ByteLanes sumsOfHalves() const
+    CV_ALWAYS_INLINE ByteLanes sumsOfHalves() const
     {
 #if HDP_LANES_AVX2
         const __m256i last = _mm256_permute2x128_si256(v.val, v.val, 0x11);
@@ -223,7 +232,7 @@ struct ByteLanes
     }
 
     //! Lane i of a group receives its lane order[i], or 0 if order[i] is 255.
-    ByteLanes permute(const ByteLanes& order) const
+    CV_ALWAYS_INLINE ByteLanes permute(const ByteLanes& order) const
     {
 #if HDP_LANES_AVX2
         return _mm256_shuffle_epi8(v.val, order.v.val);
@@ -247,7 +256,7 @@ struct ByteLanes
     }
 
     //! The smallest lane of each group, in all of its lanes
-    ByteLanes minimum() const
+    CV_ALWAYS_INLINE ByteLanes minimum() const
     {
 #if HDP_LANES_AVX2
         __m256i m = _mm256_min_epu8(v.val, _mm256_shuffle_epi32(v.val, 0x4e));
@@ -280,7 +289,7 @@ struct ByteLanes
     }
 
     //! The smallest lane of all, in all lanes
-    ByteLanes minimumOfAll() const
+    CV_ALWAYS_INLINE ByteLanes minimumOfAll() const
     {
 #if HDP_LANES_AVX2
         const __m128i half = _mm_min_epu8(_mm256_castsi256_si128(v.val), _mm256_extracti128_si256(v.val, 1));
@@ -291,7 +300,7 @@ struct ByteLanes
     }
 
     //! The first lane that is that of b; -1 if there is none
-    int firstEqual(const ByteLanes& b) const
+    CV_ALWAYS_INLINE int firstEqual(const ByteLanes& b) const
     {
         const Vector isEqual = equals(b);
 #if HDP_LANES_NEON && defined(__GNUC__)
@@ -304,7 +313,7 @@ struct ByteLanes
     }
 
     //! The first of the smallest lanes of each group
-    void findMinimum(unsigned* lanes) const
+    CV_ALWAYS_INLINE void findMinimum(unsigned* lanes) const
     {
 #if HDP_LANES_AVX2
         // Words of which the lane is the low byte

@@ -20,32 +20,49 @@ HDP_DISPATCH(aggregateStripe)
 
 } // namespace
 
-void ScanlineScratch::prepare(int width, int numDisparities)
+void ScanlineScratch::Windows::prepare(size_t pairs)
 {
-    const size_t pairs = ((size_t)width + 1) / 2, upperColumns = pairs + 2 * margin;
-    const size_t blockColumns = maxBlock * (2 * pairs + 2 * margin);
-    vertical.assign((2 * pairs + 2 * margin) * CandidateWindow::candidates + alignment, 0);
+    const size_t columns = pairs + 2 * margin;
     for (std::vector<uchar>* stored : { &priors, &intoSide, &intoNext })
-        stored->resize(upperColumns * CandidateWindow::candidates);
-    isContiguous.assign(upperColumns, 0);
-    const int length = CandidateWindow::runLength, farthest = numDisparities + CandidateWindow::candidates;
-    small.resize(upperColumns + 16); // some more to read
+        stored->resize(columns * CandidateWindow::candidates);
+    isContiguous.assign(columns, 0);
+    small.resize(columns + 16); // some more to read
     nearer.resize(pairs);
     for (int run = 0; run < CandidateWindow::runs; ++run)
     {
-        first[run].assign(upperColumns, 0); // of the margins' candidates, too, the addresses are valid
-        distance[run].resize(upperColumns);
+        first[run].assign(columns, 0); // of the margins' candidates, too, the addresses are valid
+        distance[run].resize(columns);
         firstOfColumn[run].resize(2 * pairs);
+    }
+    for (std::vector<uchar>* ofColumn : { &slopes, &large, &least })
+        ofColumn->resize(2 * pairs);
+}
+
+void ScanlineScratch::Block::prepare(size_t pairs)
+{
+    const size_t columns = maxRows * (2 * pairs + 2 * margin);
+    edges.resize(2 * columns + 16); // some more to read
+    winners.resize(columns);
+    winnerCosts.resize(columns);
+    winnerSums.resize(columns);
+}
+
+void ScanlineScratch::prepare(int width, int numDisparities)
+{
+    const size_t pairs = ((size_t)width + 1) / 2;
+    vertical.assign((2 * pairs + 2 * margin) * CandidateWindow::candidates + alignment, 0);
+    for (int i = 0; i < blocks; ++i)
+    {
+        windows[i].prepare(pairs);
+        ofBlocks[i].prepare(pairs);
+    }
+    const int length = CandidateWindow::runLength, farthest = numDisparities + CandidateWindow::candidates;
+    for (int run = 0; run < CandidateWindow::runs; ++run)
+    {
         orders[run].assign(2 * (farthest + length), 255);
         for (int i = 0; i < length; ++i)
             orders[run][farthest + length + i] = (uchar)(run * length + i);
     }
-    for (std::vector<uchar>* ofColumn : { &slopes, &large, &least })
-        ofColumn->resize(2 * pairs);
-    edges.resize(2 * blockColumns + 16); // some more to read
-    winners.resize(blockColumns);
-    winnerCosts.resize(blockColumns);
-    winnerSums.resize(blockColumns);
 }
 
 void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageFrame& frame, int numDisparities,
@@ -62,7 +79,8 @@ void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageF
     buffers.resize(stripes.size());
     // What is stored is as large as a thread needs it, not as the image would.
     parallelFor((int)stripes.size(), Mat(), [&](int i, Mat& stored) {
-        const int storedRows = (stripes[i].rows.end - stripes[i].reach.start + 1) / 2 * 2;
+        const int storedRows = std::max((stripes[i].rows.end - stripes[i].reach.start + 1) / 2 * 2,
+                                        ScanlineScratch::blocks * ScanlineScratch::maxRows);
         stored.create(storedRows, (int)ScanlineScratch::storedBytes(size.width), CV_8U);
         dispatched::aggregateStripe(problem, stripes[i], buffers[i], stored.data, disparity, residual);
     });

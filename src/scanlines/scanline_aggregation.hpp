@@ -45,40 +45,63 @@ struct ScanlineProblem
     }
 };
 
-/** Memory of a sweep over one stripe. A block is the rows that a sweep does at once, at most maxBlock. */
+/** Memory of a sweep over one stripe. A block is the rows that are in one vector, at most maxRows. */
 struct ScanlineScratch
 {
     enum
     {
-        maxBlock = 2,
-        margin = 2 * maxBlock, // of all that is stored by column, on both sides
-        alignment = 64         // of directions: vectors that are in two lines of the cache take longer
+        blocks = 2, // that are done side by side
+        maxRows = 2,
+        margin = 2 * maxRows, // of all that is stored by column, on both sides
+        alignment = 64        // of directions: vectors that are in two lines of the cache take longer
+    };
+
+    //! Of a row of windows
+    struct Windows
+    {
+        // By column of the layer above: the first candidate of each run, and how far it is from what was predicted;
+        // whether there is one run, and so there is for the other rows of the block in the same step; small penalties,
+        // and what the second run costs more
+        std::vector<short> first[CandidateWindow::runs], distance[CandidateWindow::runs];
+        std::vector<uchar> isContiguous, small, nearer;
+        std::vector<uchar> priors, intoSide, intoNext; // CandidateWindow::candidates per such column
+        // By column of the layer: the first candidates, and what penalties of edges depend on
+        std::vector<short> firstOfColumn[CandidateWindow::runs];
+        std::vector<uchar> slopes, large, least;
+
+        void prepare(size_t pairs);
+    };
+
+    //! Of a block
+    struct Block
+    {
+        std::vector<uchar> edges; // large penalties, two per pixel
+        // The winners: their lanes, their sums with those of the lanes before and behind, and their costs
+        std::vector<uchar> winners, winnerCosts;
+        std::vector<unsigned> winnerSums;
+
+        void prepare(size_t pairs);
     };
 
     //! What a sweep stores of a row for the other one: costs and sums of the columns of all steps
     static size_t storedBytes(int width)
     {
-        return (((size_t)width + 1) / 2 + maxBlock - 1) * 2 * 2 * CandidateWindow::candidates;
+        return (((size_t)width + 1) / 2 + maxRows - 1) * 2 * 2 * CandidateWindow::candidates;
     }
     //! Provides the memory for a layer of this width and number of disparities, and clears what a sweep starts from.
     CV_EXPORTS void prepare(int width, int numDisparities);
+    //! H of a row, from column 0 on
+    uchar* verticalOfColumns()
+    {
+        return alignPtr(vertical.data(), (int)alignment) + margin * CandidateWindow::candidates;
+    }
 
     std::vector<uchar> vertical; // CandidateWindow::candidates per column
-    // By column of the layer above: the first candidate of each run, and how far it is from what was predicted; whether
-    // there is one run, and so there is for the other rows of the block in the same step; small penalties, and what
-    // the second run costs more
-    std::vector<short> first[CandidateWindow::runs], distance[CandidateWindow::runs];
-    std::vector<uchar> isContiguous, small, nearer;
-    std::vector<uchar> priors, intoSide, intoNext;           // CandidateWindow::candidates per such column
-    std::vector<short> firstOfColumn[CandidateWindow::runs]; // by column of the layer
+    Windows windows[blocks];
+    Block ofBlocks[blocks];
     // Which lanes have the candidates of a run that begins i disparities after one of these, in the middle and i on:
     // 255 for those that it does not have
     std::vector<uchar> orders[CandidateWindow::runs];
-    std::vector<uchar> slopes, large, least; // of edges, by column of the layer
-    std::vector<uchar> edges;                // large penalties of a block, two per pixel
-    // The winners of a block: their lanes, their sums with those of the lanes before and behind, and their costs
-    std::vector<uchar> winners, winnerCosts;
-    std::vector<unsigned> winnerSums;
 };
 
 typedef std::vector<ScanlineScratch> ScanlineBuffers; // of the stripes

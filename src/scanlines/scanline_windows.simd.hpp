@@ -48,8 +48,9 @@ class ScanlineWindows
 public:
     typedef CandidateWindow Window;
 
-    //! groups: rows of a block
-    ScanlineWindows(const ScanlineProblem& problem, bool isUpward, int groups, ScanlineScratch& scratch)
+    //! groups: rows of a block; orders: see ScanlineScratch
+    ScanlineWindows(const ScanlineProblem& problem, bool isUpward, int groups,
+                    const std::vector<uchar> (&orders)[Window::runs], ScanlineScratch::Windows& scratch)
         : p_(problem), isUpward_(isUpward), groups_(groups), pairs_((problem.size.width + 1) / 2),
           isContiguous_(scratch.isContiguous.data() + margin), small_(scratch.small.data() + margin),
           nearer_(scratch.nearer.data()), slopes_(scratch.slopes.data()), large_(scratch.large.data()),
@@ -61,7 +62,7 @@ public:
             first_[run] = scratch.first[run].data() + margin;
             distance_[run] = scratch.distance[run].data();
             firstOfColumn_[run] = scratch.firstOfColumn[run].data();
-            orders_[run] = scratch.orders[run].data() + scratch.orders[run].size() / 2;
+            orders_[run] = orders[run].data() + orders[run].size() / 2;
         }
     }
 

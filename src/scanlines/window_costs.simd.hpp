@@ -42,31 +42,33 @@ public:
     template <int layout> CV_ALWAYS_INLINE void of(const ScanlineWindows& windows, int step, ByteLanes (&cost)[2]) const
     {
         const int planes = layout & (hasLimits - 1);
-        const uchar *left[groups], *low[groups];
+        const uchar* left[groups];
+        OneRun low;
         for (int r = 0; r < groups; ++r)
         {
             const ptrdiff_t x = 2 * (ptrdiff_t)(step - r);
             left[r] = left_[r] + 4 * x;
-            low[r] = right_[r] - x + windows.first(0, step - r);
+            low.first[r] = right_[r] - x + windows.first(0, step - r);
         }
-        const ByteLanes prior = ByteLanes::load(windows.prior(step));
         if (windows.isContiguous(step))
         {
-            const auto load = [&](ptrdiff_t offset) { return ByteLanes::load(low, offset); };
-            cost[0] = costs<planes, 0>(left, load);
-            cost[1] = costs<planes, 1>(left, load);
+            cost[0] = costs<planes, 0>(left, low);
+            cost[1] = costs<planes, 1>(left, low);
         }
         else
         {
-            const uchar* high[groups];
+            TwoRuns both;
             for (int r = 0; r < groups; ++r)
-                high[r] = right_[r] - 2 * (ptrdiff_t)(step - r) + windows.first(1, step - r);
-            const auto load = [&](ptrdiff_t offset) { return ByteLanes::loadHalves(low, high, offset); };
-            cost[0] = costs<planes, 0>(left, load);
-            cost[1] = costs<planes, 1>(left, load);
+            {
+                both.low[r] = low.first[r];
+                both.high[r] = right_[r] - 2 * (ptrdiff_t)(step - r) + windows.first(1, step - r);
+            }
+            cost[0] = costs<planes, 0>(left, both);
+            cost[1] = costs<planes, 1>(left, both);
         }
         if (layout & hasLimits)
             limit(windows, step, cost);
+        const ByteLanes prior = ByteLanes::load(windows.prior(step));
         cost[0] = prior + cost[0];
         cost[1] = prior + cost[1];
     }
@@ -75,6 +77,18 @@ private:
     enum
     {
         groups = ByteLanes::groups
+    };
+
+    //! Where the candidates of the groups begin, and those at an offset from there
+    struct OneRun
+    {
+        const uchar* first[groups];
+        CV_ALWAYS_INLINE ByteLanes at(ptrdiff_t offset) const { return ByteLanes::load(first, offset); }
+    };
+    struct TwoRuns
+    {
+        const uchar *low[groups], *high[groups];
+        CV_ALWAYS_INLINE ByteLanes at(ptrdiff_t offset) const { return ByteLanes::loadHalves(low, high, offset); }
     };
 
     //! Limits the costs at both columns of a step, see CostLimits.
@@ -92,21 +106,22 @@ private:
         cost[1] = cost[1].min(ByteLanes::repeatByte<1>(left)).min(ByteLanes::loadHalves(low, high, -1));
     }
 
-    //! At one column, but for the prior; load: gives the candidates of a plane.
-    template <int planes, int column, class Load>
-    CV_ALWAYS_INLINE ByteLanes costs(const uchar* const (&left)[groups], const Load& load) const
+    //! At one column, but for the prior; right: a OneRun or TwoRuns
+    template <int planes, int column, class Runs>
+    CV_ALWAYS_INLINE ByteLanes costs(const uchar* const (&left)[groups], const Runs& right) const
     {
         const int at = 4 * column;
-        const auto ofPlane = [&](int plane) { return load((ptrdiff_t)(plane * planeStride_) - column); };
-        const ByteLanes grey = ByteLanes::repeatByte<at + CensusCost::greyByte>(left), candidates = ofPlane(planes);
-        const ByteLanes contrast = grey.difference(candidates).min(ByteLanes::repeat(maxContrast)).quarter();
-        const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ofPlane(0);
+        const ptrdiff_t plane = (ptrdiff_t)planeStride_;
+        const ByteLanes grey = ByteLanes::repeatByte<at + CensusCost::greyByte>(left);
+        const ByteLanes difference = grey.difference(right.at(planes * plane - column));
+        const ByteLanes contrast = difference.min(ByteLanes::repeat(maxContrast)).quarter();
+        const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ right.at(-column);
         if (planes == 1)
             return contrast + first.countBits();
-        const ByteLanes second = ByteLanes::repeatByte<at + 1>(left) ^ ofPlane(1);
+        const ByteLanes second = ByteLanes::repeatByte<at + 1>(left) ^ right.at(plane - column);
         if (planes == 2)
             return contrast + first.countBits() + second.countBits();
-        const ByteLanes third = ByteLanes::repeatByte<at + 2>(left) ^ ofPlane(2);
+        const ByteLanes third = ByteLanes::repeatByte<at + 2>(left) ^ right.at(2 * plane - column);
         return contrast + ByteLanes::countBits(first, second, third);
     }
 

@@ -1,0 +1,320 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Compiled once for each instruction set, as the *.simd.hpp that include it: no include guard.
+#include "scanline_aggregation.hpp"
+#include "../base/byte_lanes.simd.hpp"
+#include "../base/vectorized.hpp"
+#include "scanline_windows.simd.hpp"
+#include "window_costs.simd.hpp"
+#include "winner_fraction.hpp"
+#include <cstring>
+
+namespace cv { namespace stereo { namespace hdp {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+namespace {
+
+/** A block of ByteLanes::groups rows in a sweep. With the notation of aggregateScanlines(), and m the minimum of
+L(q, k) over k, a direction carries what a candidate saves against the large penalty, instead of its cost:
+
+H(q, d) = max(m + large(p, q) - L(q, d), 0), which is also right, 0, for candidates that q does not have.
+As min(x, m + large(p, q)) = m + large(p, q) - max(m + large(p, q) - x, 0) for any x,
+min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m = large(p, q) - gain(d) with
+gain(d) = max(H(q, d), H(q, d - 1) - small, H(q, d + 1) - small, 0).
+Only differences between the candidates of a pixel count, so the largest penalty, K, may stand for large(p, q) here:
+L(p, d) = (C(p, d) + K) - gain(d), and with its minimum m' over the candidates of p and the pixel r after it
+H(p, d) = max(large(p, r) - (L(p, d) - m'), 0).
+
+All of these are bytes, and the differences saturate at 0 by themselves. What aggregateScanlines() says, step by step,
+is oracle::Scanlines of test/oracles.hpp; the two are compared.
+
+The rows are skewed, the lowest one in the first group: when that one is at column x, group r is at column x - 2 r.
+Upward, from the left to the right, group r finds what the group before left there a step ago; downward, from the right
+to the left, what the group behind did. All groups enter a pixel of the layer above, which is two columns wide, at the
+same step: a step is a pair of columns, for group r those of pixel t - r of the layer above. Groups that are beside the
+image compute what nobody reads: all that is stored by column has a margin. */
+class ScanlineBlock
+{
+public:
+    typedef CandidateWindow Window;
+    enum
+    {
+        groups = ByteLanes::groups
+    };
+
+    //! What the directions carry from step to step: H of the pixel beside, and of the columns of the row before
+    struct Carried
+    {
+        ByteLanes side, before[2];
+        Carried() : side(ByteLanes::repeat(0)), before{ side, side } {}
+    };
+
+    static int countSteps(int width) { return (width + 1) / 2 + groups - 1; }
+
+    //! vertical: H of the row before the block, from column 0 on
+    ScanlineBlock(const ScanlineProblem& problem, bool isUpward, uchar* vertical, ScanlineScratch::Block& scratch)
+        : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), costs_(*problem.cost, width_),
+          vertical_(vertical), tables_(nullptr), entersUpperRow_(false), isUpward_(isUpward)
+    {
+        for (int r = 0; r < groups; ++r)
+        {
+            const size_t row = r * (2 * (size_t)pairs_ + 2 * margin) + margin;
+            winners_[r] = scratch.winners.data() + row;
+            sums_[r] = scratch.winnerSums.data() + row;
+            winnerCosts_[r] = scratch.winnerCosts.data() + row;
+            edges_[r] = scratch.edges.data() + 2 * row;
+        }
+    }
+
+    /** Enters the rows from y on.
+    @param y The first one.
+    @param tables Of their row of windows.
+    @param entersUpperRow Whether the block before them has another one. */
+    void enter(int y, const ScanlineWindows& tables, bool entersUpperRow)
+    {
+        tables_ = &tables;
+        entersUpperRow_ = entersUpperRow;
+        const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
+        for (int r = 0; r < groups; ++r)
+        {
+            const int inBlock = y + groups - 1 - r, row = std::min(inBlock, lastRow);
+            const int edgeRow = std::max(std::min(row, row + forward), 0); // its edges below lead to the next row
+            costs_.enterRow(r, row);
+            weighScanlineEdges(p_.weights->ptr(row), p_.weights->ptr(edgeRow), tables.edgePenalties(), width_,
+                               p_.penalties.edgeNoise, edges_[r]);
+            if (isUpward_ && inBlock > lastRow) // nothing comes from there
+                std::memset(edges_[r], 0, 2 * (size_t)width_);
+        }
+    }
+
+    //! Stores the costs of steps.
+    void storeCosts(const Range& steps, uchar* stored) const
+    {
+        typedef void (ScanlineBlock::*Method)(const Range&, uchar*) const;
+        const int limited = WindowCosts::hasLimits;
+        static const Method methods[][3] = {
+            { &ScanlineBlock::storeCosts<1>, &ScanlineBlock::storeCosts<2>, &ScanlineBlock::storeCosts<3> },
+            { &ScanlineBlock::storeCosts<limited + 1>, &ScanlineBlock::storeCosts<limited + 2>,
+              &ScanlineBlock::storeCosts<limited + 3> }
+        };
+        (this->*methods[!p_.cost->limits().isEmpty()][p_.cost->planes() - 1])(steps, stored);
+    }
+
+    //! A step of the direction from below, and if it is to sum, of that from the left; stored: costs, receives the sums
+    template <bool sums> CV_ALWAYS_INLINE void upward(int t, Carried& h, uchar* stored) const
+    {
+        const ByteLanes small = smallPenalty(t);
+        const ByteLanes toRight[2] = { largePenalty<2>(t), largePenalty<4>(t) };
+        const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
+        if (sums)
+            h.side = h.side.permute(ByteLanes::load(tables_->intoSide(t)));
+        for (int column = 0; column < 2; ++column)
+        {
+            uchar* const costs = stored + storedAt(t, column);
+            const ByteLanes cost = ByteLanes::load(costs);
+            const ByteLanes below = fromBelow(cost, small, toNext[column], t, column, h.before[column]);
+            if (sums)
+                (below + advance(h.side, cost, small, toRight[column])).store(costs + lanes);
+        }
+        if (sums && t + 1 < groups)
+            h.side = clearOutside(h.side, t, 1);
+    }
+
+    //! A step downward, with its winners, or of the direction from above alone; stored: costs and sums
+    template <bool takesWinners> CV_ALWAYS_INLINE void downward(int t, Carried& h, const uchar* stored) const
+    {
+        const ByteLanes small = smallPenalty(t);
+        const ByteLanes toLeft[2] = { largePenalty<0>(t), largePenalty<2>(t) };
+        const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
+        if (takesWinners)
+            h.side = h.side.permute(ByteLanes::load(tables_->intoSide(t)));
+        for (int column = 1; column >= 0; --column)
+        {
+            const uchar* const costs = stored + storedAt(t, column);
+            const ByteLanes cost = ByteLanes::load(costs);
+            const ByteLanes above = fromAbove(cost, small, toNext[column], t, column, h.before[column]);
+            if (!takesWinners)
+                continue;
+            const ByteLanes right = advance(h.side, cost, small, toLeft[column]);
+            if (t + 1 >= pairs_)
+                h.side = clearOutside(h.side, t, column);
+            takeWinners(ByteLanes::load(costs + lanes) + right + above, t, column, costs);
+        }
+    }
+
+    //! Disparities and residuals of the winners; rows from y on, of which those before end count
+    void finish(int y, int end, Mat& disparity, Mat& residual) const
+    {
+        for (int r = 0; r < groups; ++r)
+        {
+            const int row = y + groups - 1 - r;
+            if (row < end)
+                finishRow(r, disparity.ptr<ushort>(row), residual.ptr(row));
+        }
+    }
+
+private:
+    enum
+    {
+        lanes = groups * Window::candidates,
+        margin = ScanlineScratch::margin
+    };
+    static_assert(groups <= (int)ScanlineScratch::maxRows, "the scratch memory is for larger blocks");
+
+    template <int layout> void storeCosts(const Range& steps, uchar* stored) const
+    {
+        for (int t = steps.start; t < steps.end; ++t)
+        {
+            ByteLanes cost[2];
+            costs_.of<layout>(*tables_, t, cost);
+            for (int column = 0; column < 2; ++column)
+                cost[column].store(stored + storedAt(t, column));
+        }
+    }
+
+    //! large(p, q) of edges of a step, see weighScanlineEdges(): number `at` from the pixel left of its columns on
+    template <int at> CV_ALWAYS_INLINE ByteLanes largePenalty(int step) const
+    {
+        const uchar* edges[groups];
+        for (int r = 0; r < groups; ++r)
+            edges[r] = edges_[r] + 4 * (ptrdiff_t)(step - r) - 2;
+        return ByteLanes::repeatByte<at>(edges);
+    }
+
+    //! small(p) of a step
+    CV_ALWAYS_INLINE ByteLanes smallPenalty(int step) const
+    {
+        const uchar* small[groups];
+        for (int r = 0; r < groups; ++r)
+            small[r] = tables_->small(step - r);
+        return ByteLanes::repeatByte<0>(small);
+    }
+
+    //! L(p, d) - m of a direction; cost: C(p, d) + ScanlinePenalties::max; h: H of the pixel before, which becomes that
+    //! of this one; large: to the pixel after.
+    static CV_ALWAYS_INLINE ByteLanes advance(ByteLanes& h, const ByteLanes& cost, const ByteLanes& small,
+                                              const ByteLanes& large)
+    {
+        const ByteLanes gain = h.max(h.toNext().max(h.toPrevious()) - small);
+        const ByteLanes sum = cost - gain;
+        const ByteLanes aboveMinimum = sum - sum.minimum();
+        h = large - aboveMinimum;
+        return aboveMinimum;
+    }
+
+    //! Clears the groups that are beside the image.
+    ByteLanes clearOutside(const ByteLanes& h, int step, int column) const
+    {
+        uchar cleared[lanes];
+        h.store(cleared);
+        for (int r = 0; r < groups; ++r)
+        {
+            const int x = 2 * (step - r) + column;
+            if (x < 0 || x >= width_)
+                std::fill_n(cleared + r * Window::candidates, +Window::candidates, (uchar)0);
+        }
+        return ByteLanes::load(cleared);
+    }
+
+    //! Where the costs at a column of a step are stored; their sums follow them.
+    static ptrdiff_t storedAt(int step, int column) { return ((ptrdiff_t)step * 2 + column) * 2 * lanes; }
+
+    //! Where a column of a group at a step has H of the row before its block
+    CV_ALWAYS_INLINE uchar* verticalAt(int group, int step, int column) const
+    {
+        return vertical_ + (2 * (ptrdiff_t)(step - group) + column) * Window::candidates;
+    }
+
+    //! The direction from below: before holds H of the last step's columns; large: to the next row
+    CV_ALWAYS_INLINE ByteLanes fromBelow(const ByteLanes& cost, const ByteLanes& small, const ByteLanes& large, int t,
+                                         int column, ByteLanes& before) const
+    {
+        before = ByteLanes::shiftInFirst(verticalAt(0, t, column), before);
+        if (entersUpperRow_) // only the row that the block begins with may
+            before = before.permute(ByteLanes::first(tables_->intoNext(t)));
+        const ByteLanes direction = advance(before, cost, small, large);
+        before.storeLast(verticalAt(groups - 1, t, column));
+        return direction;
+    }
+
+    //! The same from above
+    CV_ALWAYS_INLINE ByteLanes fromAbove(const ByteLanes& cost, const ByteLanes& small, const ByteLanes& large, int t,
+                                         int column, ByteLanes& before) const
+    {
+        before = ByteLanes::shiftInLast(before, verticalAt(groups - 1, t, column));
+        if (entersUpperRow_)
+            before = before.permute(ByteLanes::last(tables_->intoNext(t - groups + 1)));
+        const ByteLanes direction = advance(before, cost, small, large);
+        before.storeFirst(verticalAt(0, t, column));
+        return direction;
+    }
+
+    //! The winners' lanes, sums with those beside them, and costs
+    CV_ALWAYS_INLINE void takeWinners(const ByteLanes& sum, int t, int column, const uchar* costs) const
+    {
+        unsigned lane[groups];
+        sum.findMinimum(lane);
+        uchar sums[lanes + 4];
+        sum.store(sums + 1);
+        for (int r = 0; r < groups; ++r)
+        {
+            const int x = 2 * (t - r) + column;
+            winners_[r][x] = (uchar)lane[r];
+            std::memcpy(&sums_[r][x], sums + r * 16 + lane[r], sizeof(unsigned));
+            winnerCosts_[r][x] = costs[r * 16 + lane[r]];
+        }
+    }
+
+    //! How far to the right an unsigned is to be shifted for the byte in place i of its memory
+    static int shiftOfByte(int i)
+    {
+        const unsigned one = 1;
+        uchar first;
+        std::memcpy(&first, &one, 1);
+        return 8 * (first == 1 ? i : 3 - i); // a constant for the compiler
+    }
+
+    //! A row's disparities, with winnerFraction(), and residuals
+    void finishRow(int group, ushort* disparity, uchar* residual) const
+    {
+        const float blunt = p_.blunt, sharp = p_.sharp;
+        const int last = p_.validCandidates() - 1, maxDisparity = p_.maxDisparity;
+        const short *firstOfLow = tables_->firstOfColumn(0), *firstOfHigh = tables_->firstOfColumn(1);
+        const uchar *winners = winners_[group], *costs = winnerCosts_[group];
+        const unsigned* sums = sums_[group];
+        const int toBefore = shiftOfByte(0), toSum = shiftOfByte(1), toAfter = shiftOfByte(2);
+        HDP_VECTORIZED for (int x = 0; x < width_; ++x)
+        {
+            const int lane = winners[x], low = firstOfLow[x], high = firstOfHigh[x] - Window::runLength;
+            const int whole = lane + (lane < Window::runLength ? low : high);
+            const int before = sums[x] >> toBefore & 255, sum = sums[x] >> toSum & 255,
+                      after = sums[x] >> toAfter & 255;
+            // Whether there are candidates on both sides
+            const int isInner =
+                ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
+            const float slope = (float)std::max(std::max(before, after) - sum, 1);
+            const float rise = (float)((before - after) & -isInner);
+            const int tip = whole * subpixelScale + subpixelUnits(winnerFraction(rise, slope, blunt, sharp));
+            disparity[x] = (ushort)clamped(tip, 0, maxDisparity);
+        }
+        HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - ScanlinePenalties::max);
+    }
+
+    const ScanlineProblem& p_;
+    const int width_, pairs_; // columns, and pairs of them
+    WindowCosts costs_;
+    // The scratch memory, from column 0 on
+    uchar* const vertical_;
+    uchar *winners_[groups], *winnerCosts_[groups], *edges_[groups];
+    unsigned* sums_[groups];
+    const ScanlineWindows* tables_;
+    bool entersUpperRow_; // whether tables_ are not those of the block before
+    const bool isUpward_;
+};
+
+} // namespace
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}}} // namespace cv::stereo::hdp
