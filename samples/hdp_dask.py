@@ -15,9 +15,9 @@ bit, disparity * 256, 0 = none, for disparities from 0 to 255; or TIFF of floats
 have to see the three under the same names. Maps that are there are kept: run again, it does what is left.
 OUT/options.json says what made them; with other options it stops. LEFTS and RIGHTS may also be the two files of one
 large pair: it is cut into tiles, which are matched with one model of the pair, OUT/model.yml, so that there are no
-seams; OUT/map.tif is put together when all tiles are there, in memory. With rasterio, TIFF is read by windows, so that
-a worker never has more than a tile, and what it declares as no data has no disparity; other images, and TIFF without
-rasterio, are read whole for each tile. --num-disparities=0 finds the disparities, of one large pair once for all
+seams; OUT/map.tif is put together when all tiles are there. With rasterio, TIFF is read by windows and the map written
+by tiles, so that no process has more than a tile in memory, and what TIFF declares as no data has no disparity; other
+images, and TIFF without rasterio, are read whole for each tile, and the map is put together in memory. --num-disparities=0 finds the disparities, of one large pair once for all
 tiles. Without a scheduler, it makes a cluster of this machine. On Debian: apt install python3-distributed
 python3-opencv python3-rasterio
 '''
@@ -35,15 +35,21 @@ from distributed import Client, as_completed
 PICTURES = {'.bmp', '.jpeg', '.jpg', '.pgm', '.png', '.ppm', '.tif', '.tiff', '.webp'}
 
 
-def open_raster(path):
-    '''Of TIFF, if there is rasterio: what is read by windows. Else None.'''
+def find_rasterio():
+    '''The module, or None if it is not installed.'''
     try:
         import rasterio
     except ImportError:
         return None
-    if path.suffix.lower() not in ('.tif', '.tiff'):
-        return None
     warnings.simplefilter('ignore', rasterio.errors.NotGeoreferencedWarning)  # coordinates are not looked at
+    return rasterio
+
+
+def open_raster(path):
+    '''Of TIFF, if there is rasterio: what is read by windows. Else None.'''
+    rasterio = find_rasterio()
+    if not rasterio or path.suffix.lower() not in ('.tif', '.tiff'):
+        return None
     try:
         return rasterio.open(path)
     except rasterio.errors.RasterioError:
@@ -166,11 +172,32 @@ def cut(width, height, options):
                    (x, y, right - x, bottom - y))
 
 
+def put_together(tiles, width, height, path):
+    '''The map of a pair. tiles: the files, and what each is of it.'''
+    import cv2
+    import numpy as np
+
+    def of_tiles():
+        for tile, (x, y, columns, rows) in tiles:
+            yield cv2.imread(str(tile), cv2.IMREAD_UNCHANGED), slice(y, y + rows), slice(x, x + columns)
+
+    rasterio = find_rasterio()
+    if not rasterio:
+        whole = np.empty((height, width), np.float32)
+        for disparity, rows, columns in of_tiles():
+            whole[rows, columns] = disparity
+        return write(path, whole)
+    part = path.with_name('part.' + path.name)
+    with rasterio.open(part, 'w', driver='GTiff', dtype='float32', count=1, width=width, height=height, nodata=np.nan,
+                       tiled=True, blockxsize=128, blockysize=128, BIGTIFF='IF_SAFER') as whole:
+        for disparity, rows, columns in of_tiles():
+            whole.write(disparity, 1, window=rasterio.windows.Window.from_slices(rows, columns))
+    os.replace(part, path)
+
+
 def match_tiles(args, options, cluster):
     '''One pair. Returns the exit status.'''
-    import cv2
     import hdpstereo
-    import numpy as np
 
     paths = [path.resolve() for path in (args.lefts, args.rights)]
     out, model = args.out.resolve(), args.out.resolve() / 'model.yml'
@@ -196,10 +223,7 @@ def match_tiles(args, options, cluster):
             if error:
                 raise ValueError(error)
             print('%d/%d' % (done, len(missing)))
-    whole = np.empty((height, width), np.float32)
-    for path, (_, (x, y, columns, rows)) in tiles.items():
-        whole[y:y + rows, x:x + columns] = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
-    write(out / 'map.tif', whole)
+    put_together([(path, inside) for path, (_, inside) in tiles.items()], width, height, out / 'map.tif')
     return 0
 
 

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "files.hpp"
 #include "rectifier.hpp"
+#include "windows.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -276,9 +277,11 @@ void matchPair(const CommandLineParser& parser)
 {
     checkOptions(parser);
     Rectifier rectifier(parser);
-    Mat left = readPicture(parser.get<String>("@left")), right = readPicture(parser.get<String>("@right"));
+    Mat leftMask, rightMask, left = readPicture(parser.get<String>("@left"), leftMask),
+                             right = readPicture(parser.get<String>("@right"), rightMask);
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.cols);
-    rectifier.apply(left, right, *matcher);
+    if (!rectifier.apply(left, right, *matcher))
+        MaskFiles(parser).apply(leftMask, rightMask, *matcher);
     const Matx44d Q = parser.has("point-cloud") ? readQ(parser, rectifier.rig(), left.size()) : Matx44d();
     const Mat truth = parser.has("truth") ? readTruth(parser.get<String>("truth"), left.size()) : Mat();
     const Mat disparity = computeDisparity(*matcher, left, right);

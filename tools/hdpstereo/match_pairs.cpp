@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "files.hpp"
 #include "rectifier.hpp"
+#include "windows.hpp"
 
 #include <fstream>
 #include <iostream>
@@ -159,6 +160,7 @@ size_t matchPairs(const CommandLineParser& parser)
 
     // One for all pairs: it keeps its memory.
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, 0);
+    const MaskFiles masks(parser);
     Rectifier rectifier(parser);
     keepOptions(parser, *matcher, rectifier, out);
     size_t done = 0, old = 0, bad = 0;
@@ -174,8 +176,10 @@ size_t matchPairs(const CommandLineParser& parser)
         std::vector<uchar> bytes;
         try
         {
-            Mat left = readPicture(pair.left), right = readPicture(pair.right);
-            rectifier.apply(left, right, *matcher);
+            Mat leftMask, rightMask, left = readPicture(pair.left, leftMask),
+                                     right = readPicture(pair.right, rightMask);
+            if (!rectifier.apply(left, right, *matcher))
+                masks.apply(leftMask, rightMask, *matcher);
             matcher->setNumDisparities(numDisparitiesOf(parser, left.cols));
             bytes = encodeDisparity("." + format, computeDisparity(*matcher, left, right));
         }

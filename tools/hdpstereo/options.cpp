@@ -105,15 +105,31 @@ Ptr<HDPTreeMatcher> createPlainMatcher(const CommandLineParser& parser, int widt
 Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
 {
     const Ptr<HDPTreeMatcher> matcher = createPlainMatcher(parser, width);
-    const auto maskOf = [&](const char* option) {
-        return parser.has(option) ? readImage(parser.get<String>(option), IMREAD_GRAYSCALE) : Mat();
-    };
-    matcher->setMasks(maskOf("left-mask"), maskOf("right-mask"));
     const auto mapOf = [&](const char* option) {
         return parser.has(option) ? readDisparity(parser.get<String>(option)) : Mat();
     };
     setKnownDisparities(parser, mapOf("smallest"), mapOf("largest"), mapOf("prior"), *matcher);
     return matcher;
+}
+
+static Mat maskOf(const CommandLineParser& parser, const char* option)
+{
+    return parser.has(option) ? Mat(readImage(parser.get<String>(option), IMREAD_GRAYSCALE) != 0) : Mat();
+}
+
+MaskFiles::MaskFiles(const CommandLineParser& parser)
+    : left_(maskOf(parser, "left-mask")), right_(maskOf(parser, "right-mask"))
+{
+}
+
+void MaskFiles::apply(const Mat& ofLeft, const Mat& ofRight, HDPTreeMatcher& matcher) const
+{
+    const auto both = [](const Mat& given, const Mat& ofFile) {
+        if (given.empty())
+            return ofFile;
+        return ofFile.size() == given.size() ? Mat(given & ofFile) : given; // compute() checks their size
+    };
+    matcher.setMasks(both(left_, ofLeft), both(right_, ofRight));
 }
 
 Mat inPixels(const Mat& disparity16, int minDisparity)

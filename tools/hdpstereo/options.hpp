@@ -21,6 +21,7 @@ void checkOutputs(const cv::CommandLineParser& parser);
 //! For maps in PNG
 void requireNoNegativeDisparities(const cv::CommandLineParser& parser);
 
+//! Without masks, which MaskFiles and Rectifier set
 cv::Ptr<cv::stereo::HDPTreeMatcher> createMatcher(const cv::CommandLineParser& parser, int width);
 
 //! Without what it has to know of each pixel: masks, ranges and prior
@@ -29,6 +30,18 @@ cv::Ptr<cv::stereo::HDPTreeMatcher> createPlainMatcher(const cv::CommandLinePars
 //! --smallest and --largest, --prior and --prior-sigma; maps that are empty are missing
 void setKnownDisparities(const cv::CommandLineParser& parser, const cv::Mat& smallest, const cv::Mat& largest,
                          const cv::Mat& prior, cv::stereo::HDPTreeMatcher& matcher);
+
+//! --left-mask and --right-mask
+class MaskFiles
+{
+public:
+    explicit MaskFiles(const cv::CommandLineParser& parser);
+    //! Sets them, with the masks of the images' own files; these may be empty.
+    void apply(const cv::Mat& ofLeft, const cv::Mat& ofRight, cv::stereo::HDPTreeMatcher& matcher) const;
+
+private:
+    cv::Mat left_, right_;
+};
 
 // What the program does
 

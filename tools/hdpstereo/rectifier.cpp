@@ -23,16 +23,17 @@ Rectifier::Rectifier(const CommandLineParser& parser)
             requireFile(path);
 }
 
-void Rectifier::apply(Mat& left, Mat& right, HDPTreeMatcher& matcher)
+bool Rectifier::apply(Mat& left, Mat& right, HDPTreeMatcher& matcher)
 {
     if (first_.empty())
-        return;
+        return false;
     if (!rig_ || rig_->getSize() != left.size())
     {
         rig_ = StereoRig::create(cv::stereo::readStereoCalibration(first_, second_, left.size(), unit_), fieldOfView_);
         setMasks(matcher);
     }
     rig_->rectify(left, right, left, right);
+    return true;
 }
 
 void Rectifier::setMasks(HDPTreeMatcher& matcher) const

@@ -13,7 +13,8 @@ public:
     explicit Rectifier(const cv::CommandLineParser& parser);
 
     //! Also gives the matcher the masks of what no raw pixel reaches; --left-mask and --right-mask are of raw images.
-    void apply(cv::Mat& left, cv::Mat& right, cv::stereo::HDPTreeMatcher& matcher);
+    //! Does nothing, and returns false, without --calibration.
+    bool apply(cv::Mat& left, cv::Mat& right, cv::stereo::HDPTreeMatcher& matcher);
 
     //! Of the last pair; empty without --calibration
     const cv::Ptr<cv::stereo::StereoRig>& rig() const { return rig_; }

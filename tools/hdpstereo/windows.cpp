@@ -262,6 +262,12 @@ Ptr<ImageWindows> openImage(const String& path)
     return makePtr<WholeImage>(path, noData);
 }
 
+Mat readPicture(const String& path, Mat& mask)
+{
+    const Ptr<ImageWindows> image = openImage(path);
+    return image->read(Rect(Point(), image->size()), mask);
+}
+
 bool isWrittenByTiles(const String& path)
 {
 #ifdef HDPSTEREO_TIFF

@@ -28,6 +28,9 @@ public:
 //! images are read whole.
 cv::Ptr<ImageWindows> openImage(const cv::String& path);
 
+//! The whole of an image, and its mask, see ImageWindows::read()
+cv::Mat readPicture(const cv::String& path, cv::Mat& mask);
+
 //! A map that is written tile by tile
 class MapTiles
 {

@@ -197,6 +197,15 @@ TEST(HDPStereo_Tiles, a_map_is_whole_or_not_there)
     EXPECT_FALSE(fs::exists(out + ".part"));
 }
 
+//! Whether the file of a map is this one, to the bit, NaN being equal
+bool isMap(const String& path, const Mat& expected)
+{
+    Mat map = cv::imread(path, IMREAD_UNCHANGED), other = expected.clone();
+    cv::patchNaNs(map, -1);
+    cv::patchNaNs(other, -1);
+    return map.size() == other.size() && cvtest::norm(map, other, NORM_INF) == 0;
+}
+
 //! What a file declares as no data, and masks, are as masks of the whole are; ranges and a prior, likewise.
 TEST(HDPStereo_Tiles, cut_all_that_is_known)
 {
@@ -233,6 +242,14 @@ TEST(HDPStereo_Tiles, cut_all_that_is_known)
             run(folder, "hdpstereo " + options + images + whole + masks + known + " --save-findings=" + mine).status);
         const Mat expected = cv::imread(whole, IMREAD_UNCHANGED);
         EXPECT_EQ(0, cv::countNonZero((expected < FLT_MAX) != mask)); // where it is NaN
+        EXPECT_EQ(0, run(folder, "hdpstereo " + options + holed + out + known).status);
+        EXPECT_TRUE(isMap(out, expected));
+        folder.writeText("list.txt", folder.path("holed_left.tif") + " " + folder.path("holed_right.tif") + " map\n");
+        const String maps = folder.path(isFloat ? "of_floats" : "of_levels");
+        EXPECT_EQ(0, run(folder, "hdpstereo --batch --format=tif " + options + known + " " + folder.path("list.txt") +
+                                     " " + maps)
+                         .status);
+        EXPECT_TRUE(isMap(maps + "/map.tif", expected));
         for (const String& call : { images + out + masks, holed + out })
         {
             const Execution result = run(folder, tiles + call + known + " --findings=" + mine);
