@@ -37,7 +37,7 @@ function changesInCode(settings, documentation, isPython) {
     return setters + fields;
 }
 
-function knownInCode({ leftMask, rightMask, disparity, sigma, findings }, isPython) {
+function knownInCode({ leftMask, rightMask, smallest, disparity, sigma, findings }, isPython) {
     const call = isPython ? 'matcher.' : 'matcher->',
         end = isPython ? '\n' : ';\n',
         mask = (image, side) =>
@@ -45,6 +45,7 @@ function knownInCode({ leftMask, rightMask, disparity, sigma, findings }, isPyth
         model = isPython ? 'hdpstereo.PairModel.load' : 'cv::stereo::PairModel::load';
     return (
         (leftMask || rightMask ? `${call}setMasks(${mask(leftMask, 'left')}, ${mask(rightMask, 'right')})${end}` : '') +
+        (smallest ? `${call}setDisparityRange(smallest, largest)${end}` : '') +
         (disparity ? `${call}setPriorDisparity(known, ${sigma})${end}` : '') +
         (findings ? `${call}setPairModel(${model}("findings.yml"))${end}` : '')
     );

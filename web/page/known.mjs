@@ -11,6 +11,8 @@ const get = id => document.getElementById(id);
 const slots = {
     leftMask: { kind: 'mask', title: 'Mask of the left image', accept: 'image/*' },
     rightMask: { kind: 'mask', title: 'Mask of the right image', accept: 'image/*' },
+    smallest: { kind: 'disparity', title: 'Smallest disparities', accept: '.pfm,.png', mayBeCoarse: true },
+    largest: { kind: 'disparity', title: 'Largest disparities', accept: '.pfm,.png', mayBeCoarse: true },
     disparity: { kind: 'disparity', title: 'Disparities', accept: '.pfm,.png' },
     findings: { kind: 'findings', title: 'Findings', accept: '.yml,.yaml,.json,.xml' },
 };
@@ -20,17 +22,19 @@ export const nothing = Object.fromEntries(Object.keys(slots).map(slot => [slot, 
 // Which of the files are what is known, by their names: the others are a pair.
 export function sortFiles(files) {
     const masks = inOrder(files.filter(({ name }) => /mask/i.test(name))),
-        disparity = files.find(({ name }) => /disparit/i.test(name) && !/mask/i.test(name)),
-        findings = files.find(({ name }) => /\.(ya?ml|json|xml)$/i.test(name));
+        others = files.filter(file => !masks.includes(file)),
+        smallest = others.find(({ name }) => /smallest/i.test(name)),
+        largest = others.find(({ name }) => /largest/i.test(name)),
+        disparity = others.find(file => /disparit/i.test(file.name) && file !== smallest && file !== largest),
+        findings = others.find(({ name }) => /\.(ya?ml|json|xml)$/i.test(name));
     if (masks.length > 2)
         throw new Error(`These are ${masks.length} masks. Choose one for the left image and one for the right one.`);
     const [first, second] = masks,
         isRight = first && !second && /right|(?<![a-z])r(?![a-z])/i.test(first.name);
-    const known = { leftMask: isRight ? null : first, rightMask: isRight ? first : second, disparity, findings };
-    return {
-        known: Object.fromEntries(Object.entries(known).filter(([, file]) => file)),
-        pair: files.filter(file => !masks.includes(file) && file !== disparity && file !== findings),
-    };
+    const [leftMask, rightMask] = isRight ? [null, first] : [first, second];
+    const all = Object.entries({ leftMask, rightMask, smallest, largest, disparity, findings }),
+        known = Object.fromEntries(all.filter(([, file]) => file));
+    return { known, pair: files.filter(file => !Object.values(known).includes(file)) };
 }
 
 // decode(file, kind) gives what the matcher takes.
@@ -43,21 +47,36 @@ export async function readKnown(files, decode) {
 
 // Throws what keeps it from being known of an image, if there is one.
 export function checkKnown(known, image) {
-    for (const chosen of Object.values(known))
-        if (chosen && image && sizeOf(chosen.image) !== sizeOf(image))
+    const { smallest, largest } = known;
+    if (smallest && largest && sizeOf(smallest.image) !== sizeOf(largest.image))
+        throw new Error(
+            `${smallest.name} has ${sizeOf(smallest.image)} pixels, ${largest.name} ${sizeOf(largest.image)}. ` +
+                'They must have one size.',
+        );
+    for (const [slot, chosen] of Object.entries(known).filter(([, chosen]) => chosen && image)) {
+        const { width, height } = chosen.image,
+            isCoarser = width <= image.width && height <= image.height;
+        if (sizeOf(chosen.image) !== sizeOf(image) && !(slots[slot].mayBeCoarse && isCoarser))
             throw new Error(
                 `${chosen.name} is for images of ${sizeOf(chosen.image)} pixels. These have ${sizeOf(image)}.`,
             );
+    }
 }
 
 // Of the next pair: findings are those of the cameras.
 export const keptFor = ({ findings }, image) =>
     findings && image && sizeOf(findings.image) === sizeOf(image) ? { ...nothing, findings } : nothing;
 
+// No limits, of a map's size
+const unlimited = map =>
+    map && { width: map.width, height: map.height, data: new Float32Array(map.data.length).fill(NaN) };
+
 // As the worker takes it
-export const dataOf = ({ leftMask, rightMask, disparity, findings }) => ({
+export const dataOf = ({ leftMask, rightMask, smallest, largest, disparity, findings }) => ({
     leftMask: leftMask?.image ?? null,
     rightMask: rightMask?.image ?? null,
+    smallest: smallest?.image ?? unlimited(largest?.image) ?? null,
+    largest: largest?.image ?? unlimited(smallest?.image) ?? null,
     disparity: disparity?.image ?? null,
     sigma: Number(get('known-sigma').value),
     findings: findings?.image.data ?? null,

@@ -62,8 +62,9 @@ function createMatcher(settings) {
     return matcher;
 }
 
-function applyKnown(matcher, { leftMask, rightMask, disparity, sigma, findings }) {
+function applyKnown(matcher, { leftMask, rightMask, smallest, largest, disparity, sigma, findings }) {
     matcher.setMasks(leftMask, rightMask);
+    matcher.setDisparityRange(smallest, largest);
     matcher.setPriorDisparity(disparity, sigma);
     matcher.setPairModel(findings);
 }

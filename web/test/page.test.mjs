@@ -353,6 +353,32 @@ test('masks: with the pair or after it, of either image', async () => {
     await sameMap(builtIn, 'FAST');
 });
 
+test('ranges of disparities, of each pixel or of a coarser picture', async () => {
+    const range = (name, disparity, [width, height] = [640, 480]) => {
+        const data = new Uint16Array(width * height);
+        for (let i = 0; i < data.length; i++) data[i] = i % width < width / 2 ? 256 * disparity : 0; // none on the right
+        return writePng(name, { width, height, channels: 1, data });
+    };
+    const smallest = range('smallest.png', 20),
+        largest = range('largest.png', 30, [80, 60]);
+    await openFiles(smallest);
+    await matched();
+    await sameMap(builtIn, 'FAST', [`--smallest=${smallest}`]);
+    assert.match(await page.textContent('#known summary'), /: smallest disparities$/);
+    assert.match(await page.textContent('#code-python'), /setDisparityRange\(smallest, largest\)/);
+    await openFiles(largest);
+    assert.match(
+        await errorText(),
+        /smallest\.png has 640 × 480 pixels, largest\.png 80 × 60\. They must have one size\./,
+    );
+    const coarse = range('smallest_coarse.png', 20, [80, 60]);
+    await openFiles([coarse, largest]);
+    await matched();
+    await sameMap(builtIn, 'FAST', [`--smallest=${coarse}`, `--largest=${largest}`]);
+    await openBuiltIn();
+    await sameMap(builtIn, 'FAST');
+});
+
 test('disparities that are about known, and findings of another pair', async () => {
     const plain = await download('pfm'),
         [prior, findings] = ['disparity.pfm', 'findings.yml'].map(name => join(workFolder, name));
