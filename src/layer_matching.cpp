@@ -160,8 +160,8 @@ private:
         if (hasPlanes)
             preferLargestSurfaces(own_.census, volume);
         scanVolume(forest.weights);
-        if (hasPlanes && preferTreePlanes(forest, result_.winners, volume) > 0)
-            scanVolume(forest.weights);
+        if (hasPlanes)
+            takeTreePlanes(forest, volume, result_.winners);
         return true;
     }
 

@@ -47,10 +47,10 @@ struct Measured
 void PrintTo(const Measured& measured, std::ostream* out) { *out << measured.preset.name; }
 
 const Measured measured[] = {
-    { presetFast, { 4.073, 1.988, 0.886 }, 0.2041, 0.1087 },
-    { presetUltrafast, { 11.019, 3.773, 1.841 }, 0.4563, 0.1484 },
-    { presetQuality, { 3.778, 1.993, 1.002 }, 0.23, 0.0797 },
-    { presetTree, { 5.684, 3.651, 2.265 }, 0.3248, 0.1196 },
+    { presetFast, { 1.763, 0.493, 0.268 }, 0.1456, 0.082 },
+    { presetUltrafast, { 10.476, 3.602, 1.94 }, 0.4598, 0.1546 },
+    { presetQuality, { 1.872, 0.487, 0.224 }, 0.1368, 0.0721 },
+    { presetTree, { 1.763, 0.493, 0.268 }, 0.1456, 0.082 },
 };
 
 typedef testing::TestWithParam<Measured> HDPStereo_Preset;

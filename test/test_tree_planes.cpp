@@ -43,7 +43,7 @@ struct Layer
         costs(x, y)[cvRound(volume.steps * value)] = (uchar)cost;
     }
 
-    int preferPlanes() { return hdp::preferTreePlanes(forest, disparity, volume); }
+    int takePlanes() { return hdp::takeTreePlanes(forest, volume, disparity); }
 };
 
 Mat twoSurfaces(Size size, int left)
@@ -55,15 +55,14 @@ Mat twoSurfaces(Size size, int left)
 
 double slanted(int x, int y) { return 4 + 0.09 * x + 0.05 * y; }
 
-//! What a plane adds to the cost of a candidate
-int penalty(double plane, int candidate)
+void expectDisparity(double expected, const Layer& layer, int x, int y)
 {
-    return std::min(cvRound(hdp::CostVolume::scale * std::abs(candidate - plane)), 10);
+    ASSERT_NEAR(hdp::subpixelScale * expected, layer.disparity.at<ushort>(y, x), 1) << x << ", " << y;
 }
 
 //! Half of a surface is bare, and has disparities of its neighbour.
 //! steps: candidates per pixel of disparity
-void preferPlanesOfBareHalf(int steps)
+void takePlanesOfBareHalf(int steps)
 {
     const Size size(80, 60);
     const int left = 30;
@@ -79,22 +78,15 @@ void preferPlanesOfBareHalf(int steps)
             else
                 layer.disparity.at<ushort>(y, x) = (ushort)(20 * hdp::subpixelScale);
         }
-    EXPECT_EQ(2, layer.preferPlanes());
+    EXPECT_EQ(2, layer.takePlanes());
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
-        {
-            const double plane = steps * (x < left ? 20 : slanted(x, y));
-            const bool isBare = x >= left && y >= size.height / 2;
-            for (int k = 0; k < candidates; ++k)
-                ASSERT_NEAR((!isBare && k == cvRound(plane) ? winnerCost : flatCost) + penalty(plane, k),
-                            layer.costs(x, y)[k], 1)
-                    << k << " at " << x << ", " << y;
-        }
+            expectDisparity(x < left ? 20 : slanted(x, y), layer, x, y);
 }
 
-TEST(HDPStereo_TreePlanes, bare_half) { preferPlanesOfBareHalf(1); }
+TEST(HDPStereo_TreePlanes, bare_half) { takePlanesOfBareHalf(1); }
 
-TEST(HDPStereo_TreePlanes, candidates_of_half_a_pixel) { preferPlanesOfBareHalf(2); }
+TEST(HDPStereo_TreePlanes, candidates_of_half_a_pixel) { takePlanesOfBareHalf(2); }
 
 //! Pixels whose costs are 3 bits lower elsewhere are those of another surface.
 TEST(HDPStereo_TreePlanes, other_surface_in_front)
@@ -111,19 +103,17 @@ TEST(HDPStereo_TreePlanes, other_surface_in_front)
                     layer.win(x, y, 18, cost);
                 else
                     layer.win(x, y, 6);
-        const std::vector<uchar> before = layer.volume.costs;
-        EXPECT_EQ(1, layer.preferPlanes());
-        const size_t pixel = layer.costs(front.x, front.y) - layer.volume.costs.data();
-        const bool isKept = std::equal(&before[pixel], &before[pixel] + candidates, layer.costs(front.x, front.y));
-        EXPECT_EQ(cost == flatCost - 25, isKept) << cost;
+        EXPECT_EQ(1, layer.takePlanes());
+        expectDisparity(cost == flatCost - 25 ? 18 : 6, layer, front.x, front.y);
+        expectDisparity(6, layer, 0, 0);
     }
 }
 
 void expectNoPlane(Layer& layer)
 {
-    const std::vector<uchar> before = layer.volume.costs;
-    EXPECT_EQ(0, layer.preferPlanes());
-    EXPECT_TRUE(before == layer.volume.costs);
+    const Mat before = layer.disparity.clone();
+    EXPECT_EQ(0, layer.takePlanes());
+    expectIdentical(before, layer.disparity);
 }
 
 TEST(HDPStereo_TreePlanes, no_plane)
@@ -166,9 +156,23 @@ TEST(HDPStereo_TreePlanes, pixels_of_one_row)
     Layer layer(Mat(Size(500, 1), CV_8U, Scalar(90)));
     for (int x = 0; x < 500; ++x)
         layer.win(x, 0, 3 + 0.03 * x);
-    EXPECT_EQ(1, layer.preferPlanes());
-    for (int x = 0; x < 500; x += 25)
-        EXPECT_NEAR(flatCost + 10, layer.costs(x, 0)[cvRound(3 + 0.03 * x) + 3], 1) << x;
+    for (int x = 3; x < 500; x += 5)
+        layer.disparity.at<ushort>(0, x) = 0;
+    EXPECT_EQ(1, layer.takePlanes());
+    for (int x = 0; x < 500; ++x)
+        expectDisparity(3 + 0.03 * x, layer, x, 0);
+}
+
+//! Planes go on beyond the last candidate, disparities do not.
+TEST(HDPStereo_TreePlanes, end_with_the_range)
+{
+    Layer layer(Mat(Size(80, 60), CV_8U, Scalar(90)));
+    for (int y = 0; y < 60; ++y)
+        for (int x = 0; x < 80; ++x)
+            layer.win(x, y, std::min(0.8 * x, candidates - 1.));
+    EXPECT_EQ(1, layer.takePlanes());
+    expectDisparity(0.8 * 50, layer, 50, 30);
+    expectDisparity(candidates - 1, layer, 79, 30);
 }
 
 }} // namespace opencv_test

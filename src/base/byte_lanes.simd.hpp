@@ -128,14 +128,16 @@ struct ByteLanes
     CV_ALWAYS_INLINE ByteLanes difference(const ByteLanes& b) const { return v_absdiff(v, b.v); } // its absolute value
 
     //! Half of each lane, rounded down
-    CV_ALWAYS_INLINE ByteLanes half() const
-    {
-        return ByteLanes(v_reinterpret_as_u8(v_shr<1>(v_reinterpret_as_u16(v)))) & repeat(127);
-    }
+    CV_ALWAYS_INLINE ByteLanes half() const { return shiftedRight<1>(); }
     //! A quarter of each lane, rounded down
-    CV_ALWAYS_INLINE ByteLanes quarter() const
+    CV_ALWAYS_INLINE ByteLanes quarter() const { return shiftedRight<2>(); }
+    template <int bits> CV_ALWAYS_INLINE ByteLanes shiftedRight() const
     {
-        return ByteLanes(v_reinterpret_as_u8(v_shr<2>(v_reinterpret_as_u16(v)))) & repeat(63);
+#if HDP_LANES_NEON
+        return Vector(vshrq_n_u8(v.val, bits));
+#else
+        return ByteLanes(v_reinterpret_as_u8(v_shr<bits>(v_reinterpret_as_u16(v)))) & repeat(255 >> bits);
+#endif
     }
 
     //! The number of bits that are set in each lane

@@ -14,14 +14,14 @@ namespace {
 HDP_TUNABLE(
     int, samples, 300, "pixels",
     "of a tree that gets a plane, about: more cost time and find the same plane, what fewer say is mostly noise");
-HDP_TUNABLE(int, triples, 60, "planes", "that are tried: four of them are right if minShare lies on the right one");
+HDP_TUNABLE(int, triples, 32, "planes", "that are tried: four of them are right if half of the samples are");
 HDP_TUNABLE(double, tiltCost, 0.2, "cost per disparity",
             "between the ends of the tree: of two planes, the flatter one");
 HDP_TUNABLE(int, fits, 4, "fits", "to the disparities near the plane: then these are the same as before");
 HDP_TUNABLE(double, fitDistance, 1.5, "disparities", "from the plane: what is farther off is another surface");
-HDP_TUNABLE(double, minShare, 0.4, "share of the samples", "on the plane: a tree of several surfaces gets none");
-HDP_TUNABLE(double, maxRise, 4.5, "cost", "of the mean over the tree: the costs are against a plane that has more");
-HDP_TUNABLE(int, maxPenalty, 10, "cost", "of a disparity off the plane: so the scanlines can still leave it");
+HDP_TUNABLE(double, minShare, 0.5, "share of the samples", "on the plane: a tree of several surfaces gets none");
+HDP_TUNABLE(double, maxRise, 4, "cost",
+            "of the mean over the tree, half a bit: the costs are against a plane that has more");
 
 //! d = coefficients . (1, x, y)
 typedef Vec3d Plane;
@@ -202,21 +202,26 @@ private:
     mutable std::vector<int> at_; // memory of costsOf()
 };
 
-void prefer(const Plane& plane, const int* pixels, int count, CostVolume& volume)
+//! Gives the pixels of a tree the disparities of its plane, but for those whose costs contradict it. Those that have its
+//! candidates keep their own fractions.
+void put(const Plane& plane, const int* pixels, const DisparityTree& tree, const CostVolume& volume, Mat& disparity)
 {
     const double rowsPerPixel = 1. / volume.size.width;
-    for (int i = 0; i < count; ++i)
+    const float first = (float)tree.interval.first / volume.steps, last = (float)tree.interval.last / volume.steps;
+    const auto candidateOf = [&](float value) { return cvFloor(volume.steps * value + 0.5f); };
+    for (int i = 0; i < tree.size; ++i)
     {
         const int pixel = pixels[i], y = rowOf(pixel, rowsPerPixel), x = pixel - y * volume.size.width;
-        const float disparity = (float)(plane[0] + plane[1] * x + plane[2] * y);
-        if (!isContradicted(pixel, disparity, volume))
-            preferDisparity(pixel, disparity, maxPenalty, volume);
+        const float value = clamped((float)(plane[0] + plane[1] * x + plane[2] * y), first, last);
+        ushort& own = disparity.ptr<ushort>(y)[x];
+        if (candidateOf(value) != candidateOf(own / (float)subpixelScale) && !isContradicted(pixel, value, volume))
+            own = (ushort)cvRound(value * subpixelScale);
     }
 }
 
 } // namespace
 
-int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVolume& volume)
+int takeTreePlanes(const DisparityForest& forest, const CostVolume& volume, Mat& disparity)
 {
     CV_DbgAssert(volume.isUniform);
     std::vector<uchar> hasPlane(forest.trees.size());
@@ -231,7 +236,7 @@ int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVo
         const Plane plane = of.findPlane();
         hasPlane[t] = of.rise(plane) < maxRise && of.shareOn(plane) >= minShare;
         if (hasPlane[t])
-            prefer(plane, pixels, tree.size, volume);
+            put(plane, pixels, tree, volume, disparity);
     });
     return (int)std::count(hasPlane.begin(), hasPlane.end(), 1);
 }

@@ -11,13 +11,13 @@ namespace cv { namespace stereo { namespace hdp {
 /** Bare surfaces. A tree of pixels of similar colour is often one surface, and nearly a plane. Where the costs of a
 pixel tell little, those of its whole tree do. Of the planes through three disparities of a tree, its plane is the one
 that raises the costs least above those of the disparities, and is not tilted without need, fitted to those near it.
-If it raises them by little, and many disparities lie on it, others get higher costs, except in pixels whose costs
-contradict the plane.
+If it raises them by little, and many disparities lie on it, all pixels of the tree get its disparities, but for those
+whose costs contradict them.
 @param forest The forest that the volume belongs to.
-@param disparity CV_16UC1, the winners of the volume.
-@param volume The costs, to which those are added.
+@param volume The costs.
+@param disparity CV_16UC1, the winners of the volume, of which those of planes are replaced.
 @return Number of trees that have a plane. */
-CV_EXPORTS int preferTreePlanes(const DisparityForest& forest, const Mat& disparity, CostVolume& volume);
+CV_EXPORTS int takeTreePlanes(const DisparityForest& forest, const CostVolume& volume, Mat& disparity);
 
 }}} // namespace cv::stereo::hdp
 

@@ -132,13 +132,14 @@ private:
     template <bool sums, int blocks>
     void upward(const Range& steps, uchar* const* stored, Block::Carried* carried) const
     {
+        const Block a = blocks_[0], b = blocks_[1];
         Block::Carried first = carried[0], second = carried[1];
         for (int t = steps.start; t < steps.end; ++t)
         {
             if (blocks == 1 || t < steps_)
-                blocks_[0].upward<sums>(t, first, stored[0]);
+                a.upward<sums>(t, first, stored[0]);
             if (blocks == 2 && t >= behind)
-                blocks_[1].upward<sums>(t - behind, second, stored[1]);
+                b.upward<sums>(t - behind, second, stored[1]);
         }
         carried[0] = first;
         carried[1] = second;
@@ -147,13 +148,15 @@ private:
     template <bool takesWinners, int blocks> void downward(int y)
     {
         const uchar *const first = storedOf(y), *const second = storedOf(y + groups);
+        const Block a = blocks_[0], b = blocks_[1];
+        const int steps = steps_;
         Block::Carried ofFirst, ofSecond;
-        for (int t = steps_ - 1; t >= -(blocks - 1) * behind; --t)
+        for (int t = steps - 1; t >= -(blocks - 1) * behind; --t)
         {
             if (blocks == 1 || t >= 0)
-                blocks_[0].downward<takesWinners>(t, ofFirst, first);
-            if (blocks == 2 && t + behind < steps_)
-                blocks_[1].downward<takesWinners>(t + behind, ofSecond, second);
+                a.downward<takesWinners>(t, ofFirst, first);
+            if (blocks == 2 && t + behind < steps)
+                b.downward<takesWinners>(t + behind, ofSecond, second);
         }
     }
 
