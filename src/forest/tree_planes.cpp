@@ -14,14 +14,13 @@ namespace {
 HDP_TUNABLE(
     int, samples, 300, "pixels",
     "of a tree that gets a plane, about: more cost time and find the same plane, what fewer say is mostly noise");
-HDP_TUNABLE(int, triples, 32, "planes", "that are tried: four of them are right if half of the samples are");
+HDP_TUNABLE(int, triples, 60, "planes", "that are tried: seven of them are right if half of the samples are");
 HDP_TUNABLE(double, tiltCost, 0.2, "cost per disparity",
             "between the ends of the tree: of two planes, the flatter one");
 HDP_TUNABLE(int, fits, 4, "fits", "to the disparities near the plane: then these are the same as before");
 HDP_TUNABLE(double, fitDistance, 1.5, "disparities", "from the plane: what is farther off is another surface");
 HDP_TUNABLE(double, minShare, 0.5, "share of the samples", "on the plane: a tree of several surfaces gets none");
-HDP_TUNABLE(double, maxRise, 4, "cost",
-            "of the mean over the tree, half a bit: the costs are against a plane that has more");
+HDP_TUNABLE(double, maxRise, 4.5, "cost", "of the mean over the tree: the costs are against a plane that has more");
 
 //! d = coefficients . (1, x, y)
 typedef Vec3d Plane;
