@@ -201,8 +201,8 @@ private:
     mutable std::vector<int> at_; // memory of costsOf()
 };
 
-//! Gives the pixels of a tree the disparities of its plane, but for those whose costs contradict it. Those that have its
-//! candidates keep their own fractions.
+//! Gives the pixels of a tree the disparities of its plane, but for those whose costs contradict it. Those that have
+//! its candidates keep their own fractions.
 void put(const Plane& plane, const int* pixels, const DisparityTree& tree, const CostVolume& volume, Mat& disparity)
 {
     const double rowsPerPixel = 1. / volume.size.width;

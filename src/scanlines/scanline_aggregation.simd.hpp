@@ -91,7 +91,7 @@ private:
         STORE_COSTS //!< none
     };
 
-    static int countBlocks(int rows) { return rows > groups ? 2 : 1; }
+    static int countBlocks(int rows) { return rows > groups ? +ScanlineScratch::blocks : 1; }
 
     //! Blocks from that at row y up to that at row last; returns the row of the next one.
     int upward(int y, int last, Task task)
@@ -99,7 +99,7 @@ private:
         while (y >= last)
         {
             const int blocks = countBlocks(y + groups - last);
-            uchar* stored[2];
+            uchar* stored[ScanlineScratch::blocks];
             for (int i = 0; i < blocks; ++i)
             {
                 enter(i, y - i * groups);
@@ -117,7 +117,7 @@ private:
         static const Method methods[][2] = { { &Sweep::upward<false, 1>, &Sweep::upward<false, 2> },
                                              { &Sweep::upward<true, 1>, &Sweep::upward<true, 2> } };
         const int end = steps_ + (blocks - 1) * behind;
-        Block::Carried h[2];
+        Block::Carried h[ScanlineScratch::blocks];
         for (int t = 0; t < end; t += chunk)
         {
             const Range steps(t, std::min(t + chunk, end));
@@ -185,8 +185,8 @@ private:
     const Range rows_, reach_;
     const int steps_; // of a block
     uchar* const stored_;
-    ScanlineWindows tables_[2];
-    ScanlineBlock blocks_[2];
+    ScanlineWindows tables_[ScanlineScratch::blocks];
+    ScanlineBlock blocks_[ScanlineScratch::blocks];
     const CandidateWindow* windows_; // of the row of the upper layer that was entered last
     int upperRow_, enteredTables_;   // that row, and its tables
 };

@@ -56,7 +56,8 @@ public:
     //! vertical: H of the row before the block, from column 0 on
     ScanlineBlock(const ScanlineProblem& problem, bool isUpward, uchar* vertical, ScanlineScratch::Block& scratch)
         : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), costs_(*problem.cost, width_),
-          vertical_(vertical), tables_(nullptr), small_(nullptr), intoSide_(nullptr), intoNext_(nullptr), entersUpperRow_(false), isUpward_(isUpward)
+          vertical_(vertical), tables_(nullptr), small_(nullptr), intoSide_(nullptr), intoNext_(nullptr),
+          entersUpperRow_(false), isUpward_(isUpward)
     {
         for (int r = 0; r < groups; ++r)
         {
@@ -75,9 +76,9 @@ public:
     void enter(int y, const ScanlineWindows& tables, bool entersUpperRow)
     {
         tables_ = &tables;
-        small_ = tables.small(0);
-        intoSide_ = tables.intoSide(0);
-        intoNext_ = tables.intoNext(0);
+        small_ = tables.small();
+        intoSide_ = tables.intoSide();
+        intoNext_ = tables.intoNext();
         entersUpperRow_ = entersUpperRow;
         const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
         for (int r = 0; r < groups; ++r)
@@ -112,7 +113,7 @@ public:
         const ByteLanes toRight[2] = { largePenalty<2>(t), largePenalty<4>(t) };
         const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
         if (sums)
-            h.side = h.side.permute(ByteLanes::load(intoSide_ - (ptrdiff_t)t * Window::candidates));
+            h.side = h.side.permute(ByteLanes::load(ScanlineWindows::ofStep(intoSide_, t)));
         for (int column = 0; column < 2; ++column)
         {
             uchar* const costs = stored + storedAt(t, column);
@@ -132,7 +133,7 @@ public:
         const ByteLanes toLeft[2] = { largePenalty<0>(t), largePenalty<2>(t) };
         const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
         if (takesWinners)
-            h.side = h.side.permute(ByteLanes::load(intoSide_ - (ptrdiff_t)t * Window::candidates));
+            h.side = h.side.permute(ByteLanes::load(ScanlineWindows::ofStep(intoSide_, t)));
         for (int column = 1; column >= 0; --column)
         {
             const uchar* const costs = stored + storedAt(t, column);
@@ -236,7 +237,7 @@ private:
     {
         before = ByteLanes::shiftInFirst(verticalAt(0, t, column), before);
         if (entersUpperRow_) // only the row that the block begins with may
-            before = before.permute(ByteLanes::first(intoNext_ - (ptrdiff_t)t * Window::candidates));
+            before = before.permute(ByteLanes::first(ScanlineWindows::ofStep(intoNext_, t)));
         const ByteLanes direction = advance(before, cost, small, large);
         before.storeLast(verticalAt(groups - 1, t, column));
         return direction;
@@ -248,7 +249,7 @@ private:
     {
         before = ByteLanes::shiftInLast(before, verticalAt(groups - 1, t, column));
         if (entersUpperRow_)
-            before = before.permute(ByteLanes::last(intoNext_ - (ptrdiff_t)(t - groups + 1) * Window::candidates));
+            before = before.permute(ByteLanes::last(ScanlineWindows::ofStep(intoNext_, t - groups + 1)));
         const ByteLanes direction = advance(before, cost, small, large);
         before.storeFirst(verticalAt(0, t, column));
         return direction;
@@ -314,7 +315,7 @@ private:
     unsigned* sums_[groups];
     const ScanlineWindows* tables_;
     const uchar *small_, *intoSide_, *intoNext_; // of the first step
-    bool entersUpperRow_; // whether tables_ are not those of the block before
+    bool entersUpperRow_;                        // whether tables_ are not those of the block before
     const bool isUpward_;
 };
 

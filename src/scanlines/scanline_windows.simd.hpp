@@ -86,13 +86,18 @@ public:
     //! By column of the layer
     EdgePenalties edgePenalties() const { return { slopes_, large_, least_ }; }
     //! The small penalty, by column of the layer above
-    const uchar* small(int column) const { return small_ + column; }
+    const uchar* small() const { return small_; }
     //! With ScanlinePenalties::max, which is a part of all costs in a sweep
     const uchar* prior(int step) const { return ofStep(priors_, step); }
     //! Orders of lanes, 255 for candidates that the window before does not have: from the left in a sweep upward, from
-    //! the right in one downward, and from the row before
-    const uchar* intoSide(int step) const { return ofStep(intoSide_, step); }
-    const uchar* intoNext(int step) const { return ofStep(intoNext_, step); }
+    //! the right in one downward, and from the row before. Of the first step; see ofStep().
+    const uchar* intoSide() const { return intoSide_; }
+    const uchar* intoNext() const { return intoNext_; }
+    //! What is stored for the pixels of the layer above lies from right to left, as in the groups of a step.
+    static CV_ALWAYS_INLINE const uchar* ofStep(const uchar* firstStep, int step)
+    {
+        return firstStep - (ptrdiff_t)step * Window::candidates;
+    }
 
 private:
     enum
@@ -262,14 +267,9 @@ private:
         });
     }
 
-    //! What is stored for the pixels of the layer above lies from right to left, as in the groups of a step.
     uchar* firstStep(std::vector<uchar>& stored) const
     {
         return stored.data() + (ptrdiff_t)(pairs_ - 1 + margin) * Window::candidates;
-    }
-    static const uchar* ofStep(const uchar* firstStep, int step)
-    {
-        return firstStep - (ptrdiff_t)step * Window::candidates;
     }
 
     const ScanlineProblem& p_;
