@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "files.hpp"
 #include "options.hpp"
+#include "windows.hpp"
 
 #include <climits>
 #include <cmath>
@@ -124,12 +125,7 @@ MaskFiles::MaskFiles(const CommandLineParser& parser)
 
 void MaskFiles::apply(const Mat& ofLeft, const Mat& ofRight, HDPTreeMatcher& matcher) const
 {
-    const auto both = [](const Mat& given, const Mat& ofFile) {
-        if (given.empty())
-            return ofFile;
-        return ofFile.size() == given.size() ? Mat(given & ofFile) : given; // compute() checks their size
-    };
-    matcher.setMasks(both(left_, ofLeft), both(right_, ofRight));
+    matcher.setMasks(joinMasks(left_, ofLeft), joinMasks(right_, ofRight));
 }
 
 Mat inPixels(const Mat& disparity16, int minDisparity)

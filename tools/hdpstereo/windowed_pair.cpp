@@ -61,8 +61,7 @@ void WindowedPair::readSide(const File& image, const File& maskFile, const Rect&
     Mat unused, given = maskFile.windows->read(part, unused);
     if (given.channels() > 1)
         cvtColor(given, given, COLOR_BGR2GRAY);
-    given = given != 0;
-    mask = mask.empty() ? given : Mat(mask & given);
+    mask = joinMasks(given != 0, mask);
 }
 
 PairPart WindowedPair::read(const Rect& part) const

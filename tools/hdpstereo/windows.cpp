@@ -262,6 +262,13 @@ Ptr<ImageWindows> openImage(const String& path)
     return makePtr<WholeImage>(path, noData);
 }
 
+Mat joinMasks(const Mat& given, const Mat& ofFile)
+{
+    if (given.empty())
+        return ofFile;
+    return given.size() == ofFile.size() ? Mat(given & ofFile) : given;
+}
+
 Mat readPicture(const String& path, Mat& mask)
 {
     const Ptr<ImageWindows> image = openImage(path);

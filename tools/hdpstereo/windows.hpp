@@ -28,6 +28,10 @@ public:
 //! images are read whole.
 cv::Ptr<ImageWindows> openImage(const cv::String& path);
 
+//! Which pixels have data by a mask that was given and by that of the image's file; either may be empty. The given one
+//! if their sizes differ: compute() refuses it.
+cv::Mat joinMasks(const cv::Mat& given, const cv::Mat& ofFile);
+
 //! The whole of an image, and its mask, see ImageWindows::read()
 cv::Mat readPicture(const cv::String& path, cv::Mat& mask);
 
