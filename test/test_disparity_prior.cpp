@@ -30,6 +30,7 @@ TEST(HDPStereo_SlowDisparityPrior, is_believed_as_far_as_the_images_do_not_contr
     for (const System& preset : presetsWithPrior)
     {
         double none = 0, good = 0, some = 0, bad = 0, off = 0;
+        const bool isHalf = createSystem(preset, 64)->getParams().finestLayer == 1;
         for (int seed = 1; seed <= 6; ++seed)
         {
             const SyntheticPair pair = makeSyntheticPair(all.size(), 64, seed);
@@ -48,7 +49,8 @@ TEST(HDPStereo_SlowDisparityPrior, is_believed_as_far_as_the_images_do_not_contr
             matcher->setPriorDisparity(prior, 0.5);
             off += errors();
         }
-        EXPECT_LT(good, 0.95 * none) << preset.name; // 0.91 with ULTRAFAST, whose errors are mostly at borders
+        // 0.79, 0.81, 0.86, and 0.912 with ULTRAFAST, at half the resolution
+        EXPECT_LT(good, (isHalf ? 0.92 : 0.9) * none) << preset.name;
         EXPECT_LT(some, none) << preset.name;
         EXPECT_LE(bad, 1.05 * none) << preset.name;
         EXPECT_LE(off, 1.1 * none) << preset.name << ", half of the image";
