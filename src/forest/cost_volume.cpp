@@ -25,14 +25,17 @@ void CostVolume::create(const DisparityForest& forest)
     uniform_ = forest.trees[0].interval;
     isUniform = !uniform_.empty();
     size_t rowsOfTrees = 0;
+    int most = 0;
     for (const DisparityTree& tree : forest.trees)
     {
+        most = std::max(most, rowsOf(tree.interval));
         rowsOfTrees += (size_t)tree.size * rowsOf(tree.interval);
         if (!tree.interval.empty())
             numDisparities = std::max(numDisparities, tree.interval.last + 1);
         isUniform &= tree.interval.first == uniform_.first && tree.interval.last == uniform_.last;
     }
-    usualRows_ = (int)(rowsOfTrees / size.area());
+    const int mean = (int)(rowsOfTrees / size.area());
+    usualRows_ = most <= 2 * mean ? most : mean;
     rows = (size_t)size.area() * usualRows_;
     firsts_.clear();
     size_t first = isUniform ? 0 : rows;
@@ -98,11 +101,16 @@ void excludeCandidates(const Mat& intervals, CostVolume& volume)
         {
             const DisparityInterval& own = intervals.ptr<DisparityInterval>(y)[x];
             const CostVolume::Candidates all = volume.of(y * volume.size.width + x);
-            uchar* const costs = volume.costs.data() + all.start();
-            const int count = all.interval.size(), before = clamped(own.first - all.interval.first, 0, count),
-                      end = clamped(own.last + 1 - all.interval.first, 0, count);
-            std::fill(costs, costs + before, (uchar)UCHAR_MAX);
-            std::fill(costs + end, costs + count, (uchar)UCHAR_MAX);
+            uchar* costs = volume.costs.data() + all.start();
+            int before = own.first - all.interval.first, end = own.last + 1 - all.interval.first;
+            for (int r = 0; r < all.rows(); ++r, before -= CostVolume::row, end -= CostVolume::row)
+            {
+                const uchar first = (uchar)clamped(before, 0, +CostVolume::row),
+                            behind = (uchar)clamped(end, 0, +CostVolume::row);
+                HDP_VECTORIZED for (uchar k = 0; k < CostVolume::row; ++k) costs[k] |=
+                    (uchar)(k < first || k >= behind ? UCHAR_MAX : 0);
+                costs += CostVolume::row;
+            }
         }
     });
 }

@@ -62,7 +62,7 @@ struct CV_EXPORTS CostVolume
 private:
     DisparityInterval uniform_; // the candidates of all pixels
     // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in
-    // the order of the trees.
+    // the order of the trees, where scanlines wait for them: all are usual if that takes at most twice the memory.
     int usualRows_ = 0;
     std::vector<unsigned> firsts_; // by tree: rows of the others, or pixels
     std::vector<int> pixels_;      // in the order of the trees, if all have the same candidates
