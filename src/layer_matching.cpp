@@ -98,8 +98,7 @@ private:
             left.convertTo(left, CV_8U, 1. / greyScale);
             right.convertTo(right, CV_8U, 1. / greyScale);
         }
-        findSupportPoints(left, right, candidateIntervals(), plan_.numDisparities, shared_.supportPointBuffers,
-                          shared_.supportPoints);
+        findSupportPoints(left, right, plan_.numDisparities, shared_.supportPointBuffers, shared_.supportPoints);
         disparityHistogram(shared_.supportPoints, plan_.numDisparities, result_.prior);
     }
 

@@ -183,9 +183,7 @@ private:
 class SupportPoints
 {
 public:
-    //! intervals: CV_16UC2, the first and the last disparity of each pixel that is compared; empty: all are
-    SupportPoints(const Mat& left, const Mat& right, int numDisparities, const Mat& intervals = Mat())
-        : intervals_(intervals), numDisparities_(numDisparities)
+    SupportPoints(const Mat& left, const Mat& right, int numDisparities) : numDisparities_(numDisparities)
     {
         grey_[0] = grey(left);
         grey_[1] = grey(right);
@@ -199,17 +197,10 @@ public:
         for (int i = 0; i < grid.rows; ++i)
             for (int j = 0; j < grid.cols; ++j)
             {
-                int first = 0, last = numDisparities_ - 1;
-                if (!intervals_.empty())
-                {
-                    const Vec2w own = intervals_.at<Vec2w>(4 * i, 4 * j);
-                    first = std::max(own[0] - std::max(11 - (own[1] - own[0] + 1), 0) / 2, 0);
-                    last = std::min(std::max<int>(own[1], first + 10), numDisparities_ - 1);
-                }
-                const int d = bestDisparity(0, 4 * j, 4 * i, first, last);
+                const int d = bestDisparity(0, 4 * j, 4 * i);
                 if (d < 0)
                     continue;
-                const int back = bestDisparity(1, 4 * j - d, 4 * i, first, last);
+                const int back = bestDisparity(1, 4 * j - d, 4 * i);
                 if (back >= 0 && std::abs(d - back) <= 2)
                     grid.at<short>(i, j) = (short)d;
             }
@@ -274,7 +265,7 @@ private:
     }
 
     //! The disparity of a point of the left (view 0) or right image, -1 if it is rejected.
-    int bestDisparity(int view, int u, int v, int first, int last) const
+    int bestDisparity(int view, int u, int v) const
     {
         const int rows = grey_[0].rows, cols = grey_[0].cols;
         if (u < 5 || u > cols - 6 || v < 5 || v > rows - 6)
@@ -283,12 +274,12 @@ private:
         const std::vector<int> own = descriptor(view, u, v);
         for (int i = 0; i < 16; ++i)
             texture += std::abs(own[i] - 128);
-        const int largest = std::min(last, view == 0 ? u - 5 : cols - u - 6);
-        if (texture < 10 || largest - first < 10)
+        const int largest = std::min(numDisparities_ - 1, view == 0 ? u - 5 : cols - u - 6);
+        if (texture < 10 || largest < 10)
             return -1;
 
         int best = INT_MAX, second = INT_MAX, bestDisparity = -1;
-        for (int d = first; d <= largest; ++d)
+        for (int d = 0; d <= largest; ++d)
         {
             const int e = view == 0 ? dissimilarity(u, u - d, v) : dissimilarity(u + d, u, v);
             if (e < best)
@@ -302,7 +293,7 @@ private:
         return second < INT_MAX && (float)best < 0.95f * (float)second ? bestDisparity : -1;
     }
 
-    Mat grey_[2], intervals_;
+    Mat grey_[2];
     int numDisparities_;
 };
 

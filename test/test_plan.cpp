@@ -226,7 +226,14 @@ TEST(HDPStereo_Plan, ranges_of_all_pixels)
 TEST(HDPStereo_Plan, inputs)
 {
     hdp::PairInputs ranges, prior, masks;
-    ranges.smallest = ranges.largest = Mat(1, 1, CV_16S, Scalar(3));
+    const float unlimited = std::numeric_limits<float>::quiet_NaN();
+    // All pixels but one may have all disparities.
+    const auto limitOne = [&ranges, unlimited](float smallest, float largest) {
+        Mat first(2, 3, CV_32F, Scalar(unlimited)), last = first.clone();
+        first.at<float>(1, 2) = smallest;
+        last.at<float>(1, 2) = largest;
+        hdp::setRange(first, last, ranges);
+    };
     prior.prior = prior.sigma = Mat(imageSize, CV_32F, Scalar(3));
     masks.leftMask = Mat(imageSize, CV_8U, Scalar(0));
     for (int preset = M::PRESET_PAPER; preset <= M::PRESET_TREE; ++preset)
@@ -235,10 +242,20 @@ TEST(HDPStereo_Plan, inputs)
         MatcherParameters p = parametersOf(preset);
         const std::string without = planText(p);
         EXPECT_EQ(without, textOf(hdp::plan(p, imageSize, CV_8UC3, PairModel(), masks))) << "masks are no decision";
+        for (float beyond : { 0.f, 1000.f, unlimited })
+        {
+            limitOne(-beyond, 127 + beyond);
+            EXPECT_EQ(without, textOf(hdp::plan(p, imageSize, CV_8UC3, PairModel(), ranges))) << "that limit nothing";
+        }
+        limitOne(unlimited, 126);
+        EXPECT_TRUE(hdp::plan(p, imageSize, CV_8UC3, PairModel(), ranges).hasRanges);
+        limitOne(1, unlimited);
         const PairPlan withRanges = hdp::plan(p, imageSize, CV_8UC3, PairModel(), ranges);
         EXPECT_TRUE(withRanges.hasRanges);
         EXPECT_FALSE(withRanges.hasPrior);
         EXPECT_NE(without, textOf(withRanges));
+        for (const hdp::LayerPlan& layer : withRanges.layers)
+            EXPECT_NE(hdp::SUPPORT_POINTS, layer.trees.prior);
         if (p.matchingCost != M::COST_CENSUS)
         {
             expectRejected([&] { hdp::plan(p, imageSize, CV_8UC3, PairModel(), prior); }, "setPriorDisparity()");

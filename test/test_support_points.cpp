@@ -9,13 +9,13 @@
 
 namespace opencv_test { namespace {
 
-void testSupportPoints(const Mat& left, const Mat& right, int numDisparities, int atLeast, const Mat& intervals = Mat())
+void testSupportPoints(const Mat& left, const Mat& right, int numDisparities, int atLeast)
 {
     SCOPED_TRACE(testing::Message() << left.size() << ", " << numDisparities << " disparities");
     hdp::SupportPointBuffers buffers;
     Mat points;
-    hdp::findSupportPoints(left, right, intervals, numDisparities, buffers, points);
-    const Mat expected = oracle::SupportPoints(left, right, numDisparities, intervals).find();
+    hdp::findSupportPoints(left, right, numDisparities, buffers, points);
+    const Mat expected = oracle::SupportPoints(left, right, numDisparities).find();
     expectIdentical(expected, points);
     EXPECT_GE(cv::countNonZero(expected >= 0), atLeast) << "the test is empty";
 }
@@ -33,22 +33,6 @@ TEST(HDPStereo_SupportPoints, direct_search_in_noise)
     testSupportPoints(randomImage(rng, Size(70, 61), CV_8UC1), randomImage(rng, Size(70, 61), CV_8UC1), 40, 0);
     // Few levels: many equal dissimilarities, little texture
     testSupportPoints(randomImage(rng, Size(72, 60), CV_8UC1, 3), randomImage(rng, Size(72, 60), CV_8UC1, 3), 16, 0);
-}
-
-TEST(HDPStereo_SupportPoints, within_the_intervals_of_pixels)
-{
-    const SyntheticPair pair = makeSyntheticPair(Size(131, 90), 24, 1);
-    RNG rng(5);
-    for (int largest : { 1, 12, 24 })
-    {
-        Mat intervals(pair.left.size(), CV_16UC2);
-        for (Vec2w& interval : Mat_<Vec2w>(intervals))
-        {
-            interval[0] = (ushort)rng.uniform(0, 24);
-            interval[1] = (ushort)std::min(interval[0] + rng.uniform(0, largest), 23);
-        }
-        testSupportPoints(pair.left, pair.right, 24, 20, intervals);
-    }
 }
 
 TEST(HDPStereo_SupportPoints, more_disparities_than_columns)
@@ -82,7 +66,7 @@ TEST(HDPStereo_SupportPoints, buffers_serve_pairs_of_any_size)
     {
         const SyntheticPair pair = makeSyntheticPair(size, 16, 4);
         Mat points;
-        hdp::findSupportPoints(pair.left, pair.right, Mat(), 16, buffers, points);
+        hdp::findSupportPoints(pair.left, pair.right, 16, buffers, points);
         expectIdentical(oracle::SupportPoints(pair.left, pair.right, 16).find(), points);
     }
 }

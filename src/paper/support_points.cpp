@@ -65,42 +65,31 @@ void describe(const Mat& grey, SupportPointBuffers& buffers, Mat& descriptors)
 class PointMatcher
 {
 public:
-    PointMatcher(const Mat (&descriptors)[2], Size size, const Mat& intervals, int numDisparities)
-        : descriptors_(descriptors), size_(size), intervals_(intervals), numDisparities_(numDisparities)
+    PointMatcher(const Mat (&descriptors)[2], Size size, int numDisparities)
+        : descriptors_(descriptors), size_(size), numDisparities_(numDisparities)
     {
     }
 
     //! The disparity of a point of the left image whose match is unique and leads back to it, or -1
     int match(int x, int y) const
     {
-        const Range candidates = candidatesOf(x, y);
-        const int disparity = bestDisparity(0, x, y, candidates);
+        const int disparity = bestDisparity(0, x, y);
         if (disparity < 0)
             return -1;
-        const int back = bestDisparity(1, x - disparity, y, candidates);
+        const int back = bestDisparity(1, x - disparity, y);
         return back >= 0 && std::abs(back - disparity) <= maxLeftRightDifference ? disparity : -1;
     }
 
 private:
     const uchar* descriptor(int side, int x, int y) const { return descriptors_[side].ptr(y / 2) + x * descriptorSize; }
 
-    //! From the first one to before the end; of a pixel with few, so many beside them that a match tells something
-    Range candidatesOf(int x, int y) const
-    {
-        if (intervals_.empty())
-            return Range(0, numDisparities_);
-        const DisparityInterval own = intervals_.ptr<DisparityInterval>(y)[x];
-        const int missing = std::max(minRange + 1 - own.size(), 0), first = std::max(own.first - missing / 2, 0);
-        return Range(first, std::min(std::max(own.last + 1, first + minRange + 1), numDisparities_));
-    }
-
     //! The disparity of a point of the left (side 0) or right image, or -1 if it has no unique match
-    int bestDisparity(int side, int x, int y, const Range& candidates) const
+    int bestDisparity(int side, int x, int y) const
     {
         if (x < margin || x >= size_.width - margin || y < margin || y >= size_.height - margin)
             return -1;
-        const int last = std::min(candidates.end - 1, side == 0 ? x - margin : size_.width - 1 - margin - x);
-        if (last - candidates.start < minRange || !hasTexture(descriptor(side, x, y)))
+        const int last = std::min(numDisparities_ - 1, side == 0 ? x - margin : size_.width - 1 - margin - x);
+        if (last < minRange || !hasTexture(descriptor(side, x, y)))
             return -1;
         const uchar *own[4], *others[4];
         for (int i = 0; i < 4; ++i)
@@ -111,7 +100,7 @@ private:
         }
         const ptrdiff_t next = side == 0 ? -descriptorSize : descriptorSize;
         int lowest = INT_MAX, second = INT_MAX, best = -1; // second: of those that were not the lowest so far
-        for (int d = candidates.start; d <= last; ++d)
+        for (int d = 0; d <= last; ++d)
         {
             int sum = 0;
             for (int i = 0; i < 4; ++i)
@@ -134,7 +123,6 @@ private:
 
     const Mat (&descriptors_)[2];
     Size size_;
-    Mat intervals_;
     int numDisparities_;
 };
 
@@ -154,8 +142,7 @@ bool isSupported(const Mat& matches, int y, int x)
 
 } // namespace
 
-void findSupportPoints(const Mat& left, const Mat& right, const Mat& intervals, int numDisparities,
-                       SupportPointBuffers& buffers, Mat& points)
+void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, SupportPointBuffers& buffers, Mat& points)
 {
     const Mat images[] = { left, right };
     for (int side = 0; side < 2; ++side)
@@ -164,7 +151,7 @@ void findSupportPoints(const Mat& left, const Mat& right, const Mat& intervals, 
             cvtColor(images[side], buffers.grey, COLOR_BGR2GRAY);
         describe(left.channels() == 3 ? buffers.grey : images[side], buffers, buffers.descriptors[side]);
     }
-    const PointMatcher matcher(buffers.descriptors, left.size(), intervals, numDisparities);
+    const PointMatcher matcher(buffers.descriptors, left.size(), numDisparities);
     Mat& matches = buffers.matches;
     matches.create((left.rows + spacing - 1) / spacing, (left.cols + spacing - 1) / spacing, CV_16S);
     points.create(matches.size(), CV_16S);

@@ -25,13 +25,11 @@ among them) differ from it by at most 4.
 The authors' program has them instead of the paper's grid of 5 x 5 pixels; it counts those of the right image, too.
 @param left CV_8UC1 or CV_8UC3.
 @param right Of the same size and type.
-@param intervals A DisparityInterval per pixel of the left image, whose disparities are compared, and some beside them
-where they are few; empty: disparities 0 .. numDisparities - 1 are.
-@param numDisparities Their number in all.
+@param numDisparities Disparities 0 .. numDisparities - 1 are compared.
 @param buffers Memory to work in.
 @param points Receives CV_16SC1 of ceil(rows / 4) x ceil(cols / 4), the disparity at (4 y, 4 x) or -1. */
-CV_EXPORTS void findSupportPoints(const Mat& left, const Mat& right, const Mat& intervals, int numDisparities,
-                                  SupportPointBuffers& buffers, Mat& points);
+CV_EXPORTS void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, SupportPointBuffers& buffers,
+                                  Mat& points);
 
 //! P(D_l) (section 3.1) up to a factor: how many points have each disparity. Uniform if there is none.
 //! (The authors' program leaves out disparity 0, which is "unknown" there: the smallest one is then never predicted.)

@@ -26,6 +26,13 @@ Mat toMask(InputArray array, const char* name)
     return mask.clone();
 }
 
+Mat withoutNaN(const Mat& map, float value)
+{
+    Mat numbers = map.clone();
+    patchNaNs(numbers, value);
+    return numbers;
+}
+
 void checkSize(const Mat& input, Size size, const char* name)
 {
     if (!input.empty() && input.size() != size)
@@ -59,6 +66,11 @@ void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inp
                         -limit, beyond));
     smallest.convertTo(inputs.smallest, CV_32F);
     largest.convertTo(inputs.largest, CV_32F);
+    if (inputs.hasRanges())
+    {
+        minMaxLoc(withoutNaN(inputs.smallest, -FLT_MAX), nullptr, &inputs.highestSmallest);
+        minMaxLoc(withoutNaN(inputs.largest, FLT_MAX), &inputs.lowestLargest);
+    }
     ++inputs.changes;
 }
 
@@ -123,7 +135,7 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
     buildIntervals(known.ranges, first, output.extension, counts, known.units, known.intervals);
     known.hulls.resize(known.intervals.size());
     known.candidates.resize(known.intervals.size());
-    if (inputs.hasRanges())
+    if (plan.hasRanges)
         for (const LayerPlan& layer : plan.layers)
         {
             const Mat& intervals = known.intervals[layer.layer];

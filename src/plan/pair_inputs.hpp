@@ -14,13 +14,19 @@ struct PairPlan;
 //! What is known of the pairs beforehand. It is no parameter: files do not have it.
 struct PairInputs
 {
-    Mat leftMask, rightMask; // CV_8UC1, 0 where there is no data; empty: there is everywhere
-    Mat smallest, largest;   // CV_32FC1, disparities of the pixels; empty: there are no ranges
-    Mat prior, sigma;        // CV_32FC1, disparities that are about known; empty: none are
-    int changes = 0;         // of the ranges or of the prior
+    Mat leftMask, rightMask;                       // CV_8UC1, 0 where there is no data; empty: there is everywhere
+    Mat smallest, largest;                         // CV_32FC1, disparities of the pixels; empty: there are no ranges
+    Mat prior, sigma;                              // CV_32FC1, disparities that are about known; empty: none are
+    double highestSmallest = 0, lowestLargest = 0; // of the ranges
+    int changes = 0;                               // of the ranges or of the prior
 
     bool hasMasks() const { return !leftMask.empty() || !rightMask.empty(); }
     bool hasRanges() const { return !smallest.empty(); }
+    //! Whether a pixel may not have all of these disparities
+    bool limit(const Range& disparities) const
+    {
+        return hasRanges() && (highestSmallest > disparities.start || lowestLargest < disparities.end - 1);
+    }
     bool hasPrior() const { return !prior.empty(); }
 };
 

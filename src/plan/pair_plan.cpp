@@ -307,6 +307,9 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     if (!p.usePrediction) // there are no layers, and the plain tree algorithm matches the image
         p.aggregation = M::AGGREGATION_TREES;
     checkCombinations(p, size, inputs.hasPrior());
+    plan.hasRanges = inputs.limit(Range(p.minDisparity, p.minDisparity + p.numDisparities));
+    if (plan.hasRanges) // the layer above was matched within them, and support points take as long as without
+        p.disparityPrior = M::PRIOR_UPPER_LAYER;
     plan.size = size;
     plan.treeStrategy = p.treeStrategy;
     // A tile is matched as the image that it is a part of.
@@ -320,7 +323,6 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     plan.pyramids = { p.minDisparity, extension, layers, p.matchingCost == M::COST_CENSUS, p.noiseThreshold > 0 };
     plan.alignment = { p.numDisparities, p.maxRowOffset, p.useLightAlignment, p.noiseThreshold, finest };
     plan.given = toGivenPair(model, plan.pyramids, size);
-    plan.hasRanges = inputs.hasRanges();
     plan.hasPrior = inputs.hasPrior();
     plan.followsVideo = p.useTemporalPrediction;
     for (int layer = layers - 1; layer >= finest; --layer)

@@ -335,7 +335,8 @@ public:
         /** @brief Source of P(D_l) (section 3.1), one of HDPTreeMatcher::DisparityPrior.
 
         The support points of @cite Geiger2010ELAS take time and miss the disparities of textureless surfaces; the upper
-        layer costs nothing. TREE: PRIOR_UPPER_LAYER, others: PRIOR_SUPPORT_POINTS. */
+        layer costs nothing, and is what counts with setDisparityRange(). TREE: PRIOR_UPPER_LAYER, others:
+        PRIOR_SUPPORT_POINTS. */
         CV_PROP_RW int disparityPrior;
 
         /** @brief Threshold \f$\delta_0\f$ that ends the growth of a predicted interval (section 3.1).
