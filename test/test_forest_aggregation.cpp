@@ -248,7 +248,7 @@ void expectMeans(const CensusLayer& layer, double gamma, hdp::AggregationBuffers
     const hdp::TwoLayerCost cost(layer.census, nullptr);
     hdp::aggregateMeans(layer.forest, cost, gamma, buffers, volume);
     ASSERT_EQ(layer.left.size(), volume.size);
-    std::vector<char> isTaken(volume.rows);
+    std::vector<char> isTaken(volume.chunks);
     hdp::TreeWalk walk;
     for (const hdp::DisparityTree& tree : layer.forest.trees)
     {
@@ -266,11 +266,11 @@ void expectMeans(const CensusLayer& layer, double gamma, hdp::AggregationBuffers
             ASSERT_EQ(interval.first, own.interval.first) << "pixel " << p;
             ASSERT_EQ(interval.last, own.interval.last) << "pixel " << p;
             ASSERT_LT(interval.last, volume.numDisparities);
-            for (int row = 0; row < own.rows(); ++row)
+            for (int row = 0; row < own.chunks(); ++row)
             {
-                ASSERT_LT(own.firstRow + row, volume.rows);
-                ASSERT_FALSE(isTaken[own.firstRow + row]) << "pixel " << p;
-                isTaken[own.firstRow + row] = true;
+                ASSERT_LT(own.firstChunk + row, volume.chunks);
+                ASSERT_FALSE(isTaken[own.firstChunk + row]) << "pixel " << p;
+                isTaken[own.firstChunk + row] = true;
             }
             const uchar* means = volume.costs.data() + own.start();
             for (int k = 0; k < interval.size(); ++k)

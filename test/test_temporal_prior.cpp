@@ -20,8 +20,8 @@ CostVolume flatVolume(Size size)
     CostVolume volume;
     volume.size = size;
     volume.numDisparities = candidates;
-    volume.rows = 2 * size.area();
-    volume.costs.assign(volume.rows * CostVolume::row, (uchar)flatCost);
+    volume.chunks = 2 * size.area();
+    volume.costs.assign(volume.chunks * CostVolume::chunk, (uchar)flatCost);
     for (int i = 0; i < size.area(); ++i)
     {
         const CostVolume::Candidates own = { 2u * i, { 0, candidates - 1 } };
@@ -188,8 +188,8 @@ TEST(HDPStereo_CostVolume, prefer)
     {
         const int rise = std::min(cvRound(CostVolume::scale * std::abs(k - 7.25)), largest);
         EXPECT_EQ(flatCost + rise, costsOf(0)[k]);
-        EXPECT_EQ(before[2 * CostVolume::row + k], costsOf(1)[k]) << "of a pixel without candidates";
-        EXPECT_EQ(std::min(before[4 * CostVolume::row + k] + rise, 255), costsOf(2)[k]);
+        EXPECT_EQ(before[2 * CostVolume::chunk + k], costsOf(1)[k]) << "of a pixel without candidates";
+        EXPECT_EQ(std::min(before[4 * CostVolume::chunk + k] + rise, 255), costsOf(2)[k]);
     }
     preferDisparity(0, 1e6, largest, volume); // beyond the candidates, whose costs all rise by as much
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[0]);
@@ -209,8 +209,8 @@ TEST(HDPStereo_CostVolume, prefer_of_many)
     const float disparity = 8123.25f;
     CostVolume volume;
     volume.size = Size(1, 1);
-    volume.rows = CostVolume::rowsOf({ 0, many - 1 });
-    volume.costs.assign(volume.rows * CostVolume::row, (uchar)flatCost);
+    volume.chunks = CostVolume::chunksOf({ 0, many - 1 });
+    volume.costs.assign(volume.chunks * CostVolume::chunk, (uchar)flatCost);
     const CostVolume::Candidates own = { 0, { 0, many - 1 } };
     volume.candidates.push_back(own);
     preferDisparity(0, disparity, largest, volume);
@@ -224,15 +224,16 @@ TEST(HDPStereo_CostVolume, contradicts)
     CostVolume volume = flatVolume(Size(2, 1));
     const DisparityInterval none = { 1, 0 };
     volume.candidates[1].interval = none;
+    const int best = 15;
     uchar* const costs = &volume.costs[0];
-    costs[15] = (uchar)(flatCost - CostVolume::contradiction);
+    costs[best] = (uchar)(flatCost - CostVolume::contradiction);
     EXPECT_FALSE(isContradicted(0, 7.25f, volume));
-    costs[15] = (uchar)(flatCost - CostVolume::contradiction - 1);
+    costs[best] = (uchar)(flatCost - CostVolume::contradiction - 1);
     EXPECT_TRUE(isContradicted(0, 7.25f, volume));
     EXPECT_TRUE(isContradicted(0, 1e6, volume)) << "beyond the candidates";
     EXPECT_TRUE(isContradicted(0, -1e6, volume)) << "beyond the candidates";
-    EXPECT_FALSE(isContradicted(0, 14.5f, volume));
-    EXPECT_TRUE(isContradicted(0, 14.4f, volume));
+    EXPECT_FALSE(isContradicted(0, best - 0.5f, volume)) << "the nearest candidate is the best";
+    EXPECT_TRUE(isContradicted(0, best - 0.6f, volume));
     EXPECT_FALSE(isContradicted(1, 7.25f, volume)) << "a pixel without candidates";
 }
 
@@ -255,12 +256,12 @@ TEST(HDPStereo_CostVolume, fill)
             volume.fill(cost, imageSize, all);
             EXPECT_EQ(imageSize, volume.size);
             EXPECT_EQ(all.last + 1, volume.numDisparities);
-            ASSERT_LE(volume.rows * CostVolume::row, volume.costs.size());
+            ASSERT_LE(volume.chunks * CostVolume::chunk, volume.costs.size());
             for (int pixel = 0; pixel < imageSize.area(); ++pixel)
             {
                 const CostVolume::Candidates own = volume.of(pixel);
                 ASSERT_EQ(all.size(), own.interval.size());
-                ASSERT_LE((size_t)own.firstRow + own.rows(), volume.rows);
+                ASSERT_LE((size_t)own.firstChunk + own.chunks(), volume.chunks);
                 const Point at(pixel % imageSize.width, pixel / imageSize.width);
                 for (int k = 0; k < all.size(); ++k)
                     ASSERT_EQ(CostVolume::scale * census(at.y, at.x, k), volume.costs[own.start() + k])

@@ -212,7 +212,7 @@ TEST(HDPStereo_VolumeScanlines, lanes_without_vectors)
         const Size size(14, 8); // one block of scanlines
         const Layer layer(rng, size, numDisparities, 256, numDisparities == 16);
         const hdp::VolumePenalties penalties = { 30, 300, 1e9 };
-        std::vector<short> sums(layer.volume.rows * hdp::CostVolume::row);
+        std::vector<short> sums(layer.volume.chunks * hdp::CostVolume::chunk);
         Mat disparity(size, CV_16UC1);
         hdp::VolumeProblem problem = {
             layer.volume, layer.weights.ptr(), 30, {}, sums.data(), disparity.ptr<ushort>()

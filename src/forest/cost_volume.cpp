@@ -24,37 +24,52 @@ void CostVolume::create(const DisparityForest& forest)
     numDisparities = 1;
     uniform_ = forest.trees[0].interval;
     isUniform = !uniform_.empty();
-    size_t rowsOfTrees = 0;
+    size_t chunksOfTrees = 0;
     int most = 0;
     for (const DisparityTree& tree : forest.trees)
     {
-        most = std::max(most, rowsOf(tree.interval));
-        rowsOfTrees += (size_t)tree.size * rowsOf(tree.interval);
+        most = std::max(most, chunksOf(tree.interval));
+        chunksOfTrees += (size_t)tree.size * chunksOf(tree.interval);
         if (!tree.interval.empty())
             numDisparities = std::max(numDisparities, tree.interval.last + 1);
         isUniform &= tree.interval.first == uniform_.first && tree.interval.last == uniform_.last;
     }
-    const int mean = (int)(rowsOfTrees / size.area());
-    usualRows_ = most <= 2 * mean ? most : mean;
-    rows = (size_t)size.area() * usualRows_;
-    firsts_.clear();
-    size_t first = isUniform ? 0 : rows;
+    const int mean = (int)(chunksOfTrees / size.area());
+    usualChunks_ = most <= 2 * mean ? most : mean;
+    chunks = (size_t)size.area() * usualChunks_;
+    isUniform ? keepPixels(forest) : addUnusual(forest);
+    provideCosts();
+}
+
+void CostVolume::keepPixels(const DisparityForest& forest)
+{
+    pixels_.resize(size.area());
+    firstPixels_.clear();
+    int first = 0;
     for (const DisparityTree& tree : forest.trees)
     {
-        firsts_.push_back((unsigned)first);
-        if (isUniform)
-            first += tree.size;
-        else if (rowsOf(tree.interval) > usualRows_)
-            first += (size_t)tree.size * rowsOf(tree.interval);
+        firstPixels_.push_back(first);
+        first += tree.size;
     }
-    if (isUniform)
-        pixels_.resize(size.area());
-    else
+}
+
+void CostVolume::addUnusual(const DisparityForest& forest)
+{
+    candidates.resize(size.area());
+    firstChunks_.clear();
+    for (const DisparityTree& tree : forest.trees)
     {
-        candidates.resize(size.area());
-        rows = first;
+        firstChunks_.push_back((unsigned)chunks);
+        if (chunksOf(tree.interval) > usualChunks_)
+            chunks += (size_t)tree.size * chunksOf(tree.interval);
     }
-    grown(costs, rows * row);
+}
+
+void CostVolume::provideCosts()
+{
+    if (chunks > UINT_MAX) // Candidates::firstChunk
+        CV_Error(Error::StsOutOfRange, "numDisparities is too large for images of this size: more than 2^36 costs");
+    grown(costs, chunks * chunk);
 }
 
 void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pixels)
@@ -63,33 +78,37 @@ void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pi
     const int count = forest.trees[tree].size;
     if (isUniform)
     {
-        std::copy_n(pixels, count, &pixels_[firsts_[tree]]);
+        std::copy_n(pixels, count, &pixels_[firstPixels_[tree]]);
         return;
     }
-    const unsigned ownRows = rowsOf(interval), usual = usualRows_;
+    const unsigned own = chunksOf(interval), usual = usualChunks_;
     for (int i = 0; i < count; ++i)
-        candidates[pixels[i]] = { ownRows <= usual ? pixels[i] * usual : firsts_[tree] + i * ownRows, interval };
+        candidates[pixels[i]] = { own <= usual ? pixels[i] * usual : firstChunks_[tree] + i * own, interval };
 }
 
 void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const DisparityInterval& interval)
 {
+    struct Row
+    {
+        std::vector<int> pixels;
+        std::vector<uchar> costs; // of a chunk of each pixel
+    };
     size = layerSize;
     steps = cost.steps();
     numDisparities = interval.last + 1;
-    usualRows_ = rowsOf(interval);
-    rows = (size_t)size.area() * usualRows_;
+    usualChunks_ = chunksOf(interval);
+    chunks = (size_t)size.area() * usualChunks_;
     isUniform = true;
     uniform_ = interval;
-    grown(costs, rows * row);
-    parallelForRows(size, [&](int y) {
-        std::vector<int> pixels(size.width);
-        std::vector<uchar> run(size.width * row);
-        std::iota(pixels.begin(), pixels.end(), y * size.width);
-        for (int r = 0; r < usualRows_; ++r)
+    provideCosts();
+    const Row memory = { std::vector<int>(size.width), std::vector<uchar>(size.width * chunk) };
+    parallelForRows(size, memory, [&](int y, Row& row) {
+        std::iota(row.pixels.begin(), row.pixels.end(), y * size.width);
+        for (int c = 0; c < usualChunks_; ++c)
         {
-            cost.evaluate(pixels.data(), size.width, interval.first + r * row, row, run.data());
+            cost.evaluate(row.pixels.data(), size.width, interval.first + c * chunk, chunk, row.costs.data());
             for (int x = 0; x < size.width; ++x)
-                std::copy_n(&run[x * row], +row, &costs[of(pixels[x]).start() + r * row]);
+                std::copy_n(&row.costs[x * chunk], +chunk, &costs[of(row.pixels[x]).start() + c * chunk]);
         }
     });
 }
@@ -102,14 +121,17 @@ void excludeCandidates(const Mat& intervals, CostVolume& volume)
             const DisparityInterval& own = intervals.ptr<DisparityInterval>(y)[x];
             const CostVolume::Candidates all = volume.of(y * volume.size.width + x);
             uchar* costs = volume.costs.data() + all.start();
-            int before = own.first - all.interval.first, end = own.last + 1 - all.interval.first;
-            for (int r = 0; r < all.rows(); ++r, before -= CostVolume::row, end -= CostVolume::row)
+            // From a chunk's first candidate on
+            int first = own.first - all.interval.first, behind = own.last + 1 - all.interval.first;
+            for (int c = 0; c < all.chunks(); ++c)
             {
-                const uchar first = (uchar)clamped(before, 0, +CostVolume::row),
-                            behind = (uchar)clamped(end, 0, +CostVolume::row);
-                HDP_VECTORIZED for (uchar k = 0; k < CostVolume::row; ++k) costs[k] |=
-                    (uchar)(k < first || k >= behind ? UCHAR_MAX : 0);
-                costs += CostVolume::row;
+                const uchar begin = (uchar)clamped(first, 0, +CostVolume::chunk),
+                            end = (uchar)clamped(behind, 0, +CostVolume::chunk);
+                HDP_VECTORIZED for (uchar k = 0; k < CostVolume::chunk; ++k) costs[k] |=
+                    (uchar)(k < begin || k >= end ? UCHAR_MAX : 0);
+                costs += CostVolume::chunk;
+                first -= CostVolume::chunk;
+                behind -= CostVolume::chunk;
             }
         }
     });
@@ -122,12 +144,12 @@ void preferDisparity(int pixel, float disparity, int limit, CostVolume& volume)
     uchar* costs = volume.costs.data() + own.start();
     // In whole numbers from the first candidate on
     const int d = cvRound(CostVolume::scale * volume.steps * disparity) - CostVolume::scale * own.interval.first;
-    for (int r = 0; r < own.rows(); ++r, costs += CostVolume::row)
+    for (int c = 0; c < own.chunks(); ++c, costs += CostVolume::chunk)
     {
-        // Of 16 bits, as vectors hold more of them; far from the row, all of it rises by the limit.
+        // Of 16 bits, as vectors hold more of them; far from the chunk, all of it rises by the limit.
         const short most = (short)limit,
-                    first = (short)clamped(r * CostVolume::row * CostVolume::scale - d, -4096, 4096);
-        HDP_VECTORIZED for (short k = 0; k < CostVolume::row; ++k)
+                    first = (short)clamped(c * CostVolume::chunk * CostVolume::scale - d, -4096, 4096);
+        HDP_VECTORIZED for (short k = 0; k < CostVolume::chunk; ++k)
         {
             const short distance = (short)(first + k * CostVolume::scale);
             const short rise = std::min(std::max(distance, (short)-distance), most);
@@ -144,7 +166,7 @@ bool isContradicted(int pixel, float disparity, const CostVolume& volume)
         return false;
     const uchar cost = volume.costs[own.start() + clamped(nearest, 0, count - 1)];
     const int most = CostVolume::contradiction;
-    return cost > most && cost - volume.lowestOf(own) > most; // most are not
+    return cost > most && cost - volume.lowestOf(own) > most; // the first one fails for most pixels
 }
 
 }}} // namespace cv::stereo::hdp

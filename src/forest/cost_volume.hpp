@@ -15,20 +15,20 @@ struct CV_EXPORTS CostVolume
     enum
     {
         scale = TwoLayerCost::scale, // of the costs, for their fractions
-        row = 16,                    // costs that are stored together
+        chunk = 16,                  // costs that are stored together
         contradiction = 3 * scale    // see isContradicted()
     };
     struct Candidates // of a pixel
     {
-        unsigned firstRow; // of costs
+        unsigned firstChunk; // its number in costs
         DisparityInterval interval;
 
-        int rows() const { return rowsOf(interval); }
-        size_t start() const { return (size_t)firstRow * row; }
+        int chunks() const { return chunksOf(interval); }
+        size_t start() const { return (size_t)firstChunk * chunk; }
     };
-    static int rowsOf(const DisparityInterval& interval)
+    static int chunksOf(const DisparityInterval& interval)
     {
-        return interval.empty() ? 0 : (interval.size() + row - 1) / row;
+        return interval.empty() ? 0 : (interval.size() + chunk - 1) / chunk;
     }
 
     Size size;
@@ -36,7 +36,7 @@ struct CV_EXPORTS CostVolume
     int steps = 1;                      // candidates per pixel of disparity
     bool isUniform = false;             // whether all pixels have the same candidates
     std::vector<Candidates> candidates; // of pixel y * width + x, unless they are the same, see of()
-    size_t rows = 0;                    // of costs
+    size_t chunks = 0;                  // of costs
     std::vector<uchar> costs;           // that of disparity interval.first + k at [start() + k]; it only ever grows
 
     //! Those of pixel y * width + x
@@ -44,7 +44,7 @@ struct CV_EXPORTS CostVolume
     {
         if (!isUniform)
             return candidates[pixel];
-        return { (unsigned)pixel * usualRows_, uniform_ };
+        return { (unsigned)pixel * usualChunks_, uniform_ };
     }
 
     //! The lowest cost of these; UCHAR_MAX if there are none
@@ -52,20 +52,25 @@ struct CV_EXPORTS CostVolume
 
     //! Provides the memory for the trees of a forest.
     void create(const DisparityForest& forest);
-    //! Sets the candidates of a tree's pixels; tree: its number, pixels: as many as it has.
+    //! Tells where a tree's pixels are, and with that their candidates. tree: its number; pixels: as many as it has.
     void place(const DisparityForest& forest, size_t tree, const int* pixels);
     //! Pixels y * width + x of a tree, as place() got them, if all have the same candidates
-    const int* pixelsOf(size_t tree) const { return &pixels_[firsts_[tree]]; }
+    const int* pixelsOf(size_t tree) const { return &pixels_[firstPixels_[tree]]; }
     //! Takes the costs as they are, of the same candidates for all pixels.
     void fill(const TwoLayerCost& cost, const Size& size, const DisparityInterval& interval);
 
 private:
+    void keepPixels(const DisparityForest& forest);
+    void addUnusual(const DisparityForest& forest);
+    void provideCosts();
+
     DisparityInterval uniform_; // the candidates of all pixels
-    // Pixels of usual trees have so many rows each, in the order of the pixels, and the others more, behind them, in
+    // Pixels of usual trees have so many chunks each, in the order of the pixels, and the others more, behind them, in
     // the order of the trees, where scanlines wait for them: all are usual if that takes at most twice the memory.
-    int usualRows_ = 0;
-    std::vector<unsigned> firsts_; // by tree: rows of the others, or pixels
-    std::vector<int> pixels_;      // in the order of the trees, if all have the same candidates
+    int usualChunks_ = 0;
+    std::vector<unsigned> firstChunks_; // by tree, of those that are not usual
+    // If all have the same candidates: the pixels in the order of the trees, and by tree the first of them
+    std::vector<int> pixels_, firstPixels_;
 };
 
 //! Excludes the candidates that pixels do not have, by the largest cost. intervals: DisparityInterval, of the layer.

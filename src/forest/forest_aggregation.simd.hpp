@@ -183,7 +183,7 @@ template <int lanes> struct AverageTask
             const short* const parent = means + (size_t)parents[i] * lanes;
             short* const own = means + (size_t)i * lanes;
             uchar* const to = stored + candidates.start() + at;
-            if (at + lanes <= candidates.rows() * CostVolume::row) // the last ones are padding
+            if (at + lanes <= candidates.chunks() * CostVolume::chunk) // the last ones are padding
             {
                 averageDown<lanes>(parent, nodes[i].fromParent, own, to);
                 continue;

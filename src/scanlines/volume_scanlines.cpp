@@ -50,7 +50,7 @@ void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumeP
                               weights.ptr(),
                               (short)penalties.small,
                               {},
-                              grown(sums, volume.rows * CostVolume::row),
+                              grown(sums, volume.chunks * CostVolume::chunk),
                               disparity.ptr<ushort>() };
     const EdgeSimilarity similarity(penalties.gamma);
     for (int w = 0; w < 256; ++w)

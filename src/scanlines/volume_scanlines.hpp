@@ -30,12 +30,13 @@ struct VolumeProblem
 
     enum
     {
-        maxScanlines = 64,       // that are followed side by side
-        margin = CostVolume::row // before and behind the candidates of a pixel, for the first and the last one to have
-                                 // neighbours
+        maxScanlines = 64, // that are followed side by side
+        margin =
+            CostVolume::chunk // before and behind the candidates of a pixel, for the first and the last one to have
+                              // neighbours
     };
     //! Memory for a pixel, by disparity: an interval may begin at the last one.
-    int lineLength() const { return margin + volume.numDisparities + CostVolume::row + margin; }
+    int lineLength() const { return margin + volume.numDisparities + CostVolume::chunk + margin; }
     //! Memory for scanlines that are followed side by side: two pixels of each, the sums of one, and a
     //! line for the padding
     int lineMemory(int scanlines) const { return (2 * scanlines + 2) * lineLength(); }

@@ -149,7 +149,7 @@ private:
         // Local, as stores may alias all else
         const CostVolume& volume = p_.volume;
         const CostVolume::Candidates all = volume.of(0);
-        const int stride = all.rows() * CostVolume::row;
+        const int stride = all.chunks() * CostVolume::chunk;
         const uchar *const weights = p_.weights, *const costs = volume.costs.data();
         short *const sums = p_.sums, *const total = total_;
         ushort* const disparity = p_.disparity;
