@@ -29,7 +29,8 @@ expected=$(cmake/program)
 for program in cmake/program ./pkg-config ./static; do
     [ "$($program)" = "$expected" ] || fail "$program prints another map"
 done
-ldd ./pkg-config | grep -q libopencv_hdpstereo || fail "pkg-config does not link the shared library"
+# Not grep -q, which ends while the other side of the pipe still writes
+ldd ./pkg-config | grep libopencv_hdpstereo >log || fail "pkg-config does not link the shared library"
 ! ldd ./static | grep hdpstereo || fail "the static library is not linked"
 
 say "Programs"
@@ -52,7 +53,7 @@ hdpstereo left.ppm right.ppm --num-disparities=16 --output=disparity.png --pictu
     fail "hdpstereo-run does not preload"
 for program in $(dpkg -L hdpstereo-tools | sed -n 's#^/usr/bin/##p'); do
     "$program" --help >/dev/null || fail "$program --help"
-    dpkg -L hdpstereo-tools | grep -qx "/usr/share/man/man1/$program.1.gz" || fail "no man page of $program"
+    dpkg -L hdpstereo-tools | grep -x "/usr/share/man/man1/$program.1.gz" >log || fail "no man page of $program"
 done
 
 say "Python"
