@@ -25,7 +25,8 @@ static const char* const KEYS =
     "{help h ?        |     | print this and exit }"
     "{@root           |     | folder of Middlebury, ETH3D or KITTI pairs, of pairs without truth, or of such folders }"
     "{resolution      |     | only these of Middlebury's: full, half, third or quarter, separated by commas }"
-    "{methods         | systems,presets,opencv | names as in the tables, or these groups, separated by commas }"
+    "{methods         |     | names as in the tables, or groups, separated by commas: by default "
+    "systems,presets,opencv, and presets where others cannot be asked }"
     "{scenes          |     | only these, separated by commas }"
     "{changes         |     | all figures are means over changes that must not matter, the list of hdp_stability or "
     "one's "
@@ -60,8 +61,11 @@ static EvaluationSettings readSettings(const CommandLineParser& parser)
                                                     ? DisparityPredictionModel::load(parser.get<String>("model"))
                                                     : Ptr<DisparityPredictionModel>();
     EvaluationSettings settings;
-    settings.methods = selectMethods("methods", parser.get<String>("methods"), model);
     settings.numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 0, 2048) : 0;
+    const bool asksMatcher = parser.has("calibration") || parser.has("confidence") ||
+                             (parser.has("num-disparities") && settings.numDisparities == 0);
+    const String usual = asksMatcher ? "presets" : "systems,presets,opencv";
+    settings.methods = selectMethods("methods", parser.has("methods") ? parser.get<String>("methods") : usual, model);
     settings.runs = getInteger(parser, "runs", 1, 1000);
     settings.jobs = getInteger(parser, "jobs", 1, 256);
     settings.maps = parser.get<String>("maps");

@@ -78,7 +78,7 @@ class Video
 public:
     //! frames: which of the scenes to show, and what is done with them
     Video(const std::vector<Scene>& scenes, const std::vector<VariantFrame>& frames, bool isGrey, int numDisparities)
-        : scenes_(scenes), frames_(frames), isGrey_(isGrey), numDisparities_(numDisparities), rng_(1)
+        : scenes_(scenes), frames_(frames), isGrey_(isGrey), numDisparities_(numDisparities)
     {
     }
 
@@ -86,6 +86,8 @@ public:
 
     Frame read(int index)
     {
+        if (index == 0)
+            rng_ = RNG(1); // the same frames in each run
         Scene scene = scenes_[frames_[index].index];
         if (!scene.truth.empty() && !utils::fs::exists(scene.truth))
             scene.truth.clear();
@@ -129,7 +131,8 @@ public:
     //! Has nothing to do if the method knows no temporal prediction.
     bool isIdle() const { return isTemporal_ && !method_.isHdp; }
 
-    //! isFirst: of its video; index: of all frames that the stream gets
+    //! isFirst: of its video; index: of all frames that the stream gets, which come one after the other, or again;
+    //! counts: whether its errors do
     void match(const Mat& left, const Mat& right, const Frame& frame, bool isFirst, int index, bool counts)
     {
         if (isIdle())
@@ -146,7 +149,8 @@ public:
             if (!method_.isHdp && image.type() == CV_8UC1)
                 cvtColor(image, image, COLOR_GRAY2BGR);
         const Mat disparity = matchDensely(method_, *matcher_, images[0], images[1], &seconds);
-        if ((int)seconds_.size() <= index)
+        CV_Assert(index <= (int)seconds_.size());
+        if ((int)seconds_.size() == index)
         {
             seconds_.push_back(seconds);
             if (counts)

@@ -32,8 +32,8 @@ static const char* const usage =
     "LEFT, RIGHT: a rectified pair, 8 or 16 bit or float, NaN = no data. OUT: NaN = no disparity.\n"
     "All maps are files of floats: .tif, .pfm, and .exr if OpenCV has it.\n"
     "A left pixel (x, y) is (x + d, y) in the right image: the sign is the opposite of OpenCV's.\n"
-    "  -r MIN -R MAX    smallest and largest disparity; without both, or if both are nan, they are found in the pair,\n"
-    "                   but with -m; else, or if too few points match, -30 and 30\n"
+    "  -r MIN -R MAX    smallest and largest disparity, fractions rounded outwards; without both, or if both are nan,\n"
+    "                   they are found in the pair, but with -m; else, or if too few points match, -30 and 30\n"
     "  -m FILE -M FILE  the same for each pixel, in fractions, too; no others occur. Not finite: no limit of its own\n"
     "  -s none          whole disparities; with anything else they have fractions (none)\n"
     "  -l FILE          the map before the left-right check and the removal of small regions, by a second match\n"
@@ -163,6 +163,16 @@ static bool keepsFloats(const String& path)
     }
 }
 
+//! Without links, also of a file that is not there yet
+static String placeOf(const String& path)
+{
+    if (utils::fs::exists(path))
+        return utils::fs::canonical(path);
+    const String folder = utils::fs::getParent(path);
+    return utils::fs::join(utils::fs::canonical(folder.empty() ? "." : folder),
+                           path.substr(path.find_last_of("/\\") + 1));
+}
+
 //! Leaves what is there as it is.
 static void requireWritable(const String& name, const String& path)
 {
@@ -267,7 +277,7 @@ static DisparityRange readRange(const Call& call, Size size)
                              most.empty() ? 30 : cvCeil(toDisparity("-R", toNumber("-R", most))),
                              least.empty() && most.empty() && call.value("m").empty(), Mat(), Mat() };
     if (range.max < range.min)
-        fail(format("-R must be at least -r, %d, not %d", range.min, range.max));
+        fail(format("-R (30 without) must be at least -r (-30 without), %d, not %d", range.min, range.max));
     if (call.value("m").empty() != call.value("M").empty())
         fail("-m and -M need each other");
     if (!call.value("m").empty())
@@ -368,14 +378,33 @@ static Filters readFilters()
              cvRound(numberInEnvironment("REMOVESMALLCC", "0")) };
 }
 
+//! All of them can be written, and each is a file of its own.
+static void checkOutputs(const Call& call)
+{
+    std::map<String, String> names; // of files
+    names[placeOf(call.left())] = "LEFT";
+    names[placeOf(call.right())] = "RIGHT";
+    for (const char* name : { "m", "M" })
+        if (!call.value(name).empty())
+            names[placeOf(call.value(name))] = String("the file of -") + name;
+    const auto check = [&](const String& name, const String& path) {
+        const auto other = names.find(placeOf(path));
+        if (other != names.end())
+            fail(name + ": cannot write '" + path + "': it is " + other->second);
+        requireWritable(name, path);
+        names[placeOf(path)] = name;
+    };
+    check("OUT", call.out());
+    for (const char* name : { "l", "Rd", "confidence_consensusL", "confidence_consensusR" })
+        if (!call.value(name).empty())
+            check(String("-") + name, call.value(name));
+}
+
 static void run(const Call& call)
 {
     const Filters filters = readFilters();
     const Ptr<HDPTreeMatcher> matcher = createMatcher(call);
-    requireWritable("OUT", call.out());
-    for (const char* name : { "l", "Rd", "confidence_consensusL", "confidence_consensusR" })
-        if (!call.value(name).empty())
-            requireWritable(String("-") + name, call.value(name));
+    checkOutputs(call);
     Mat left = readImage(call.left()), right = readImage(call.right());
     const Rect leftImage(Point(), left.size()), rightImage(Point(), right.size());
     const DisparityRange range = readRange(call, left.size());

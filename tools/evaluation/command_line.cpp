@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "command_line.hpp"
+#include "../arguments.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -64,40 +65,6 @@ void setThreads(const cv::CommandLineParser& parser)
 {
     if (parser.has("threads"))
         cv::setNumThreads(getInteger(parser, "threads", 1, 1024));
-}
-
-static void checkArguments(int argc, const char* const argv[], const cv::CommandLineParser& parser,
-                           std::vector<String> flags, int maxPositional)
-{
-    flags.insert(flags.end(), { "help", "h", "?", "list-tunables" });
-    int positional = 0;
-    for (int i = 1; i < argc; i++)
-    {
-        const String argument = argv[i];
-        if (argument.size() < 2 || argument[0] != '-')
-        {
-            if (++positional > maxPositional)
-                fail("unexpected argument '" + argument + "'");
-            continue;
-        }
-        const String option = argument.substr(0, argument.find('='));
-        const String name = option.substr(option.compare(0, 2, "--") == 0 ? 2 : 1);
-        try
-        {
-            parser.has(name);
-        }
-        catch (const cv::Exception&)
-        {
-            fail("unknown option '" + option + "'");
-        }
-        if (std::find(flags.begin(), flags.end(), name + "=") != flags.end())
-            continue;
-        const bool isFlag = std::find(flags.begin(), flags.end(), name) != flags.end();
-        if (isFlag && option != argument)
-            fail("option '" + option + "' takes no value");
-        if (!isFlag && option.size() + 1 >= argument.size())
-            fail("option '" + option + "' needs a value: " + option + "=VALUE");
-    }
 }
 
 //! The arguments with `--set A=1 --set=B=2` as `--set=A=1,B=2`, for cv::CommandLineParser knows each option once.

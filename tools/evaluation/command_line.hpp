@@ -36,8 +36,7 @@ void setThreads(const cv::CommandLineParser& parser);
 
 /** The main() of a program.
 
-Checks the arguments more strictly than cv::CommandLineParser does: unknown options, options without a value, flags with
-one, and too many positional arguments are errors. Each error is reported in one line, and so is output that was lost,
+Checks the arguments, see checkArguments(). Each error is reported in one line, and so is output that was lost,
 on a full disk for instance.
 @param flags Options without a value; --help is one anyway. "NAME=" is one that may have a value or not.
 @param run Returns the exit status.

@@ -21,9 +21,8 @@ HarmlessChange::HarmlessChange()
 {
 }
 
-const char* const ALL_CHANGES = "noise.5,gamma1.05,gamma.95,jpeg95,left1,left2,left4,left8,top1,top2,top4,move1,scale."
-                                "98,flip,mirror,range1,range16,"
-                                "bits12";
+const char* const ALL_CHANGES = "noise.5,gamma1.05,gamma.95,jpeg95,left1,left2,left4,left8,top1,top2,top4,move1,"
+                                "scale.98,flip,mirror,range1,range16,bits12";
 
 namespace {
 

@@ -74,10 +74,19 @@ void requireMapWriter(const String& path)
     }
 }
 
+//! Without links, also of a file that is not there yet
+static String placeOf(const String& path)
+{
+    if (utils::fs::exists(path))
+        return utils::fs::canonical(path);
+    const String folder = utils::fs::getParent(path);
+    return utils::fs::join(utils::fs::canonical(folder.empty() ? "." : folder),
+                           path.substr(path.find_last_of("/\\") + 1));
+}
+
 bool isSameFile(const String& path, const String& other)
 {
-    return utils::fs::exists(path) && utils::fs::exists(other) &&
-           utils::fs::canonical(path) == utils::fs::canonical(other);
+    return !path.empty() && !other.empty() && placeOf(path) == placeOf(other);
 }
 
 std::vector<uchar> encode(const String& extension, const Mat& image)
@@ -147,6 +156,8 @@ Mat readImage(const String& path, int flags)
     return image;
 }
 
+Mat readMask(const String& path) { return readImage(path, IMREAD_GRAYSCALE | IMREAD_ANYDEPTH) != 0; }
+
 Mat readDisparity(const String& path) { return toDisparity(readImage(path, IMREAD_UNCHANGED), path); }
 
 Mat toDisparity(const Mat& image, const String& path)
@@ -169,10 +180,10 @@ Mat readPicture(const String& path)
     Mat image = imread(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
     if (image.empty()) // TIFF of grey floats is no colour image
         image = readImage(path, IMREAD_UNCHANGED);
+    if (image.depth() != CV_8U && image.depth() != CV_16U) // doubles, and numbers with a sign, too
+        image.convertTo(image, CV_32F);
     if (image.depth() != CV_8U && image.channels() > 1)
         cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);
-    if (image.depth() == CV_64F)
-        image.convertTo(image, CV_32F);
     return image;
 }
 

@@ -23,7 +23,7 @@ void requireMapWriter(const cv::String& path);
 //! Throws if the folder of a file to write is not there, or cannot be written to.
 void requireFolderOf(const cv::String& path);
 
-//! Whether both are there, and are one
+//! Whether both are one, whether it is there or not; an empty path is none.
 bool isSameFile(const cv::String& path, const cv::String& other);
 
 std::vector<uchar> encode(const cv::String& extension, const cv::Mat& image);
@@ -59,6 +59,9 @@ private:
 void writeWholeFile(const cv::String& path, const std::vector<uchar>& bytes);
 
 cv::Mat readImage(const cv::String& path, int flags);
+
+//! 255 where a picture of any depth is not black, else 0
+cv::Mat readMask(const cv::String& path);
 
 //! A map as encodeDisparity() writes it: CV_32F in pixels, NaN where there is none
 cv::Mat readDisparity(const cv::String& path);

@@ -5,9 +5,11 @@
 // Matches a rectified stereo pair with cv::stereo::HDPTreeMatcher, and writes the disparities, a picture of them and a
 // point cloud; or matches many pairs, and writes the disparities of each.
 
+#include "../arguments.hpp"
 #include "options.hpp"
 
 #include <iostream>
+#include <stdexcept>
 
 #include "opencv2/core/utils/logger.hpp"
 
@@ -75,9 +77,7 @@ int main(int argc, char** argv)
     int status = 0;
     try
     {
-        for (const String& argument : std::vector<String>(argv + 1, argv + argc))
-            if (argument.compare(0, 2, "--") == 0)
-                parser.has(argument.substr(2, argument.find('=') - 2)); // throws if it is unknown
+        hdp_tools::checkArguments(argc, argv, parser, { "version", "batch", "tiles", "compare" }, 3);
         if (parser.has("help"))
         {
             CommandLineParser defaults(1, argv, keys); // whose values are those that help shows
@@ -98,6 +98,11 @@ int main(int argc, char** argv)
     catch (const cv::Exception& e)
     {
         std::cerr << "error: " << e.err << std::endl;
+        return 1;
+    }
+    catch (const std::runtime_error& e) // of checkArguments()
+    {
+        std::cerr << "error: " << e.what() << std::endl;
         return 1;
     }
     return status;

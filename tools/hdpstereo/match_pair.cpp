@@ -114,7 +114,11 @@ static Mat visiblePixels(const Mat& truth)
 static Mat readTruth(const String& path, Size size)
 {
     const Mat image = readImage(path, IMREAD_GRAYSCALE | IMREAD_ANYDEPTH);
-    CV_CheckEQ(size, image.size(), "--truth must have the size of the images");
+    if (image.depth() != CV_8U && image.depth() != CV_16U)
+        CV_Error(Error::StsUnsupportedFormat, "--truth must be a PNG of 8 or 16 bits per pixel");
+    if (image.size() != size)
+        CV_Error(Error::StsUnmatchedSizes, format("--truth must have the size of the images, %d x %d, not %d x %d",
+                                                  size.width, size.height, image.cols, image.rows));
     Mat truth;
     image.convertTo(truth, CV_32F, image.depth() == CV_16U ? 1. / 256 : 1);
     return truth;

@@ -42,6 +42,16 @@ static std::vector<NamedPair> pairsOfFolders(const String& lefts, const String& 
     return pairs;
 }
 
+//! Whether a name is not that of a file below a folder
+static bool leavesFolder(const String& name)
+{
+    std::istringstream parts(name);
+    bool leaves = name[0] == '/';
+    for (std::string part; std::getline(parts, part, '/');)
+        leaves |= part == "..";
+    return leaves;
+}
+
 static std::vector<NamedPair> pairsOfList(const String& list)
 {
     std::ifstream file(list.c_str());
@@ -62,6 +72,9 @@ static std::vector<NamedPair> pairsOfList(const String& list)
         if (parts.size() != 3)
             CV_Error(Error::StsBadArg,
                      format("'%s': line %d is not a left image, a right one and a name", list.c_str(), number));
+        if (leavesFolder(parts[2]))
+            CV_Error(Error::StsBadArg,
+                     format("'%s': line %d: the name '%s' is not in OUT", list.c_str(), number, parts[2].c_str()));
         pairs.push_back({ parts[0], parts[1], parts[2] });
     }
     return pairs;

@@ -44,6 +44,7 @@ void checkOutputs(const CommandLineParser& parser)
 {
     const char* const inputs[] = { "@left", "@right", "left-mask",   "right-mask",   "smallest", "largest",
                                    "prior", "truth",  "calibration", "calibration2", "findings", "reprojection" };
+    std::vector<String> outputs;
     for (const char* option :
          { "@out", "output", "sigma", "depth", "confidence", "reasons", "picture", "point-cloud", "save-findings" })
     {
@@ -62,6 +63,10 @@ void checkOutputs(const CommandLineParser& parser)
                                                (input == "@left"    ? "LEFT"
                                                 : input == "@right" ? "RIGHT"
                                                                     : "the file of --" + input));
+        for (const String& other : outputs)
+            if (isSameFile(path, other))
+                CV_Error(Error::StsBadArg, "cannot write '" + path + "' twice: each output needs a file of its own");
+        outputs.push_back(path);
     }
     const String map = parser.get<String>(parser.has("output") ? "output" : "@out");
     if (extensionOf(map) == ".png")
@@ -115,7 +120,7 @@ Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
 
 static Mat maskOf(const CommandLineParser& parser, const char* option)
 {
-    return parser.has(option) ? Mat(readImage(parser.get<String>(option), IMREAD_GRAYSCALE) != 0) : Mat();
+    return parser.has(option) ? readMask(parser.get<String>(option)) : Mat();
 }
 
 MaskFiles::MaskFiles(const CommandLineParser& parser)

@@ -4,8 +4,6 @@
 #include "files.hpp"
 #include "rectifier.hpp"
 
-#include "opencv2/imgcodecs.hpp"
-
 using namespace cv;
 using cv::stereo::HDPTreeMatcher;
 using cv::stereo::StereoRig;
@@ -29,23 +27,28 @@ bool Rectifier::apply(Mat& left, Mat& right, HDPTreeMatcher& matcher)
         return false;
     if (!rig_ || rig_->getSize() != left.size())
     {
-        rig_ = StereoRig::create(cv::stereo::readStereoCalibration(first_, second_, left.size(), unit_), fieldOfView_);
-        setMasks(matcher);
+        const Ptr<StereoRig> rig =
+            StereoRig::create(cv::stereo::readStereoCalibration(first_, second_, left.size(), unit_), fieldOfView_);
+        setMasks(*rig, matcher);
+        rig_ = rig;
     }
     rig_->rectify(left, right, left, right);
     return true;
 }
 
-void Rectifier::setMasks(HDPTreeMatcher& matcher) const
+void Rectifier::setMasks(StereoRig& rig, HDPTreeMatcher& matcher) const
 {
+    const Size size = rig.getSize();
     Mat raw[2], masks[2];
     for (int i = 0; i < 2; i++)
     {
-        raw[i] =
-            rawMasks_[i].empty() ? Mat(rig_->getSize(), CV_8U, Scalar(255)) : readImage(rawMasks_[i], IMREAD_GRAYSCALE);
-        raw[i].setTo(255, raw[i]);
+        raw[i] = rawMasks_[i].empty() ? Mat(size, CV_8U, Scalar(255)) : readMask(rawMasks_[i]);
+        if (raw[i].size() != size)
+            CV_Error(Error::StsUnmatchedSizes,
+                     format("--%s-mask must have the size of the raw images, %d x %d, not %d x %d",
+                            i == 0 ? "left" : "right", size.width, size.height, raw[i].cols, raw[i].rows));
     }
-    rig_->rectify(raw[0], raw[1], masks[0], masks[1]); // what is not reached, or beside something masked, is below 255
+    rig.rectify(raw[0], raw[1], masks[0], masks[1]); // what is not reached, or beside something masked, is below 255
     for (Mat& mask : masks)
     {
         mask = mask == 255;

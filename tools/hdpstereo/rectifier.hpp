@@ -6,7 +6,7 @@
 
 #include "options.hpp"
 
-//! --calibration: raw pairs become rectified ones. Without it they are rectified.
+//! --calibration: raw pairs become rectified ones; without it, pairs are taken to be rectified already.
 class Rectifier
 {
 public:
@@ -23,7 +23,7 @@ public:
     void write(cv::FileStorage& fs) const;
 
 private:
-    void setMasks(cv::stereo::HDPTreeMatcher& matcher) const;
+    void setMasks(cv::stereo::StereoRig& rig, cv::stereo::HDPTreeMatcher& matcher) const;
 
     const cv::String first_, second_, rawMasks_[2];
     const double unit_, fieldOfView_;

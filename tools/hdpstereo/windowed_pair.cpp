@@ -53,12 +53,14 @@ std::vector<String> WindowedPair::readWhole() const
     return paths;
 }
 
+//! A part of an image, and where it has data: by its own file and by that of --left-mask or --right-mask; everywhere
+//! if empty
 void WindowedPair::readSide(const File& image, const File& maskFile, const Rect& part, Mat& pixels, Mat& mask)
 {
     pixels = image.windows->read(part, mask);
     if (!maskFile.windows)
         return;
-    Mat unused, given = maskFile.windows->read(part, unused);
+    Mat ofMask, given = maskFile.windows->read(part, ofMask);
     if (given.channels() > 1)
         cvtColor(given, given, COLOR_BGR2GRAY);
     mask = joinMasks(given != 0, mask);

@@ -238,6 +238,7 @@ TEST(HDPStereo_EvaluationPrograms, evaluate)
     EXPECT_EQ(0, confidence.status) << confidence.errors;
     for (const char* row : { "| confidence >= | dataset: pixels | dataset: wrong |", "\n| 0 | 100.0 | ", "\n| 200 | " })
         EXPECT_NE(String::npos, confidence.output.find(row)) << confidence.output;
+    EXPECT_EQ(0, run(folder, "hdp_evaluate --num-disparities=32 --confidence " + folder.path("dataset")).status);
     EXPECT_EQ("error: --confidence: bm knows no errors\n",
               run(folder, "hdp_evaluate --methods=bm --confidence " + folder.path("dataset")).errors);
 

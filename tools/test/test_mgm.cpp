@@ -229,7 +229,7 @@ TEST(HDPStereo_Mgm, wrong_calls)
         { "-r -31 -R", "LEFT, RIGHT and OUT are needed" },
         { "-q 3", "the option -q is unknown" },
         { "-r near -R 0", "-r must be a number, not 'near'" },
-        { "-r 5 -R 4", "-R must be at least -r, 5, not 4" },
+        { "-r 5 -R 4", "-R (30 without) must be at least -r (-30 without), 5, not 4" },
         { "-r -2048 -R 0", "-r must be from -2047 to 2047, not -2048" },
         { "-r 0 -R 1e30", "-R must be from -2047 to 2047, not 1e+30" },
         { "-m a.tif", "-m and -M need each other" },
@@ -272,13 +272,19 @@ TEST(HDPStereo_Mgm, outputs_that_cannot_be)
         EXPECT_EQ("error: " + option + " must be a file of floats, such as .tif, not 'map.png'\n",
                   callFor(option + " map.png", images, out));
     }
+    EXPECT_EQ("error: -l: cannot write './x.tif': it is OUT\n", callFor("-l ./x.tif", images, "x.tif"));
     EXPECT_FALSE(fs::exists(out));
     const String kept = test.folder.path("kept.tif");
     test.folder.writeText("kept.tif", "kept");
     EXPECT_EQ("error: cannot read the image 'no_left.tif'\n", callFor("", images, kept));
     EXPECT_EQ("kept", readText(kept));
 
-    const String pair = test.folder.path("left.tif") + " " + test.folder.path("right.tif");
+    const String left = test.folder.path("left.tif"), pair = left + " " + test.folder.path("right.tif");
+    EXPECT_EQ("error: OUT: cannot write '" + left + "': it is LEFT\n", callFor("", pair, left));
+    EXPECT_EQ("error: -Rd: cannot write '" + left + "': it is LEFT\n", callFor("-Rd " + left, pair, out));
+    EXPECT_EQ("error: OUT: cannot write '" + kept + "': it is the file of -M\n",
+              callFor("-m " + left + " -M " + kept, pair, kept));
+    EXPECT_EQ(0, cvtest::norm(test.left, test.image("left.tif"), NORM_INF));
     EXPECT_EQ("", callFor("", pair, out));
     EXPECT_EQ("", callFor("", pair, test.folder.path("out.pfm")));
     const Mat map = test.image("out.tif"), same = test.image("out.pfm");

@@ -175,6 +175,19 @@ TEST(HDPStereo_Programs, rectifies_raw_pairs)
     EXPECT_EQ(0, run(folder, batch + " --calibration=" + chain).status);
     EXPECT_EQ(0, cvtest::norm(disparity, cv::imread(folder.path("maps/a.pfm"), IMREAD_ANYDEPTH), NORM_INF));
     EXPECT_EQ(1, run(folder, batch).status);
+
+    // No pair is matched without a mask that does not fit.
+    folder.write("mask.png", Mat(60, 80, CV_8UC1, Scalar(255)));
+    folder.write("lefts/b.png", pair.left);
+    folder.write("rights/b.png", pair.right);
+    const String others = "hdpstereo --batch " + folder.path("lefts") + " " + folder.path("rights") + " " +
+                          folder.path("others") + " --num-disparities=32 --calibration=" + chain;
+    const Execution masked = run(folder, others + " --left-mask=" + folder.path("mask.png"));
+    EXPECT_NE(0, masked.status);
+    EXPECT_NE(String::npos, masked.errors.find("--left-mask must have the size of the raw images, 160 x 120"))
+        << masked.errors;
+    EXPECT_FALSE(cv::utils::fs::exists(folder.path("others/a.png")));
+    EXPECT_FALSE(cv::utils::fs::exists(folder.path("others/b.png")));
 }
 
 TEST(HDPStereo_Programs, warns_of_a_swapped_pair)
@@ -271,6 +284,8 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
                  pair = " " + left + " " + right + " ", batch = " --batch " + a + " " + a + " " + out;
     folder.writeText("words.yml", "no: [ calibration");
     const String words = folder.path("words.yml");
+    folder.writeText("leaves.txt", left + " " + right + " ../x\n");
+    folder.write("truth.pfm", Mat(120, 160, CV_32F, Scalar(3)));
     const struct
     {
         String arguments, error;
@@ -292,6 +307,15 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
         { pair + "--findings=" + words, "filename: '" + words + "' does not hold a pair model" },
         { pair + "--largest=" + none, "cannot read the image '" + none + "'" },
         { pair + "--truth=" + none, "cannot read the image '" + none + "'" },
+        { pair + "--truth=" + folder.path("truth.pfm"), "--truth must be a PNG of 8 or 16 bits per pixel" },
+        { pair + "-num-disparity=16", "unknown option '-num-disparity'" },
+        { pair + "map.png more.png", "unexpected argument 'more.png'" },
+        { pair + "--preset", "option '--preset' needs a value: --preset=VALUE" },
+        { pair + "--prior=", "option '--prior' needs a value: --prior=VALUE" },
+        { pair + "--compare=yes", "option '--compare' takes no value" },
+        { pair + "map.tif --sigma=./map.tif", "cannot write './map.tif' twice: each output needs a file of its own" },
+        { " --batch " + folder.path("leaves.txt") + " " + out,
+          "'" + folder.path("leaves.txt") + "': line 1: the name '../x' is not in OUT" },
         { pair + "--point-cloud=x.ply --reprojection=" + none, "there is no file '" + none + "'" },
         { pair + "--point-cloud=x.ply --reprojection=" + words, "'" + words + "' has no matrix Q" },
         { pair + none + "/map.png", "cannot write '" + none + "/map.png': there is no folder '" + none + "'" },
@@ -336,6 +360,14 @@ TEST(HDPStereo_Programs, stereo_match_takes_masks)
     EXPECT_EQ(0, result.status) << result.errors;
     const Mat map = cv::imread(pfm, IMREAD_UNCHANGED);
     EXPECT_EQ(0, cv::countNonZero((map == std::numeric_limits<float>::infinity()) != (mask == 0)));
+    // Whatever its depth, what is not black has data.
+    Mat wide;
+    mask.convertTo(wide, CV_16U, 1. / 255);
+    folder.write("wide.png", wide);
+    EXPECT_EQ(
+        0, run(folder, program + " --left-mask=" + folder.path("wide.png") + " --right-mask=" + folder.path("wide.png"))
+               .status);
+    EXPECT_EQ(0, cv::countNonZero(map != cv::imread(pfm, IMREAD_UNCHANGED)));
     folder.write("small.png", mask.colRange(1, 100));
     for (const char* wrong : { "small.png", "none.png" })
     {
@@ -480,86 +512,111 @@ TEST(HDPStereo_Programs, read_16_bit)
     EXPECT_EQ(0, run(folder, "example_hdpstereo_hdp_own_tree" + faint.images("faint")).status);
 }
 
-//! Two numbered sequences, with the calibration of cameras that are rectified already
-TEST(HDPStereo_Programs, camera)
+//! Three frames, as two numbered sequences and as two folders, and the calibration of cameras that are rectified already
+struct CameraFrames
 {
     const DatasetFolder folder;
-    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 22);
-    cv::utils::fs::createDirectories(folder.path("lefts"));
-    cv::utils::fs::createDirectories(folder.path("rights"));
-    for (const String number : { "01", "02", "03" })
+    const SyntheticPair pair;
+    const String intrinsics, program, options, sequences;
+
+    CameraFrames()
+        : pair(makeSyntheticPair(Size(160, 120), 32, 22)), intrinsics(folder.path("intrinsics.yml")),
+          program("example_hdpstereo_hdp_camera "),
+          options(" --no-gui --num-disparities=32 -c=" + intrinsics +
+                  " --calibration2=" + folder.path("extrinsics.yml") + " --unit=0.1"),
+          sequences(program + folder.path("left%02d.png") + " " + folder.path("right%02d.png") + options)
     {
-        folder.write("left" + number + ".png", pair.left);
-        folder.write("right" + number + ".png", pair.right);
-        folder.write("lefts/" + number + ".png", pair.left);
-        folder.write("rights/" + number + ".png", pair.right);
+        cv::utils::fs::createDirectories(folder.path("lefts"));
+        cv::utils::fs::createDirectories(folder.path("rights"));
+        for (const String number : { "01", "02", "03" })
+        {
+            folder.write("left" + number + ".png", pair.left);
+            folder.write("right" + number + ".png", pair.right);
+            folder.write("lefts/" + number + ".png", pair.left);
+            folder.write("rights/" + number + ".png", pair.right);
+        }
+        Mat both;
+        cv::hconcat(pair.left, pair.right, both);
+        folder.write("both.png", both);
+        const Mat camera = (Mat_<double>(3, 3) << 200, 0, 79.5, 0, 200, 59.5, 0, 0, 1), none = Mat::zeros(1, 5, CV_64F);
+        FileStorage in(intrinsics, FileStorage::WRITE), out(folder.path("extrinsics.yml"), FileStorage::WRITE);
+        in << "M1" << camera << "D1" << none << "M2" << camera << "D2" << none;
+        out << "R" << Mat::eye(3, 3, CV_64F) << "T" << (Mat_<double>(3, 1) << -2, 0, 0);
     }
-    const Mat camera = (Mat_<double>(3, 3) << 200, 0, 79.5, 0, 200, 59.5, 0, 0, 1), none = Mat::zeros(1, 5, CV_64F);
-    const String intrinsics = folder.path("intrinsics.yml"), extrinsics = folder.path("extrinsics.yml");
-    FileStorage in(intrinsics, FileStorage::WRITE), out(extrinsics, FileStorage::WRITE);
-    in << "M1" << camera << "D1" << none << "M2" << camera << "D2" << none;
-    out << "R" << Mat::eye(3, 3, CV_64F) << "T" << (Mat_<double>(3, 1) << -2, 0, 0);
-    in.release();
-    out.release();
-    const String program = "example_hdpstereo_hdp_camera ",
-                 options = " --no-gui --num-disparities=32 -c=" + intrinsics + " --calibration2=" + extrinsics +
-                           " --unit=0.1";
-    const String command = program + folder.path("left%02d.png") + " " + folder.path("right%02d.png") + options;
-    const Execution all = run(folder, command + " --output=" + folder.path("shown%02d.png") + " --watch");
+};
+
+TEST(HDPStereo_Programs, camera_sequences)
+{
+    const CameraFrames frames;
+    const DatasetFolder& folder = frames.folder;
+    const Execution all = run(folder, frames.sequences + " --output=" + folder.path("shown%02d.png") + " --watch");
     EXPECT_EQ(0, all.status) << all.errors;
     EXPECT_NE(String::npos, all.output.find("3 frames, ")) << all.output;
     EXPECT_NE(String::npos, all.output.find("right camera after ")) << all.output;
     EXPECT_EQ(Size(320, 120), cv::imread(folder.path("shown02.png")).size());
     EXPECT_NE(String::npos, all.output.find("flicker 0.00 px")) << all.output; // the frames are the same
-    const String single = run(folder, command + " --frames=2 --scale=0.5 --single-frames").output;
+    const String single = run(folder, frames.sequences + " --frames=2 --scale=0.5 --single-frames").output;
     EXPECT_EQ(0u, single.find("2 frames, ")) << single;
-    EXPECT_EQ(1, run(folder, command + " --preset=tree").status);
+    EXPECT_EQ(1, run(folder, frames.sequences + " --preset=tree").status);
+}
 
-    // Folders; and one picture with both images
-    const String results = folder.path("results");
-    EXPECT_EQ(0u, run(folder,
-                      program + folder.path("lefts") + " " + folder.path("rights") + options + " --results=" + results)
-                      .output.find("3 frames, "));
+TEST(HDPStereo_Programs, camera_folders_and_their_results)
+{
+    const CameraFrames frames;
+    const DatasetFolder& folder = frames.folder;
+    const String results = folder.path("results"),
+                 command = frames.program + folder.path("lefts") + " " + folder.path("rights") + frames.options;
+    EXPECT_EQ(0u, run(folder, command + " --results=" + results).output.find("3 frames, "));
     const Mat depth = cv::imread(results + "/000002_depth.png", IMREAD_ANYDEPTH);
     const Mat disparity = cv::imread(results + "/000002_disparity.pfm", IMREAD_ANYDEPTH);
     ASSERT_EQ(CV_16UC1, depth.type());
-    ASSERT_EQ(pair.left.size(), depth.size());
+    ASSERT_EQ(frames.pair.left.size(), depth.size());
     EXPECT_NEAR(1000 * 200 * 0.2 / disparity.at<float>(60, 100), depth.at<ushort>(60, 100), 1);
     const Mat metres = cv::imread(results + "/000002_depth.pfm", IMREAD_ANYDEPTH);
     EXPECT_NEAR(metres.at<float>(60, 100), depth.at<ushort>(60, 100) / 1000., 0.001);
     EXPECT_TRUE(cv::utils::fs::exists(results + "/000002_points.ply"));
-    Mat both;
-    cv::hconcat(pair.left, pair.right, both);
-    folder.write("both.png", both);
-    EXPECT_EQ(0u, run(folder, program + folder.path("both.png") + options).output.find("1 frames, "));
-    EXPECT_NE(String::npos, run(folder, program + folder.path("both.png") + " --no-gui -c=" + intrinsics)
-                                .errors.find("intrinsics.yml': T/data is missing"));
+}
 
+//! Both images in one picture, and images of other types
+TEST(HDPStereo_Programs, camera_images)
+{
+    const CameraFrames frames;
+    const DatasetFolder& folder = frames.folder;
+    EXPECT_EQ(0u, run(folder, frames.program + folder.path("both.png") + frames.options).output.find("1 frames, "));
     for (int type : { CV_8UC1, CV_16UC1, CV_8UC4 })
     {
         for (const String side : { "left", "right" })
         {
-            Mat image = side == "left" ? pair.left : pair.right;
+            Mat image = side == "left" ? frames.pair.left : frames.pair.right;
             cv::cvtColor(image, image, type == CV_8UC4 ? COLOR_BGR2BGRA : COLOR_BGR2GRAY);
             image.convertTo(image, type, CV_MAT_DEPTH(type) == CV_16U ? 16 : 1);
             folder.write(side + "01.png", image);
         }
-        EXPECT_EQ(0u, run(folder, command + " --frames=1").output.find("1 frames, ")) << "type " << type;
+        EXPECT_EQ(0u, run(folder, frames.sequences + " --frames=1").output.find("1 frames, ")) << "type " << type;
     }
+}
+
+TEST(HDPStereo_Programs, camera_mistakes)
+{
+    const CameraFrames frames;
+    const DatasetFolder& folder = frames.folder;
+    const String both = folder.path("both.png") + " --no-gui";
     const std::pair<String, String> wrong[] = {
         { " --no-gui", "a source is needed" },
         { "no/such/video.avi --no-gui", "cannot open the source no/such/video.avi" },
         { folder.path("lefts") + " no/such/folder --no-gui", "cannot open the source no/such/folder" },
-        { folder.path("both.png") + " --no-gui -c=no/such.yml", "cannot read the calibration 'no/such.yml'" },
-        { folder.path("both.png") + " --no-gui --num-disparities=many", "--scale must be from 0.05 to 1, the numbers" },
+        { both + " -c=no/such.yml", "cannot read the calibration 'no/such.yml'" },
+        { both + " --num-disparities=many", "--scale must be from 0.05 to 1, the numbers" },
     };
     for (const auto& call : wrong)
     {
-        const Execution bad = run(folder, program + call.first);
+        const Execution bad = run(folder, frames.program + call.first);
         EXPECT_EQ(1, bad.status) << call.first;
         EXPECT_EQ(0u, bad.errors.find("error: " + call.second)) << bad.errors;
         EXPECT_EQ(firstLine(bad.errors) + "\n", bad.errors);
     }
+    EXPECT_NE(String::npos,
+              run(folder, frames.program + both + " -c=" + frames.intrinsics).errors.find("T/data is missing"));
 }
 
 }} // namespace opencv_test
