@@ -190,7 +190,7 @@ public:
     {
         if (!result_.isMatched)
             return confidenceArray.release();
-        give(confidenceOfLayer(), INTER_LINEAR_EXACT, confidenceArray);
+        enlargeToImage(confidenceOfLayer(), INTER_LINEAR_EXACT, confidenceArray);
         if (!output_.rejected.empty())
             confidenceArray.setTo(Scalar(0), output_.rejected.back().pixels);
     }
@@ -209,7 +209,7 @@ public:
         double scale = 1;
         for (int layer = 0; layer < plan.layer; ++layer)
             scale *= sigmaPerLayer;
-        give(ofLayer * scale, INTER_NEAREST, sigmaArray); // the same on all machines
+        enlargeToImage(ofLayer * scale, INTER_NEAREST, sigmaArray); // means of floats differ between machines
         if (!output_.rejected.empty())
             sigmaArray.setTo(Scalar(std::numeric_limits<float>::infinity()), output_.rejected.back().pixels);
     }
@@ -223,7 +223,8 @@ public:
         Mat ofLayer;
         findReasons(layers_[layer.layer].disparity, pairPlan.output, pairPlan.size.width,
                     scratch_[layer.layer].cost(layer.cost).limits(), ofLayer);
-        give(ofLayer, INTER_NEAREST, reasonsArray);
+        enlargeToImage(ofLayer, INTER_NEAREST, reasonsArray);
+        // From the last filter to the first: what rejected a pixel first is the reason.
         for (auto rejected = output_.rejected.rbegin(); rejected != output_.rejected.rend(); ++rejected)
             reasonsArray.setTo(Scalar(rejected->reason), rejected->pixels);
     }
@@ -235,7 +236,7 @@ public:
         rangeSearch_.forgetFrames();
     }
 
-    //! The key that save() gives the matcher: XML has no dots in it.
+    //! The key of the matcher in a file of save(): not nameInFiles, as keys of FileStorage may not have dots in XML.
     String getDefaultName() const CV_OVERRIDE { return "hdpstereo_HDPTreeMatcher"; }
 
     void write(FileStorage& fs) const CV_OVERRIDE
@@ -350,8 +351,9 @@ private:
         return confidence;
     }
 
-    //! From what is known of the finest layer to the image. Throws if the array's type is another one.
-    void give(const Mat& ofLayer, int interpolation, OutputArray array) const
+    //! A map of the finest layer in the size of the image, without added columns. Throws if the array's type is another
+    //! one.
+    void enlargeToImage(const Mat& ofLayer, int interpolation, OutputArray array) const
     {
         const int extension = result_.plan.output.extension;
         Mat extended = ofLayer;

@@ -61,7 +61,7 @@ template <typename Scratch, typename F> void parallelForRows(const Size& size, c
     parallel_for_(Range(0, size.height), part, countParts(size));
 }
 
-//! At least so many elements of a vector that only ever grows
+//! Enlarges a vector to at least so many elements, and returns them: memory to work in, which is never made smaller.
 template <typename T> T* grown(std::vector<T>& elements, size_t count)
 {
     if (elements.size() < count)

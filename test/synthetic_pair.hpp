@@ -137,6 +137,7 @@ private:
         return front;
     }
 
+    //! Bilinear, of channel c
     static double interpolate(const Mat& noise, double x, double y, int c)
     {
         const int x0 = std::min(std::max((int)x, 0), noise.cols - 2),

@@ -199,7 +199,7 @@ TEST(HDPStereo_BadInput, disparities_that_do_not_fit_into_16_bit)
     {
         SCOPED_TRACE(testing::Message() << range[1] << " from " << range[0]);
         for (const System& preset : presets)
-            expectRejected([&] { match(*createSystem(preset, range[1], range[0]), image, image); }, "isparit");
+            expectRejected([&] { match(*createSystem(preset, range[1], range[0]), image, image); }, "isparities");
     }
 }
 

@@ -49,7 +49,8 @@ TEST(HDPStereo_DisparityRanges, no_other_disparities_occur)
                 for (int y = 0; y < disparity.rows; ++y)
                     for (int x = 0; x < disparity.cols; ++x)
                     {
-                        const Point coarse(x * size.width / disparity.cols, y * size.height / disparity.rows);
+                        const Point coarse((int)((x + 0.5) * size.width / disparity.cols),
+                                           (int)((y + 0.5) * size.height / disparity.rows));
                         const float d = disparity.at<float>(y, x), lowest = smallest.at<float>(coarse),
                                     highest = largest.at<float>(coarse);
                         if (d == minDisparity - 1)

@@ -159,6 +159,7 @@ std::vector<hdp::LayerImages> layersOf(const Mat& left, const Mat& right, hdp::P
     return images;
 }
 
+//! In levels of 255, without a border, whose rows are interpolated from others
 double meanDifference(const Mat& a, const Mat& b)
 {
     const Rect inside(8, 8, a.cols - 16, a.rows - 16);

@@ -55,7 +55,7 @@ std::vector<double> estimate(const RigDrift& drift, std::vector<double>* deviati
     return values;
 }
 
-TEST(HDPStereo_RigDrift, findsATurnFromItsRows)
+TEST(HDPStereo_RigDrift, finds_a_turn_from_its_rows)
 {
     for (const Vec4d& turn : { Vec4d(0.02, 0, 0, 0), Vec4d(0, 0, -0.02, 0), Vec4d(0.5, 0, 0, 0),
                                Vec4d(-0.5, 0.5, 0.5, 0), Vec4d(0.1, -0.3, -0.2, 0.4), Vec4d(0, 0, 0.3, -1) })
@@ -68,7 +68,7 @@ TEST(HDPStereo_RigDrift, findsATurnFromItsRows)
     }
 }
 
-TEST(HDPStereo_RigDrift, knowsWhatItDoesNotKnow)
+TEST(HDPStereo_RigDrift, knows_what_it_does_not_know)
 {
     std::vector<double> deviations;
     const Ptr<RigDrift> drift = RigDrift::create(K, size);
@@ -100,7 +100,7 @@ TEST(HDPStereo_RigDrift, knowsWhatItDoesNotKnow)
     EXPECT_GT(deviations[1], 8 * deviations[0]);
 }
 
-TEST(HDPStereo_RigDrift, forgetsAfterAKnock)
+TEST(HDPStereo_RigDrift, forgets_after_a_knock)
 {
     const Ptr<RigDrift> drift = RigDrift::create(K, size, 10);
     for (int i = 0; i < 20; ++i)
@@ -118,7 +118,7 @@ TEST(HDPStereo_RigDrift, forgetsAfterAKnock)
     EXPECT_NEAR(-0.35, estimate(*drift)[0], 0.02);
 }
 
-TEST(HDPStereo_RigDrift, refusesWhatIsNoRigAndNoRows)
+TEST(HDPStereo_RigDrift, refuses_what_is_no_rig_and_no_rows)
 {
     expectRejected([] { RigDrift::create(Mat(), size); }, "P2");
     expectRejected([] { RigDrift::create(Matx33d(), size); }, "P2");
@@ -132,7 +132,7 @@ TEST(HDPStereo_RigDrift, refusesWhatIsNoRigAndNoRows)
 }
 
 //! R and T may be parts of a larger matrix, such as a pose.
-TEST(HDPStereo_RigDrift, correctsPartsOfMatrices)
+TEST(HDPStereo_RigDrift, corrects_parts_of_matrices)
 {
     const Ptr<RigDrift> drift = RigDrift::create(K, size);
     drift->add(rowsOf(turnOf(0.5, 0, 0.3)));
@@ -166,7 +166,7 @@ double rootOfSquares(const std::vector<double>& m, Size imageSize)
     return std::sqrt(squares);
 }
 
-TEST_P(HDPStereo_SlowRigDrift, isFoundInTwentyNoisyFrames)
+TEST_P(HDPStereo_SlowRigDrift, is_found_in_twenty_noisy_frames)
 {
     const StereoCalibration asCalibrated = makeCalibration();
     const Ptr<StereoRig> rig = StereoRig::create(asCalibrated);
@@ -218,7 +218,7 @@ INSTANTIATE_TEST_CASE_P(Turns, HDPStereo_SlowRigDrift,
                         testing::Values(Turn{ 0.02, 0, -0.02 }, Turn{ -0.5, 0, 0.3 }, Turn{ 0.2, 0.5, -0.5 }));
 
 //! The scenes of HDPSTEREO_DATA/rows_off, whose rows are off by one to three pixels: from a pair to a rig that fits
-TEST(HDPStereo_RigDrift, correctsRealRigs)
+TEST(HDPStereo_RigDrift, corrects_real_rigs)
 {
     const char* const data = std::getenv("HDPSTEREO_DATA");
     const std::string folder = std::string(data ? data : "") + "/rows_off/";

@@ -81,13 +81,13 @@ void expectRefused(const Files& files, Size size, const std::string& file, const
 
 typedef testing::TestWithParam<Kind> HDPStereo_CalibrationFiles;
 
-TEST_P(HDPStereo_CalibrationFiles, isReadAsItWasWritten)
+TEST_P(HDPStereo_CalibrationFiles, is_read_as_it_was_written)
 {
     const StereoCalibration c = calibrationOf(GetParam());
     expectNear(c, read(GetParam().write(c), GetParam().size));
 }
 
-TEST_P(HDPStereo_CalibrationFiles, isReadWithLineEndsOfWindows)
+TEST_P(HDPStereo_CalibrationFiles, is_read_with_line_ends_of_windows)
 {
     const StereoCalibration c = calibrationOf(GetParam());
     Files files = GetParam().write(c);
@@ -99,7 +99,7 @@ TEST_P(HDPStereo_CalibrationFiles, isReadWithLineEndsOfWindows)
     expectNear(c, read(files, GetParam().size));
 }
 
-TEST_P(HDPStereo_CalibrationFiles, namesEachFieldThatIsMissing)
+TEST_P(HDPStereo_CalibrationFiles, names_each_field_that_is_missing)
 {
     const Files files = GetParam().write(calibrationOf(GetParam()));
     for (size_t i = 0; i < files.size(); ++i)
@@ -117,7 +117,7 @@ TEST_P(HDPStereo_CalibrationFiles, namesEachFieldThatIsMissing)
         }
 }
 
-TEST_P(HDPStereo_CalibrationFiles, namesEachNumberThatIsNone)
+TEST_P(HDPStereo_CalibrationFiles, names_each_number_that_is_none)
 {
     const Files files = GetParam().write(calibrationOf(GetParam()));
     for (size_t i = 0; i < files.size(); ++i)
@@ -140,7 +140,7 @@ TEST_P(HDPStereo_CalibrationFiles, namesEachNumberThatIsNone)
 }
 
 //! A rig that cannot be is told by the file and the field that say so.
-TEST_P(HDPStereo_CalibrationFiles, refusesImpossibleRigs)
+TEST_P(HDPStereo_CalibrationFiles, refuses_impossible_rigs)
 {
     const auto writer = GetParam().write;
     const auto expect =
@@ -174,7 +174,7 @@ TEST_P(HDPStereo_CalibrationFiles, refusesImpossibleRigs)
     expect([](StereoCalibration& c) { c.distCoeffs2.at<double>(1) = 2e6; },
            names.distortion + (isRational ? ", K4, K5, K6" : ""), "of finite numbers of a magnitude below");
     if (writer == inRosFiles)
-        return; // their rectification is made for a possible one; see refusesRosFilesOfImpossibleRigs
+        return; // their rectification is made for a possible one; see refuses_ros_files_of_impossible_rigs
     expect([](StereoCalibration& c) { c.cameraMatrix2.at<double>(1, 1) = 0; }, names.focal, "of focal lengths");
     expect([](StereoCalibration& c) { c.T *= 0; }, names.translation, "of a baseline above 0");
     expect([](StereoCalibration& c) { c.T *= -1; }, names.translation, "that of a second camera to the right");
@@ -187,7 +187,7 @@ TEST_P(HDPStereo_CalibrationFiles, refusesImpossibleRigs)
     expect([](StereoCalibration& c) { c.R.row(1) *= -1; }, names.rotation, rotation);
 }
 
-TEST_P(HDPStereo_CalibrationFiles, isScaledToImagesOfTheSameAspect)
+TEST_P(HDPStereo_CalibrationFiles, is_scaled_to_images_of_the_same_aspect)
 {
     const StereoCalibration c = calibrationOf(GetParam());
     const Files files = GetParam().write(c);
@@ -204,7 +204,7 @@ TEST_P(HDPStereo_CalibrationFiles, isScaledToImagesOfTheSameAspect)
 
 INSTANTIATE_TEST_CASE_P(Kinds, HDPStereo_CalibrationFiles, testing::ValuesIn(kinds));
 
-TEST(HDPStereo_StereoCalibration, refusesRosFilesOfOtherOrder)
+TEST(HDPStereo_StereoCalibration, refuses_ros_files_of_other_order)
 {
     Files files = inRosFiles(makeCalibration());
     std::swap(files[0], files[1]);
@@ -212,7 +212,7 @@ TEST(HDPStereo_StereoCalibration, refusesRosFilesOfOtherOrder)
 }
 
 //! ROS has the pose in the rectification: its projections have the baseline, its rotations are to be rotations.
-TEST(HDPStereo_StereoCalibration, refusesRosFilesOfImpossibleRigs)
+TEST(HDPStereo_StereoCalibration, refuses_ros_files_of_impossible_rigs)
 {
     const auto expect = [](int file, const char* field, int index, double value, const std::string& text) {
         Files files = inRosFiles(makeCalibration());
@@ -242,7 +242,7 @@ TEST(HDPStereo_StereoCalibration, refusesRosFilesOfImpossibleRigs)
     }
 }
 
-TEST(HDPStereo_StereoCalibration, wantsTheNumberOfFilesOfItsKind)
+TEST(HDPStereo_StereoCalibration, wants_the_number_of_files_of_its_kind)
 {
     const StereoCalibration c = makeCalibration(4);
     Files files = inRosFiles(c);
@@ -259,7 +259,7 @@ TEST(HDPStereo_StereoCalibration, wantsTheNumberOfFilesOfItsKind)
     expectNear(c, read(files, c.imageSize));
 }
 
-TEST(HDPStereo_StereoCalibration, knowsSectionsOfTheZed)
+TEST(HDPStereo_StereoCalibration, knows_sections_of_the_zed)
 {
     Files files = inZedFile(calibrationOf(kinds[8]));
     expectRefused(files, Size(), "SN12345.conf", "imageSize");
@@ -279,7 +279,7 @@ TEST(HDPStereo_StereoCalibration, knowsSectionsOfTheZed)
     EXPECT_EQ("-0.05, -0.0001, -0", inWords(c.T));
 }
 
-TEST(HDPStereo_StereoCalibration, readsFilesAndNamesThoseThatAreNone)
+TEST(HDPStereo_StereoCalibration, reads_files_and_names_those_that_are_none)
 {
     const StereoCalibration c = makeCalibration();
     const Files files = inOpenCVFiles(c);
@@ -300,7 +300,7 @@ TEST(HDPStereo_StereoCalibration, readsFilesAndNamesThoseThatAreNone)
     expectRejected([&] { readStereoCalibration(none.name); }, "too large");
 }
 
-TEST(HDPStereo_StereoCalibration, refusesOtherModels)
+TEST(HDPStereo_StereoCalibration, refuses_other_models)
 {
     Files files = inKalibrFile(makeCalibration(4));
     const auto replaced = [&](const std::string& from, const std::string& to) {
@@ -326,7 +326,7 @@ TEST(HDPStereo_StereoCalibration, refusesOtherModels)
 }
 
 //! A file of one program may have another one's name for a model: its coefficients count.
-TEST(HDPStereo_StereoCalibration, readsCoefficientsOfAnyModel)
+TEST(HDPStereo_StereoCalibration, reads_coefficients_of_any_model)
 {
     for (const int coefficients : { 5, 8 })
         for (const auto& write : { inKalibrFile, inEurocFiles })
@@ -341,7 +341,7 @@ TEST(HDPStereo_StereoCalibration, readsCoefficientsOfAnyModel)
         }
 }
 
-TEST(HDPStereo_CalibrationText, readsWhatYamlHas)
+TEST(HDPStereo_CalibrationText, reads_what_yaml_has)
 {
     const CalibrationText text("f",
                                "%YAML 1.2\n---\na: 1 # one\nb: !!tag\n   c: 'x # y'\n   d: [ 1, [2,\n 3 ], \"4\" ]\n"
@@ -356,7 +356,7 @@ TEST(HDPStereo_CalibrationText, readsWhatYamlHas)
     EXPECT_FALSE(text.hasBelow("c"));
 }
 
-TEST(HDPStereo_CalibrationText, namesTheLineThatIsNotUnderstood)
+TEST(HDPStereo_CalibrationText, names_the_line_that_is_not_understood)
 {
     const struct
     {

@@ -55,7 +55,7 @@ Mat innerPixels(const Mat& depth, const StereoRig& rig)
 
 typedef testing::TestWithParam<Lens> HDPStereo_RigDepth;
 
-TEST_P(HDPStereo_RigDepth, isThatOfTheScene)
+TEST_P(HDPStereo_RigDepth, is_that_of_the_scene)
 {
     const StereoCalibration c = calibrationOf(GetParam());
     const Ptr<StereoRig> rig = StereoRig::create(c, GetParam().fieldOfView);
@@ -90,7 +90,7 @@ TEST_P(HDPStereo_RigDepth, isThatOfTheScene)
 
 INSTANTIATE_TEST_CASE_P(Lenses, HDPStereo_RigDepth, testing::ValuesIn(lenses));
 
-TEST(HDPStereo_StereoRig, seesAPlaneAtTwoMetres)
+TEST(HDPStereo_StereoRig, sees_a_plane_at_two_metres)
 {
     StereoCalibration c = makeCalibration();
     c.R = Mat::eye(3, 3, CV_64F);
@@ -111,7 +111,7 @@ TEST(HDPStereo_StereoRig, seesAPlaneAtTwoMetres)
     EXPECT_EQ(0, cv::countNonZero(mask == 0)); // nothing is empty without a field of view
 }
 
-TEST(HDPStereo_StereoRig, masksWhatNoRawPixelReaches)
+TEST(HDPStereo_StereoRig, masks_what_no_raw_pixel_reaches)
 {
     for (const bool isFisheye : { false, true })
     {
@@ -130,7 +130,7 @@ TEST(HDPStereo_StereoRig, masksWhatNoRawPixelReaches)
 }
 
 //! A lens whose polynomial turns back at r = sqrt(1 / 0.9): it would show the picture's middle again.
-TEST(HDPStereo_StereoRig, masksWhereTheDistortionFoldsBack)
+TEST(HDPStereo_StereoRig, masks_where_the_distortion_folds_back)
 {
     StereoCalibration c = makeCalibration(4);
     c.distCoeffs1 = c.distCoeffs2 = (Mat_<double>(1, 4) << -0.3, 0, 0, 0);
@@ -151,7 +151,7 @@ TEST(HDPStereo_StereoRig, masksWhereTheDistortionFoldsBack)
         }
 }
 
-TEST(HDPStereo_StereoRig, showsAllOfALensThatDoesNotFoldBack)
+TEST(HDPStereo_StereoRig, shows_all_of_a_lens_that_does_not_fold_back)
 {
     StereoCalibration c = makeCalibration(4, true);
     c.cameraMatrix1 = c.cameraMatrix2 = (Mat_<double>(3, 3) << 150, 0, 240, 0, 150, 180, 0, 0, 1);
@@ -162,7 +162,7 @@ TEST(HDPStereo_StereoRig, showsAllOfALensThatDoesNotFoldBack)
     EXPECT_EQ(right.total(), (size_t)cv::countNonZero(right));
 }
 
-TEST(HDPStereo_StereoRig, rectifiesAllTypesOfImages)
+TEST(HDPStereo_StereoRig, rectifies_all_types_of_images)
 {
     const StereoCalibration c = makeCalibration();
     const Ptr<StereoRig> rig = StereoRig::create(c);
@@ -187,7 +187,7 @@ TEST(HDPStereo_StereoRig, rectifiesAllTypesOfImages)
     expectIdentical(grey, same);
 }
 
-TEST(HDPStereo_StereoRig, rectifiesTheLargestImages)
+TEST(HDPStereo_StereoRig, rectifies_the_largest_images)
 {
     StereoCalibration c = makeCalibration();
     c.imageSize.width = 32766;
@@ -200,7 +200,7 @@ TEST(HDPStereo_StereoRig, rectifiesTheLargestImages)
     }
 }
 
-TEST(HDPStereo_StereoRig, computesDepthOfWhatHasADisparity)
+TEST(HDPStereo_StereoRig, computes_depth_of_what_has_a_disparity)
 {
     const Ptr<StereoRig> rig = StereoRig::create(makeCalibration());
     const double product = rig->getBaseline() * rig->getFocalLength();
@@ -224,7 +224,7 @@ TEST(HDPStereo_StereoRig, computesDepthOfWhatHasADisparity)
     EXPECT_EQ(0, depth.at<ushort>(0));
 }
 
-TEST(HDPStereo_StereoRig, refusesWhatIsImpossible)
+TEST(HDPStereo_StereoRig, refuses_what_is_impossible)
 {
     const StereoCalibration good = makeCalibration();
     const auto expectBad = [&](const std::function<void(StereoCalibration&)>& change, const std::string& name) {
@@ -260,7 +260,7 @@ TEST(HDPStereo_StereoRig, refusesWhatIsImpossible)
 }
 
 //! The pairs of a drone in HDPSTEREO_DATA/raw_euroc: two cameras that were calibrated once
-TEST(HDPStereo_StereoRig, bringsRowsOfARealRigTogether)
+TEST(HDPStereo_StereoRig, brings_rows_of_a_real_rig_together)
 {
     const char* const data = std::getenv("HDPSTEREO_DATA");
     const std::string folder = std::string(data ? data : "") + "/raw_euroc/";

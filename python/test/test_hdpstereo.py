@@ -419,7 +419,7 @@ class Parameters(Test):
                 ('disparityDepth must be CV_16S or CV_32F, not 0', matcher.setDisparityDepth, 0),
                 ('treeStrategy must not be empty', matcher.setTreeStrategy, None),
                 ('layer must be >= 0, not -1', matcher.getLayerPrior, -1),
-                ('preset must be one of HDPTreeMatcher::PRESET_*, not 9', HDPTreeMatcher, 0, 16, 9),
+                ('preset must be one of HDPTreeMatcher::PRESET_*, 0..4, not 9', HDPTreeMatcher, 0, 16, 9),
                 ('numDisparities must be >= 0, not -16', HDPTreeMatcher.create, 0, -16),
                 ('k must be finite and >= 0', hdpstereo.createSegmentTree, -1),
                 ('seed must be >= 0', hdpstereo.createRandomTree, -1),
@@ -574,14 +574,14 @@ class Matching(Test):
         matcher = HDPTreeMatcher(0, 32)
         expected = matcher.compute(LEFT, RIGHT)
         grey = LEFT[:, :, 0]
-        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1'
+        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1, not '
         for text, left, right in (
                 ('left must not be empty', LEFT[:0], RIGHT[:0]),
-                ('right must have the size of left', LEFT, RIGHT[:-1]),
-                ('right must have the type of left', LEFT, grey),
-                (types, LEFT.astype(np.uint16), RIGHT.astype(np.uint16)),
-                (types, grey / 255.0, grey / 255.0),
-                (types, LEFT[:, :, :2], RIGHT[:, :, :2]),
+                ('right must have the size of left, 160 x 120, not 160 x 119', LEFT, RIGHT[:-1]),
+                ('right must have the type of left, CV_8UC3, not CV_8UC1', LEFT, grey),
+                (types + 'CV_16UC3', LEFT.astype(np.uint16), RIGHT.astype(np.uint16)),
+                (types + 'CV_64FC1', grey / 255.0, grey / 255.0),
+                (types + 'CV_8UC2', LEFT[:, :, :2], RIGHT[:, :, :2]),
                 ('left must be an image, not an array of int64 with shape (120, 160)', grey.astype(np.int64), grey),
                 ('right must be an image, not an array of bool with shape (120, 160)', grey, grey > 7),
                 ('left must be an image, not an array of >u2 with shape (120, 160)', grey.astype('>u2'), grey),

@@ -66,7 +66,7 @@ struct ByteLanes
         return ByteLanes(v_load_halves(low[0] + offset, high[0] + offset),
                          v_load_halves(low[1] + offset, high[1] + offset));
     }
-    //! The group at bytes as the first or the last one, and 0, 1, .. 15 in the other one
+    //! An order for permute() that changes the first or the last group alone, as bytes say; the other one has 0 .. 15.
     static CV_ALWAYS_INLINE ByteLanes first(const uchar* bytes) { return ByteLanes(v_load(bytes), laneNumbers()); }
     static CV_ALWAYS_INLINE ByteLanes last(const uchar* bytes) { return ByteLanes(laneNumbers(), v_load(bytes)); }
     //! The group at bytes, then the first one of before

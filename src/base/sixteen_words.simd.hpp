@@ -9,7 +9,7 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! 16 words without sign, in one vector or two, under names that all versions of OpenCV have in common
+//! 16 unsigned words, in one vector or two, under names that all versions of OpenCV have in common
 struct SixteenWords
 {
 #if HDP_LANES_AVX2
@@ -74,7 +74,7 @@ struct SixteenWords
         return of([&](int i) { return v_select(equal(a.v[i], b.v[i]), v[i], all(0)); });
     }
 
-    //! The sum of all lanes, as numbers with sign, which is one of 16 bits
+    //! The sum of all lanes, read as signed numbers; it must fit into 16 bits itself.
     int sum() const
     {
         int result = 0;

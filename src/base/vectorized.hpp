@@ -7,10 +7,10 @@
 #include "opencv2/core/cvdef.h"
 #include <algorithm>
 
-/** HDP_VECTORIZED before a loop whose rounds are independent of one another, for the compiler to make vector operations
-of: what a round writes is neither read nor written in another, and GCC does not unroll the loop before it could see
-that it is one for vectors. HDP_FOR_LANES(k, lanes) is such a loop over 4, 8, 16 or 32 lanes, a number that is known to
-the compiler, in groups of 8 that are unrolled. */
+/** HDP_VECTORIZED before a loop whose iterations are independent of one another, for the compiler to make vector
+operations of: what one writes is neither read nor written in another, but for sums, extremes and bits in a local
+variable; and GCC does not unroll the loop before it could see that it is one for vectors. HDP_FOR_LANES(k, lanes) is
+such a loop over 4, 8, 16 or 32 lanes, a number that is known to the compiler, in groups of 8 that are unrolled. */
 #if defined(__clang__)
 #pragma clang diagnostic ignored "-Wpass-failed" // a loop that it cannot make vectors of is slower, but not wrong
 #define HDP_VECTORIZED _Pragma("clang loop vectorize(assume_safety)")

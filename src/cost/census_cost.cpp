@@ -49,7 +49,7 @@ void CensusCost::prepare(const Mat& left, const Mat& right, int numDisparities, 
     planes_.right = right_.ptr() + censusMargin;
     planes_.leftStep = left_.step;
     planes_.rightStep = right_.step;
-    planes_.rightPlane = right_.step * left.rows;
+    planes_.rightPlaneStep = right_.step * left.rows;
 }
 
 void CensusCost::prepareImage(const Mat& image, int radius, int tolerance, bool isRight, int after)

@@ -15,22 +15,24 @@ struct CensusPlanes
     int count; // of planes
     const uchar *left, *right;
     size_t leftStep, rightStep; // from a row to the next
-    size_t rightPlane;          // from a plane to the next
+    size_t rightPlaneStep;      // from a plane to the next
 };
 
 //! What the census of a row of grey levels compares
 struct CensusWindow
 {
-    int radius, tolerance; // see CensusCost::prepare(); 1 to 3
-    ptrdiff_t step;        // from a row to the next, in elements
+    int radius;     // 1 to 3 pixels
+    int tolerance;  // see CensusCost::prepare()
+    ptrdiff_t step; // from a row to the next, in elements
 };
 
-//! Where the census of a pixel differs from that of its match: a byte of each plane. right: in the first plane
+//! Where the census of a pixel differs from that of its match: a byte of each plane. right: in the first plane;
+//! planeStep: from a plane to the next
 template <int planes>
-CV_ALWAYS_INLINE unsigned censusDifference(const uchar* left, const uchar* right, size_t rightPlane)
+CV_ALWAYS_INLINE unsigned censusDifference(const uchar* left, const uchar* right, size_t planeStep)
 {
     unsigned bits = 0;
-    for (int plane = 0; plane < planes; ++plane, right += rightPlane)
+    for (int plane = 0; plane < planes; ++plane, right += planeStep)
         bits |= (unsigned)(left[plane] ^ *right) << (8 * plane);
     return bits;
 }
@@ -84,10 +86,10 @@ public:
     //! behind the last candidate.
     const uchar* rightPlane(int plane, int y) const
     {
-        return planes_.right + plane * planes_.rightPlane + y * planes_.rightStep;
+        return planes_.right + plane * planes_.rightPlaneStep + y * planes_.rightStep;
     }
-    //! From a plane of the right image to the next
-    size_t planeStride() const { return planes_.rightPlane; }
+    //! Bytes from a plane of the right image to the next
+    size_t planeStride() const { return planes_.rightPlaneStep; }
     enum
     {
         greyByte = 3,
@@ -97,7 +99,7 @@ public:
 private:
     void prepareImage(const Mat& image, int radius, int tolerance, bool isRight, int after);
 
-    CensusPlanes planes_;
+    CensusPlanes planes_ = CensusPlanes();
     Mat left_;  // CV_8UC4, see leftPixels()
     Mat right_; // CV_8UC1, the planes of the census and the grey levels below one another, see rightPlane()
 };

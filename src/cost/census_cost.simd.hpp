@@ -93,17 +93,17 @@ struct PixelCensus
     }
 
     //! C of some candidates from number k on, of the pixel so many columns to the right
-    template <int planes, int column = 0> CV_ALWAYS_INLINE ByteLanes costs(size_t rightPlane, int k) const
+    template <int planes, int column = 0> CV_ALWAYS_INLINE ByteLanes costs(size_t planeStep, int k) const
     {
         const int at = 4 * column;
         const uchar* const from = right - column + k;
         const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ ByteLanes::load(from);
         if (planes == 1)
             return first.countBits();
-        const ByteLanes second = ByteLanes::repeatByte<at + 1>(left) ^ ByteLanes::load(from + rightPlane);
+        const ByteLanes second = ByteLanes::repeatByte<at + 1>(left) ^ ByteLanes::load(from + planeStep);
         if (planes == 2)
             return first.countBits() + second.countBits();
-        const ByteLanes third = ByteLanes::repeatByte<at + 2>(left) ^ ByteLanes::load(from + 2 * rightPlane);
+        const ByteLanes third = ByteLanes::repeatByte<at + 2>(left) ^ ByteLanes::load(from + 2 * planeStep);
         return ByteLanes::countBits(first, second, third);
     }
 };
@@ -135,7 +135,7 @@ template <int planes> struct CensusCosts
         static void run(const CensusPlanes& census, const int* pixels, int count, int first, T* cost)
         {
             evaluatePixels<lanes>(census.width, pixels, count, cost, [&](int y, int x, int k) {
-                return PixelCensus(census, y, x, first).costs<planes>(census.rightPlane, k);
+                return PixelCensus(census, y, x, first).costs<planes>(census.rightPlaneStep, k);
             });
         }
     };
@@ -147,9 +147,9 @@ template <int planes> struct CensusCosts
                         uchar* cost)
         {
             evaluatePixels<lanes>(own.width, pixels, count, cost, [&](int y, int x, int k) {
-                const size_t plane = below.rightPlane;
+                const size_t plane = below.rightPlaneStep;
                 const PixelCensus upper(below, 2 * y, 2 * x, first), lower(below, 2 * y + 1, 2 * x, first);
-                const ByteLanes ofOwn = PixelCensus(own, y, x, first / 2).costs<planes>(own.rightPlane, k / 2);
+                const ByteLanes ofOwn = PixelCensus(own, y, x, first / 2).costs<planes>(own.rightPlaneStep, k / 2);
                 const ByteLanes sum = upper.costs<planes>(plane, k) + upper.costs<planes, 1>(plane, k) +
                                       lower.costs<planes>(plane, k) + lower.costs<planes, 1>(plane, k);
                 return ofOwn.sumsOfHalves() + sum + (sum + ByteLanes::repeat(1)).half();
@@ -198,7 +198,7 @@ template <int count> void costOfRow(const CensusPlanes& planes, int y, const ush
         const int size = std::min(block, planes.width - begin);
         for (int i = 0, x = begin; i < size; ++i, ++x)
             differences[i] =
-                censusDifference<count>(left + 4 * x, right - x + wholeDisparity(disparity[x]), planes.rightPlane);
+                censusDifference<count>(left + 4 * x, right - x + wholeDisparity(disparity[x]), planes.rightPlaneStep);
         HDP_VECTORIZED for (int i = 0; i < size; ++i) cost[begin + i] = (uchar)countCensusBits(differences[i]);
     }
 }

@@ -69,6 +69,8 @@ Mat CostLimits::dropMissing(const Mat& disparity) const
 
 void CostLimits::hideUnmatched(int y, const ushort* disparity, uchar* visible) const
 {
+    if (isEmpty())
+        return;
     const uchar* const limit = right(y) + width_ - 1;
     for (int x = 0; x < width_; ++x)
         visible[x] = limit[wholeDisparity(disparity[x]) - x] == none ? visible[x] : 0;

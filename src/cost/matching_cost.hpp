@@ -42,7 +42,7 @@ public:
     void apply(int y, const ushort* disparity, uchar* cost) const;
     //! A disparity map of the left image, USHRT_MAX where there is no data
     Mat dropMissing(const Mat& disparity) const;
-    //! Marks the pixels of a row by 0 whose matches have no data.
+    //! Sets visible to 0 for the pixels of a row whose matches have no data; leaves the others as they are.
     void hideUnmatched(int y, const ushort* disparity, uchar* visible) const;
 
 private:

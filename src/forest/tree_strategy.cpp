@@ -71,7 +71,7 @@ public:
 
     void orderEdges(const Mat&, std::vector<int>& edges) const CV_OVERRIDE
     {
-        RNG rng((uint64)seed_ + 1); // the state 0 of cv::RNG stands for another one
+        RNG rng((uint64)seed_ + 1); // RNG(0) is RNG(0xffffffff): seeds begin with 1
         for (int i = (int)edges.size() - 1; i > 0; --i)
             std::swap(edges[i], edges[rng.uniform(0, i + 1)]);
     }

@@ -134,8 +134,8 @@ Mat sumDifferences(const Mat& map, const Mat& other, bool isUpper, int side)
     return sums;
 }
 
-/** Sums over windows, CV_32SC1: of the costs of the disparities, and of those of their alternatives, both of them or
-twice the only one that there is; of the disparity's own, if there is none. */
+/** Sums of costs over windows, CV_32SC1. own: of the disparities. others: of both their alternatives, the candidates
+some pixels before and after; if one of them is none, of the other one twice; of the disparity itself, if both are. */
 void compareAlternatives(const Mat& disparity, int numDisparities, const MatchingCost& cost, Mat& own, Mat& others)
 {
     Mat before(disparity.size(), CV_16U), after(disparity.size(), CV_16U), costs[2];
@@ -146,10 +146,10 @@ void compareAlternatives(const Mat& disparity, int numDisparities, const Matchin
         HDP_VECTORIZED for (int x = 0; x < disparity.cols; ++x)
         {
             const int winner = wholeDisparity(row[x]) * subpixelScale;
-            const int above = winner + step <= last ? winner + step : winner;
-            const int below = winner >= step ? winner - step : above;
-            low[x] = (ushort)below;
-            high[x] = (ushort)(above > winner ? above : below);
+            const int larger = winner + step <= last ? winner + step : winner;
+            const int smaller = winner >= step ? winner - step : larger;
+            low[x] = (ushort)smaller;
+            high[x] = (ushort)(larger > winner ? larger : smaller);
         }
     });
     cost.ofDisparities(disparity, costs[0]);

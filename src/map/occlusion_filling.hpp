@@ -27,7 +27,7 @@ struct OcclusionFilling
     static_assert(pixelsPerVisible % pixelsPerShown == 0, "mapToRight() divides them");
 };
 
-//! Memory for a row of fillOccluded(), by pixel; by column of the right image where it is said
+//! Memory for a row of fillOccluded(), by pixel, or by column of the right image from 1 on
 struct OcclusionScratch
 {
     explicit OcclusionScratch(int width)
@@ -44,14 +44,17 @@ struct OcclusionScratch
     std::vector<uchar> visibility;  // whether nearer pixels hide it, whatever the residuals are
 };
 
-/** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Of the
-pixels that map to one column of the right image the one with the lowest residual is there; those whose disparity is
-another one, and those that map to no column, are not. Nor are up to three pixels between two gaps that are no shorter,
-nor what is left of a surface that begins at the border of the right image: the last run of four pixels it shows,
-without steps, of which the first one is in column 0, 1 or 2; or one that is nearer than what is before it, if nearer
-pixels hide three quarters of that from the right image, or it maps to no column, and no more than an eighth is visible
-in columns that are not blank.
-The surface is continued to the left border, half as steep as its first columns are.
+/** Gives pixels that the right image does not show the disparity of the farther of the pixels beside them. Not
+shown are
+- pixels that map to no column of the right image;
+- pixels whose disparity is not that of the column's winner: of those that map to it, the one with the lowest residual;
+- up to mostByChance pixels between two gaps that are no shorter;
+- what is left of the surface at the border of the right image: the last run of four pixels without steps that is shown,
+  if it begins in the first three columns, or if it is nearer than what is before it, nearer pixels hide three quarters
+  of that (1 - 1 / pixelsPerShown) from the right image, or it maps to no column, and no more than one in
+  pixelsPerVisible is visible in columns that are not blank.
+
+The surface at the border is continued to the left border, half as steep as its first columns are.
 @param disparity CV_16UC1, a disparity map; changed.
 @param residual Matching costs, CV_8UC1.
 @param right Grey levels of the right image, CV_16UC1, see greyLevels(): columns on its left are blank that are black,

@@ -108,7 +108,8 @@ public:
     }
 
 private:
-    //! In a dense prior a pixel knows enough points that are near.
+    //! How far a pixel sees, in pixels of the layer: so far that there are enough points in a dense prior, but no
+    //! farther than reach; on coarse layers, where that is a pixel or two, 4, or 2 if these have enough.
     static int reachOf(Size size, size_t points, int layer)
     {
         const int ofDensity = cvCeil(std::sqrt(pointsOfCell * size.area() / std::max<double>((double)points, 1)));

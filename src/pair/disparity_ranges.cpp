@@ -19,14 +19,17 @@ HDP_DISPATCH(intersectIntervals)
 HDP_DISPATCH(moveIntoIntervals)
 HDP_DISPATCH(moveIntoRanges)
 
+//! Where the centre of a pixel of length pixels lies in a row of count larger ones
+int nearest(int pixel, int length, int count) { return (int)((2 * (int64)pixel + 1) * count / (2 * length)); }
+
 void resizeNearest(const Mat& map, Size size, Mat& resized)
 {
     std::vector<int> columns;
     for (int x = 0; x < size.width; ++x)
-        columns.push_back((int)((int64)x * map.cols / size.width));
+        columns.push_back(nearest(x, size.width, map.cols));
     resized.create(size, CV_16S);
     parallelForRows(resized.size(), [&](int y) {
-        const short* const row = map.ptr<short>((int)((int64)y * map.rows / size.height));
+        const short* const row = map.ptr<short>(nearest(y, size.height, map.rows));
         for (int x = 0; x < size.width; ++x)
             resized.ptr<short>(y)[x] = row[columns[x]];
     });

@@ -13,7 +13,7 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-const double white = 255 * greyScale;
+const double white = 255 * greyScale; // level 1 of the model
 HDP_TUNABLE(int, meanRadius, 3, "pixels", "of the square around a corner whose mean level counts: noise averages out");
 HDP_TUNABLE(double, levelDeviation, 0.5 / 255, "of white", "by which matched levels differ at best: they are rounded");
 HDP_TUNABLE(double, maxRest, 4. / 255, "of white", "median difference that a model which fits may leave");
@@ -74,22 +74,24 @@ bool estimateLight(const CoarseMatches& coarse, LightModel& model)
 
 void alignLight(Mat& levels, const LightModel& model, const ImageFrame& frame)
 {
+    typedef LightModel L;
     const Coefficients& c = model.coefficients;
     RowLight ofAll = RowLight();
-    ofAll.offset = (float)(c[7] * white);
-    ofAll.square = (float)(c[8] / white);
-    ofAll.cube = (float)(c[9] / (white * white));
-    ofAll.largest = (float)white;
+    ofAll.offset = (float)(c[L::offset] * white);
+    ofAll.square = (float)(c[L::square] / white);
+    ofAll.cube = (float)(c[L::cube] / (white * white));
+    ofAll.largest = (float)whiteLevel;
     ofAll.step = 1.f / frame.whole.width;
     ofAll.first = 0.5f * ofAll.step - 0.5f;
     ofAll.origin = frame.origin.x;
     parallelForRows(levels.size(), [&](int i) {
         const double y = (i + frame.origin.y + 0.5) / frame.whole.height - 0.5, y2 = y * y;
         RowLight light = ofAll;
-        light.gain[0] = (float)(c[0] + c[2] * y + c[5] * y2 + c[6] * y2 * y2);
-        light.gain[1] = (float)(c[1] + c[4] * y);
-        light.gain[2] = (float)(c[3] + 2 * c[6] * y2);
-        light.gain[3] = (float)c[6];
+        // (x^2 + y^2)^2 = y^4 + 2 y^2 x^2 + x^4
+        light.gain[0] = (float)(c[L::gain] + c[L::gainY] * y + c[L::gainYY] * y2 + c[L::rim] * y2 * y2);
+        light.gain[1] = (float)(c[L::gainX] + c[L::gainXY] * y);
+        light.gain[2] = (float)(c[L::gainXX] + 2 * c[L::rim] * y2);
+        light.gain[3] = (float)c[L::rim];
         dispatched::relightRow(light, levels.cols, levels.ptr<ushort>(i));
     });
 }

@@ -15,8 +15,17 @@ struct LightModel
 {
     enum
     {
-        terms = 10,
-        rim = 6 // the number of the term of the vignetting of corners
+        gain, // terms of basis(); rim: the vignetting of corners
+        gainX,
+        gainY,
+        gainXX,
+        gainXY,
+        gainYY,
+        rim,
+        offset,
+        square,
+        cube,
+        terms
     };
     typedef Vec<double, terms> Coefficients;
 
@@ -26,17 +35,18 @@ struct LightModel
     //! r times 1, x, y, x^2, x y, y^2 and (x^2 + y^2)^2; 1, r^2, r^3
     static Coefficients basis(double r, double x, double y)
     {
-        const double square = x * x + y * y;
-        return Coefficients(r, r * x, r * y, r * x * x, r * x * y, r * y * y, r * square * square, 1, r * r, r * r * r);
+        const double distance2 = x * x + y * y;
+        return Coefficients(r, r * x, r * y, r * x * x, r * x * y, r * y * y, r * distance2 * distance2, 1, r * r,
+                            r * r * r);
     }
     double at(double r, double x, double y) const { return coefficients.dot(basis(r, x, y)); }
     //! The same for levels that are factor times as large
     LightModel scaled(double factor) const
     {
         LightModel model = *this;
-        model.coefficients[7] *= factor;
-        model.coefficients[8] /= factor;
-        model.coefficients[9] /= factor * factor;
+        model.coefficients[offset] *= factor;
+        model.coefficients[square] /= factor;
+        model.coefficients[cube] /= factor * factor;
         return model;
     }
 };
@@ -57,7 +67,7 @@ corners of matchCoarsely().
 CV_EXPORTS bool estimateLight(const CoarseMatches& coarse, LightModel& model);
 
 /** Gives the right image the light of the left one.
-@param levels CV_16UC1 of values up to 1020, changed in place.
+@param levels CV_16UC1 of values up to whiteLevel, changed in place.
 @param frame What the model is about: the image, or a larger one that it is a tile of. */
 CV_EXPORTS void alignLight(Mat& levels, const LightModel& model, const ImageFrame& frame);
 

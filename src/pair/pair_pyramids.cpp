@@ -15,13 +15,19 @@ void checkPair(const Mat& left, const Mat& right)
     if (left.empty())
         CV_Error(Error::StsBadArg, "left must not be empty");
     const int type = left.type();
-    if (left.dims != 2 ||
-        (type != CV_8UC1 && type != CV_8UC3 && type != CV_8UC4 && type != CV_16UC1 && type != CV_32FC1))
-        CV_Error(Error::StsUnsupportedFormat, "left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1");
-    if (right.dims != 2 || right.size() != left.size())
-        CV_Error(Error::StsUnmatchedSizes, "right must have the size of left");
+    for (const Mat* image : { &left, &right })
+        if (image->dims > 2)
+            CV_Error(Error::StsUnsupportedFormat, format("%s must be an image, not an array of %d dimensions",
+                                                         image == &left ? "left" : "right", image->dims));
+    if (type != CV_8UC1 && type != CV_8UC3 && type != CV_8UC4 && type != CV_16UC1 && type != CV_32FC1)
+        CV_Error(Error::StsUnsupportedFormat,
+                 "left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1, not " + typeToString(type));
+    if (right.size() != left.size())
+        CV_Error(Error::StsUnmatchedSizes, format("right must have the size of left, %d x %d, not %d x %d", left.cols,
+                                                  left.rows, right.cols, right.rows));
     if (right.type() != left.type())
-        CV_Error(Error::StsUnmatchedFormats, "right must have the type of left");
+        CV_Error(Error::StsUnmatchedFormats,
+                 "right must have the type of left, " + typeToString(type) + ", not " + typeToString(right.type()));
     if (std::max(left.cols, left.rows) > maxSide)
         CV_Error(Error::StsOutOfRange,
                  format("left must be at most %d pixels wide and high, not %d x %d", maxSide, left.cols, left.rows));

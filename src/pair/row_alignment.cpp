@@ -123,7 +123,7 @@ void enterFinerLayer(const RowModel& model, int layer, Size size, std::vector<Co
     }
 }
 
-const int fractions = 64; // of a row
+const int fractionBits = 6, fractions = 1 << fractionBits; // of a row
 
 int64 wholeOf(double value) { return (int64)std::floor(value + 0.5); }
 
@@ -158,7 +158,8 @@ template <typename T>
 void alignRow(const Mat& right, const RowModel& model, const ImageFrame& frame, int y, const int weights[][4],
               T* aligned)
 {
-    const int64 one = (int64)1 << 24; // a place
+    const int placeBits = 24;
+    const int64 one = (int64)1 << placeBits; // a place, which is a fraction of a row
     const int row = y + frame.origin.y, width = frame.whole.width;
     const double first = row + model.at(fromCentre(0, row, 0, frame.whole));
     const double last = row + model.at(fromCentre(width, row, 0, frame.whole));
@@ -170,8 +171,8 @@ void alignRow(const Mat& right, const RowModel& model, const ImageFrame& frame, 
         const int64 position = start + begin * step, within = position & (one - 1);
         const int64 run = step > 0 ? (one - within + step - 1) / step : step < 0 ? within / -step + 1 : right.cols;
         end = (int)std::min<int64>(begin + run, right.cols);
-        const int place = (int)(position >> 24);
-        mixColumns(right, place >> 6, weights[place & (fractions - 1)], Range(begin, end), aligned);
+        const int place = (int)(position >> placeBits);
+        mixColumns(right, place >> fractionBits, weights[place & (fractions - 1)], Range(begin, end), aligned);
     }
 }
 
@@ -179,7 +180,7 @@ void alignRow(const Mat& right, const RowModel& model, const ImageFrame& frame, 
 
 double LayerNoise::ofLayer(int other) const
 {
-    double noise = deviation;
+    double noise = deviation; // not by std::pow(), which differs between machines
     for (int l = layer; l != other; l += l < other ? 1 : -1)
         noise = l < other ? noise / noiseFall : noise * noiseFall;
     return noise;

@@ -98,7 +98,7 @@ void histogramsOfHalves(const std::vector<Mat>& maps, const std::vector<Mat>& up
         for (int y = 0; y < rows; y += band)
             parts.push_back(std::make_pair(i, Range(y, std::min(y + band, rows))));
     }
-    RNG rng((uint64)seed + 1); // 0 is no seed
+    RNG rng((uint64)seed + 1); // RNG(0) is RNG(0xffffffff): seeds begin with 1
     for (size_t i = maps.size() - 1; i > 0; --i)
         std::swap(parts[i], parts[rng.uniform(0, (int)i + 1)]);
     for (size_t i = 0; i < parts.size(); ++i)
@@ -149,9 +149,11 @@ Mat_<double> quantiles(const OffsetHistogram& histogram)
     return samples;
 }
 
-//! What the EM algorithm begins with: components of one mean and of widths that double, or of one width and means that
-//! are far from each other (k-means++).
-void initialize(const Mat_<double>& samples, bool nested, RNG& rng, Mat_<double>& means, std::vector<Mat>& variances)
+//! What the EM algorithm begins with. nested: components of one mean, the median, and of widths in a geometric series
+//! from minSigma to about the range; otherwise of one width, and of means that are far from each other (k-means++).
+//! Samples ascend; means has a row per component, and variances is empty before.
+void initialComponents(const Mat_<double>& samples, bool nested, RNG& rng, Mat_<double>& means,
+                       std::vector<Mat>& variances)
 {
     const int components = means.rows;
     const double range = samples(samples.rows - 1) - samples(0), spread = std::max(range / (2 * components), 1.);
@@ -180,7 +182,7 @@ bool runEM(const Mat_<double>& samples, int components, bool nested, RNG& rng, G
 {
     Mat_<double> initialMeans(components, 1);
     std::vector<Mat> initialVariances;
-    initialize(samples, nested, rng, initialMeans, initialVariances);
+    initialComponents(samples, nested, rng, initialMeans, initialVariances);
     const Ptr<ml::EM> em = ml::EM::create();
     em->setClustersNumber(components);
     em->setCovarianceMatrixType(ml::EM::COV_MAT_DIAGONAL);
@@ -222,7 +224,7 @@ bool runEM(const Mat_<double>& samples, int components, bool nested, RNG& rng, G
 GaussianMixture fitMixture(const OffsetHistogram& histogram, int components, int seed)
 {
     const Mat_<double> samples = quantiles(histogram);
-    RNG rng((uint64)seed + 1); // 0 is no seed
+    RNG rng((uint64)seed + 1); // RNG(0) is RNG(0xffffffff): seeds begin with 1
     GaussianMixture best;
     double bestLikelihood = -DBL_MAX;
     for (int restart = 0; restart < (components == 1 ? 1 : restarts); ++restart)

@@ -24,6 +24,13 @@ bool areFinite(const std::vector<double>& numbers, int count)
     return (int)numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), isFinite);
 }
 
+//! So large ones that levels of any place stay finite in floats
+bool areCoefficients(const std::vector<double>& numbers, int count)
+{
+    const auto isUsual = [](double number) { return std::abs(number) <= 1e6; };
+    return (int)numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), isUsual);
+}
+
 //! Calls visit(name, value, whether it is valid, what is) for all fields.
 template <typename Model, typename Visit> void visitFields(Model& m, const Visit& visit)
 {
@@ -54,7 +61,7 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("rightBlockStart", m.rightBlockStart, m.rightBlockStart >= 0 && m.rightBlockStart < BlockGrid::side, "0..7");
     visit("rightBlockStep", m.rightBlockStep, isStep(m.rightBlockStep), notNegative);
     visit("rows", m.rows, areFinite(m.rows, RowModel::terms), "5 finite numbers");
-    visit("light", m.light, areFinite(m.light, LightModel::terms), "10 finite numbers");
+    visit("light", m.light, areCoefficients(m.light, LightModel::terms), "10 numbers of -10^6..10^6");
 }
 
 struct Checker
@@ -201,7 +208,9 @@ void checkPairModel(const PairModel& model)
     if (model.empty())
         return;
     visitFields(model, Checker());
-    const Point2d corner(0.5 * (model.width + model.addedColumns), 0.5 * model.height);
+    // Tiles are moved by minDisparity, and rows are followed from there, see alignRows().
+    const double moved = std::abs((double)model.minDisparity);
+    const Point2d corner(0.5 * (model.width + model.addedColumns) + moved, 0.5 * model.height);
     if (norm(RowModel::basis(corner).mul(RowModel::Coefficients(model.rows.data())), NORM_L1) > maxWhole)
         CV_Error(Error::StsOutOfRange, "PairModel: rows must move pixels by at most 2^24 rows");
 }

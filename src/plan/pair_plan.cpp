@@ -157,6 +157,7 @@ CostPlan planCost(const MatcherParameters& p)
     return cost;
 }
 
+//! layer: its place and its own number of disparities are known, not those that are compared.
 LayerMethod methodOf(const MatcherParameters& p, const LayerPlan& layer)
 {
     if (layer.isFinest && !layer.isTop && !hasTreeSums(p))

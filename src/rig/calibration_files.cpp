@@ -73,7 +73,7 @@ void readPose(const CalibrationText& text, const std::string& path, Matx33d& R, 
         text.fail(path, "a pose, with 0, 0, 0, 1 in its last row");
     R = pose.get_minor<3, 3>(0, 0);
     if (!isRotation(R))
-        text.fail(path, "a pose, with a rotation in its first columns");
+        text.fail(path, "a pose, with a rotation in its upper left 3 x 3");
     T = Vec3d(pose(0, 3), pose(1, 3), pose(2, 3));
 }
 

@@ -163,8 +163,11 @@ private:
         const double most = 1e6;
         if (!(focalLength_ > 1 && focalLength_ < most && std::abs(center_.x) < most && std::abs(center_.y) < most))
             CV_Error(Error::StsBadArg,
-                     "fieldOfView must be given: with this distortion nothing else tells the size of what "
-                     "both cameras see. Is the calibration right?");
+                     fills ? "fieldOfView must be given: with this distortion nothing else tells the size of what both "
+                             "cameras see. Is the calibration right?"
+                           : format("size must be larger, or fieldOfView smaller: the focal length would be %g pixels, "
+                                    "which must be between 1 and 10^6",
+                                    focalLength_));
     }
 
     //! Where the pixels of a rectified image are in the raw one

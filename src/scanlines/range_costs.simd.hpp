@@ -180,7 +180,7 @@ private:
     {
         const int n = lanes_.vectors(), first = std::min<int>(interval.first, p_.candidates),
                   end = std::min<int>(std::max(interval.last + 1, first), p_.candidates);
-        const uchar *const before = p_.insideFrom(first), *const behind = p_.outsideFrom(end);
+        const uchar *const before = p_.excludedBefore(first), *const behind = p_.excludedFrom(end);
         HDP_UNROLLED for (int k = 0; k < n; ++k)
         {
             const ptrdiff_t at = k * Lanes::vector;

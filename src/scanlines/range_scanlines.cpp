@@ -23,9 +23,10 @@ void RangeProblem::prepare(const RangePenalties& penalties)
     const EdgeSimilarity similarity(penalties.gamma);
     for (int w = 0; w < 256; ++w)
         large[w] = (uchar)std::max(penalties.leastLarge, cvRound(penalties.large * similarity.table[w]));
+    priors.clear();
     for (int distance = -candidates; distance < candidates + longestVector; ++distance)
         priors.push_back((uchar)std::min(std::abs(distance) / penalties.priorDistance, penalties.maxPrior));
-    outside.resize(3 * pixelBytes(), UCHAR_MAX);
+    outside.assign(3 * pixelBytes(), UCHAR_MAX);
     std::fill_n(outside.begin() + pixelBytes(), pixelBytes(), (uchar)0);
 }
 

@@ -46,9 +46,9 @@ struct RangeProblem
     CV_EXPORTS void prepare(const RangePenalties& penalties);
     int pixelBytes() const { return (int)alignSize(candidates, longestVector); } // of the candidates, at most
 
-    // Of each candidate, 255 if it is before this one, or if it is not
-    const uchar* insideFrom(int candidate) const { return outside.data() + pixelBytes() - candidate; }
-    const uchar* outsideFrom(int candidate) const { return outside.data() + 2 * pixelBytes() - candidate; }
+    // A byte per candidate: 255 for those before this one, or for it and those behind it, and 0 for the others.
+    const uchar* excludedBefore(int candidate) const { return outside.data() + pixelBytes() - candidate; }
+    const uchar* excludedFrom(int candidate) const { return outside.data() + 2 * pixelBytes() - candidate; }
 };
 
 //! Memory of a thread for its stripe

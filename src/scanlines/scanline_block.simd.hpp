@@ -69,10 +69,10 @@ public:
         }
     }
 
-    /** Enters the rows from y on.
-    @param y The first one.
-    @param tables Of their row of windows.
-    @param entersUpperRow Whether the block before them has another one. */
+    /** Enters a block of rows.
+    @param y The upper one of them. Those below the image repeat its last row.
+    @param tables Of the row of windows that the block lies in.
+    @param entersUpperRow Whether the block entered before lies in another one, so candidates have to be permuted. */
     void enter(int y, const ScanlineWindows& tables, bool entersUpperRow)
     {
         tables_ = &tables;
@@ -88,7 +88,7 @@ public:
             costs_.enterRow(r, row);
             weighScanlineEdges(p_.weights->ptr(row), p_.weights->ptr(edgeRow), tables.edgePenalties(), width_,
                                p_.penalties.edgeNoise, edges_[r]);
-            if (isUpward_ && inBlock > lastRow) // nothing comes from there
+            if (isUpward_ && inBlock > lastRow) // with large penalties of 0, nothing comes from there
                 std::memset(edges_[r], 0, 2 * (size_t)width_);
         }
     }
@@ -243,7 +243,8 @@ private:
         return direction;
     }
 
-    //! The same from above
+    //! The direction from above: a group takes H of that of the row above, which was there a step before; the last
+    //! group, the upper row, takes it from memory. Only that may enter another row of windows.
     CV_ALWAYS_INLINE ByteLanes fromAbove(const ByteLanes& cost, const ByteLanes& small, const ByteLanes& large, int t,
                                          int column, ByteLanes& before) const
     {
@@ -266,8 +267,9 @@ private:
         {
             const int x = 2 * (t - r) + column;
             winners_[r][x] = (uchar)lane[r];
-            std::memcpy(&sums_[r][x], sums + r * 16 + lane[r], sizeof(unsigned));
-            winnerCosts_[r][x] = costs[r * 16 + lane[r]];
+            const int winner = r * Window::candidates + lane[r];
+            std::memcpy(&sums_[r][x], sums + winner, sizeof(unsigned));
+            winnerCosts_[r][x] = costs[winner];
         }
     }
 
@@ -295,7 +297,7 @@ private:
             const int whole = lane + (lane < Window::runLength ? low : high);
             const int before = sums[x] >> toBefore & 255, sum = sums[x] >> toSum & 255,
                       after = sums[x] >> toAfter & 255;
-            // Whether there are candidates on both sides
+            // Whether there are candidates on both sides: the lane is not at the end of a run, or the runs are one
             const int isInner =
                 ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
             const float slope = (float)std::max(std::max(before, after) - sum, 1);

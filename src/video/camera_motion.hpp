@@ -43,12 +43,13 @@ struct DisparityChange
     float ofX, ofY, ofDisparity, constant, offset;
     float minDisparity, maxDisparity; // of a map, which counts from the first one, as the next two disparities do
 
+    //! The disparity of what is now at (x, y) and had the disparity before: the equation above, solved for it
     CV_ALWAYS_INLINE float now(float before, float x, float y) const
     {
-        const float place = ofX * x + (ofY * y + constant), old = before + minDisparity, w = 1 - ofDisparity * old;
+        const float ofPlace = ofX * x + (ofY * y + constant), old = before + minDisparity, w = 1 - ofDisparity * old;
         const float minW = 0.1f; // what gets ten times as near in a frame is at the camera or behind it
         const float positive = w > minW ? w : minW;
-        const float disparity = old * place / positive + offset - minDisparity;
+        const float disparity = old * ofPlace / positive + offset - minDisparity;
         const float notNegative = disparity > 0 ? disparity : 0;
         return notNegative < maxDisparity ? notNegative : maxDisparity;
     }

@@ -57,9 +57,10 @@ struct FrameMemory
         countMask = (1 << detailBits) - 1,
         scale = subpixelScale << detailBits // of disparities with all their bits: means over frames need them
     };
+    //! A disparity in 1 / scale pixel; joinRow() rounds it for the map, so it may be half a unit of that below it.
     static CV_ALWAYS_INLINE int finer(int disparity, int detail)
     {
-        return (disparity << detailBits) + (detail >> detailBits) - (1 << (detailBits - 1)); // they were rounded
+        return (disparity << detailBits) + (detail >> detailBits) - (1 << (detailBits - 1));
     }
 };
 

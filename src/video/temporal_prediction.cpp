@@ -177,8 +177,9 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
         return;
     const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, scratch.exposed);
     p.motion = findMotion(last, exposed, scratch.points);
-    const bool isOtherScene = (int)scratch.points.size() < CameraMotion::minPoints;
-    const std::vector<Mat>& grey = isOtherScene ? p.grey : exposed;
+    // Without common points, another exposure cannot be told from another scene: isCut() sees the levels as they are.
+    const bool hasPoints = (int)scratch.points.size() >= CameraMotion::minPoints;
+    const std::vector<Mat>& grey = hasPoints ? exposed : p.grey;
     if (p.motion.error > noMotion * cell)
     {
         p.motion = CameraMotion();

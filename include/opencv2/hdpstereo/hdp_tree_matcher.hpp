@@ -48,9 +48,9 @@ column. getConfidence() tells how reliable each disparity is, getFindings() what
   minDisparity has any sign; a negative one adds up to numDisparities columns on the left of the images. numDisparities
   is > 0, and not necessarily a multiple of 16, or 0: both are found in the pair, see Findings::numDisparities, and the
   parameter minDisparity has no meaning. This takes 10 to 60 ms, and the range is about twice as large as necessary.
-  Where setDisparityRange() limits all pixels, it is that of all of them. Otherwise a pair in which fewer than 10
-  corners have matches, as in images without texture, is an error. The frames of a video keep the range of the first
-  one while it has all disparities that are found, and is not twice as large.
+  Where setDisparityRange() limits all pixels, it is that of all of them, within the images' width. Otherwise a pair
+  in which fewer than 10 corners have matches, as in images without texture, is an error. The frames of a video keep
+  the range of the first one while it has all disparities that are found, and is not twice as large.
 - the preset, see HDPTreeMatcher::Preset: what to spend on accuracy.
 - Params::useTemporalPrediction: on for videos.
 - Params::maxRowOffset, Params::useLightAlignment, Params::noiseThreshold: what is done about pairs that are not quite
@@ -549,8 +549,9 @@ public:
     /** @brief Tells which disparities each pixel of the left image may have: a coarse product, the depth of a room.
 
     No others occur in the map. A pixel for which there are none between minDisparity and the last one, or no multiple
-    of 1 / 16 in its range, gets minDisparity - 1. Trees search about their pixels' ranges alone; what is found outside
-    of a range moves to its end. The maps stay until others are set. They are no parameters: files do not have them.
+    of 1 / 16 in its range, or no whole one without Params::useSubpixel, gets minDisparity - 1. Trees search about their
+    pixels' ranges alone; what is found outside of a range moves to its end. The maps stay until others are set. They
+    are no parameters: files do not have them.
     @param smallest CV_16SC1 or CV_32FC1, in pixels, of the images' size or coarser: each pixel then has the range of
     the nearest one. Below 2048, as disparities of CV_16S are. NaN limits nothing. Copied. Both empty: there are no
     ranges.

@@ -667,7 +667,7 @@ class hdpstereo_test(TestCase):
                 ('TreeStrategy', None, 'treeStrategy must not be empty')):
             self.assertRejected(message, set_, matcher, setter, value)
         self.assertRejected('numDisparities must be >= 0, not -16', cv.stereo.HDPTreeMatcher.create, 0, -16)
-        self.assertRejected('preset must be one of HDPTreeMatcher::PRESET_*, not 9',
+        self.assertRejected('preset must be one of HDPTreeMatcher::PRESET_*, 0..4, not 9',
                             cv.stereo.HDPTreeMatcher.create, 0, 16, 9)
         self.assertRejected('k must be finite and >= 0', cv.stereo.createSegmentTree, -1)
         self.assertRejected('seed must be >= 0', cv.stereo.createRandomTree, -1)
@@ -696,20 +696,21 @@ class hdpstereo_test(TestCase):
         matcher = cv.stereo.HDPTreeMatcher.create(0, 32)
         expected = matcher.compute(left, right)
         grey = left[:, :, 0].copy()
-        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1'
+        types = 'left must be CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 or CV_32FC1, not '
         for message, pair in (
                 ('left must not be empty', (None, right)),
                 ('left must not be empty', (left[:0], right[:0])),
-                (types, (left.astype(np.uint16), right.astype(np.uint16))),
-                (types, (grey.astype(np.int16), grey.astype(np.int16))),
-                (types, (grey / 255.0, grey / 255.0)),
-                (types, (grey.astype(np.int64), grey.astype(np.int64))),
-                (types, (left[:, :, :2], right[:, :, :2])),
-                (types, (np.zeros((4, 4, 3, 2), np.uint8),) * 2),
-                ('right must have the type of left', (grey, grey.astype(np.uint16))),
-                ('right must have the size of left', (left, right[:-1])),
-                ('right must have the size of left', (left, None)),
-                ('right must have the type of left', (left, grey))):
+                (types + 'CV_16UC3', (left.astype(np.uint16), right.astype(np.uint16))),
+                (types + 'CV_16SC1', (grey.astype(np.int16), grey.astype(np.int16))),
+                (types + 'CV_64FC1', (grey / 255.0, grey / 255.0)),
+                (types + 'CV_32SC1', (grey.astype(np.int64), grey.astype(np.int64))),
+                (types + 'CV_8UC2', (left[:, :, :2], right[:, :, :2])),
+                ('left must be an image, not an array of 4 dimensions', (np.zeros((4, 4, 3, 2), np.uint8),) * 2),
+                ('right must have the type of left, CV_8UC1, not CV_16UC1', (grey, grey.astype(np.uint16))),
+                ('right must have the size of left, %d x %d, not %d x %d' % (left.shape[1::-1] + right[:-1].shape[1::-1]),
+                 (left, right[:-1])),
+                ('right must have the size of left, %d x %d, not 0 x 0' % left.shape[1::-1], (left, None)),
+                ('right must have the type of left, CV_8UC3, not CV_8UC1', (left, grey))):
             self.assertRejected(message, matcher.compute, *pair)
         self.assertRaises(cv.error, matcher.compute, left.tolist(), right.tolist())
         self.assertRaises(cv.error, matcher.compute, left > 7, right > 7)  # bool
