@@ -148,7 +148,7 @@ static void checkBatchOptions(const CommandLineParser& parser)
     if (format != "png" && format != "pfm" && format != "tif")
         CV_Error(Error::StsBadArg, "--format=" + format + " is unknown, see --help");
     if (format == "png")
-        requireNoNegativeDisparities(parser);
+        requireDisparitiesOfPng(parser);
 }
 
 size_t matchPairs(const CommandLineParser& parser)

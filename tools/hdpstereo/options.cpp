@@ -70,14 +70,19 @@ void checkOutputs(const CommandLineParser& parser)
     }
     const String map = parser.get<String>(parser.has("output") ? "output" : "@out");
     if (extensionOf(map) == ".png")
-        requireNoNegativeDisparities(parser);
+        requireDisparitiesOfPng(parser);
 }
 
-void requireNoNegativeDisparities(const CommandLineParser& parser)
+void requireDisparitiesOfPng(const CommandLineParser& parser)
 {
-    if (integerOf(parser, "min-disparity") < 0)
+    const int min = integerOf(parser, "min-disparity");
+    if (min < 0)
         CV_Error(Error::StsBadArg, "PNG has no disparities below 0, and --min-disparity=" +
                                        parser.get<String>("min-disparity") + " asks for some: take .tif, .pfm or .exr");
+    if (min > 255)
+        CV_Error(Error::StsBadArg,
+                 "PNG has no disparities above 255, and --min-disparity=" + parser.get<String>("min-disparity") +
+                     " asks for no others: take .tif, .pfm or .exr");
 }
 
 void setKnownDisparities(const CommandLineParser& parser, const Mat& smallest, const Mat& largest, const Mat& prior,

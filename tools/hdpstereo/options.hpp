@@ -19,7 +19,7 @@ int numDisparitiesOf(const cv::CommandLineParser& parser, int width);
 void checkOutputs(const cv::CommandLineParser& parser);
 
 //! For maps in PNG
-void requireNoNegativeDisparities(const cv::CommandLineParser& parser);
+void requireDisparitiesOfPng(const cv::CommandLineParser& parser);
 
 //! Without masks, which MaskFiles and Rectifier set
 cv::Ptr<cv::stereo::HDPTreeMatcher> createMatcher(const cv::CommandLineParser& parser, int width);

@@ -328,6 +328,8 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
         { pair + a, "cannot write '" + a + "': it is a folder" },
         { pair + "map.jpg", "cannot write 'map.jpg': disparities need .png, .pfm, .tif or .exr" },
         { pair + "--reasons=map.jpg", "cannot write 'map.jpg': disparities need .png, .pfm, .tif or .exr" },
+        { pair + "map.png --min-disparity=256",
+          "PNG has no disparities above 255, and --min-disparity=256 asks for no" },
         { pair + "map.PNG --min-disparity=-3", "PNG has no disparities below 0, and --min-disparity=-3 asks for some" },
         { batch + " --min-disparity=-3", "PNG has no disparities below 0, and --min-disparity=-3 asks for some" },
         { " --batch " + a + " " + a + " " + a, "OUT must be another folder than that of the images, '" + a + "'" },
