@@ -266,11 +266,11 @@ void expectMeans(const CensusLayer& layer, double gamma, hdp::AggregationBuffers
             ASSERT_EQ(interval.first, own.interval.first) << "pixel " << p;
             ASSERT_EQ(interval.last, own.interval.last) << "pixel " << p;
             ASSERT_LT(interval.last, volume.numDisparities);
-            for (int row = 0; row < own.chunks(); ++row)
+            for (int chunk = 0; chunk < own.chunks(); ++chunk)
             {
-                ASSERT_LT(own.firstChunk + row, volume.chunks);
-                ASSERT_FALSE(isTaken[own.firstChunk + row]) << "pixel " << p;
-                isTaken[own.firstChunk + row] = true;
+                ASSERT_LT(own.firstChunk + chunk, volume.chunks);
+                ASSERT_FALSE(isTaken[own.firstChunk + chunk]) << "pixel " << p;
+                isTaken[own.firstChunk + chunk] = true;
             }
             const uchar* means = volume.costs.data() + own.start();
             for (int k = 0; k < interval.size(); ++k)

@@ -4,18 +4,17 @@
 #include "arguments.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 using cv::String;
 
 namespace hdp_tools {
 
-static void fail(const String& message) { throw std::runtime_error(message); }
+static void fail(const String& message) { CV_Error(cv::Error::StsBadArg, message); }
 
 void checkArguments(int argc, const char* const argv[], const cv::CommandLineParser& parser, std::vector<String> flags,
                     int maxPositional)
 {
-    flags.insert(flags.end(), { "help", "h", "?", "list-tunables" });
+    flags.insert(flags.end(), { "help", "h", "?" });
     int positional = 0;
     for (int i = 1; i < argc; i++)
     {

@@ -11,7 +11,7 @@
 namespace hdp_tools {
 
 /** Checks the arguments more strictly than cv::CommandLineParser does: unknown options, options without a value, flags
-with one, and too many positional arguments are errors, std::runtime_error.
+with one, and too many positional arguments are errors, cv::Exception.
 @param flags Options without a value; --help is one anyway. "NAME=" is one that may have a value or not. */
 void checkArguments(int argc, const char* const argv[], const cv::CommandLineParser& parser,
                     std::vector<cv::String> flags, int maxPositional);

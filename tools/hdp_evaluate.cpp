@@ -55,6 +55,11 @@ static void writeText(const String& path, const String& text)
         fail("cannot write '" + path + "'");
 }
 
+static bool asksForRanges(const CommandLineParser& parser)
+{
+    return parser.has("num-disparities") && getInteger(parser, "num-disparities", 0, 2048) == 0;
+}
+
 static EvaluationSettings readSettings(const CommandLineParser& parser)
 {
     const Ptr<DisparityPredictionModel> model = parser.has("model")
@@ -62,8 +67,7 @@ static EvaluationSettings readSettings(const CommandLineParser& parser)
                                                     : Ptr<DisparityPredictionModel>();
     EvaluationSettings settings;
     settings.numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 0, 2048) : 0;
-    const bool asksMatcher = parser.has("calibration") || parser.has("confidence") ||
-                             (parser.has("num-disparities") && settings.numDisparities == 0);
+    const bool asksMatcher = parser.has("calibration") || parser.has("confidence") || asksForRanges(parser);
     const String usual = asksMatcher ? "presets" : "systems,presets,opencv";
     settings.methods = selectMethods("methods", parser.has("methods") ? parser.get<String>("methods") : usual, model);
     settings.runs = getInteger(parser, "runs", 1, 1000);
@@ -92,7 +96,7 @@ static int run(const CommandLineParser& parser)
     setThreads(parser);
     const int threads = getNumThreads();
     const EvaluationSettings settings = readSettings(parser);
-    const bool looksForRanges = parser.has("num-disparities") && settings.numDisparities == 0;
+    const bool looksForRanges = asksForRanges(parser);
     const String plot = parser.get<String>("plot");
     if (!plot.empty() && (!parser.has("calibration") || settings.methods.size() != 1 || looksForRanges))
         fail("--plot needs --calibration, one method and no --num-disparities=0");

@@ -6,6 +6,8 @@
 // Pipeline and s2p. Their sign of disparities is the opposite of OpenCV's: a left pixel (x, y) is (x + d, y) in the
 // right image.
 
+#include "paths.hpp"
+
 #include <algorithm>
 #include <climits>
 #include <cmath>
@@ -25,6 +27,7 @@
 
 using namespace cv;
 using cv::stereo::HDPTreeMatcher;
+using hdp_tools::placeOf;
 
 static const char* const usage =
     "HDPTreeMatcher behind the command line of mgm\n"
@@ -161,16 +164,6 @@ static bool keepsFloats(const String& path)
     {
         return false; // there is no such format, or not in this OpenCV
     }
-}
-
-//! Without links, also of a file that is not there yet
-static String placeOf(const String& path)
-{
-    if (utils::fs::exists(path))
-        return utils::fs::canonical(path);
-    const String folder = utils::fs::getParent(path);
-    return utils::fs::join(utils::fs::canonical(folder.empty() ? "." : folder),
-                           path.substr(path.find_last_of("/\\") + 1));
 }
 
 //! Leaves what is there as it is.

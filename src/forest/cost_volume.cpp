@@ -37,7 +37,10 @@ void CostVolume::create(const DisparityForest& forest)
     const int mean = (int)(chunksOfTrees / size.area());
     usualChunks_ = most <= 2 * mean ? most : mean;
     chunks = (size_t)size.area() * usualChunks_;
-    isUniform ? keepPixels(forest) : addUnusual(forest);
+    if (isUniform)
+        keepPixels(forest);
+    else
+        addUnusual(forest);
     provideCosts();
 }
 

@@ -8,6 +8,7 @@
 #include "../pair/image_levels.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 namespace cv { namespace stereo {
@@ -18,17 +19,13 @@ namespace {
 
 const int maxWhole = 1 << 24; // pixels of a side: columns are exact in floats
 
-bool areFinite(const std::vector<double>& numbers, int count)
-{
-    const auto isFinite = [](double number) { return std::isfinite(number); };
-    return (int)numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), isFinite);
-}
+const double maxLight = 1e6; // levels of any place stay finite in floats
 
-//! So large ones that levels of any place stay finite in floats
-bool areCoefficients(const std::vector<double>& numbers, int count)
+//! Whether there are so many, from -most to most
+bool areNumbers(const std::vector<double>& numbers, int count, double most)
 {
-    const auto isUsual = [](double number) { return std::abs(number) <= 1e6; };
-    return (int)numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), isUsual);
+    const auto isValid = [most](double number) { return std::abs(number) <= most; };
+    return (int)numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), isValid);
 }
 
 //! Calls visit(name, value, whether it is valid, what is) for all fields.
@@ -60,8 +57,8 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("leftBlockStep", m.leftBlockStep, isStep(m.leftBlockStep), notNegative);
     visit("rightBlockStart", m.rightBlockStart, m.rightBlockStart >= 0 && m.rightBlockStart < BlockGrid::side, "0..7");
     visit("rightBlockStep", m.rightBlockStep, isStep(m.rightBlockStep), notNegative);
-    visit("rows", m.rows, areFinite(m.rows, RowModel::terms), "5 finite numbers");
-    visit("light", m.light, areCoefficients(m.light, LightModel::terms), "10 numbers of -10^6..10^6");
+    visit("rows", m.rows, areNumbers(m.rows, RowModel::terms, DBL_MAX), "5 finite numbers");
+    visit("light", m.light, areNumbers(m.light, LightModel::terms, maxLight), "10 numbers of -10^6..10^6");
 }
 
 struct Checker
@@ -208,7 +205,7 @@ void checkPairModel(const PairModel& model)
     if (model.empty())
         return;
     visitFields(model, Checker());
-    // Tiles are moved by minDisparity, and rows are followed from there, see alignRows().
+    // Tiles are moved by minDisparity, and rows are followed from there, see alignRow().
     const double moved = std::abs((double)model.minDisparity);
     const Point2d corner(0.5 * (model.width + model.addedColumns) + moved, 0.5 * model.height);
     if (norm(RowModel::basis(corner).mul(RowModel::Coefficients(model.rows.data())), NORM_L1) > maxWhole)

@@ -31,9 +31,8 @@ struct VolumeProblem
     enum
     {
         maxScanlines = 64, // that are followed side by side
-        margin =
-            CostVolume::chunk // before and behind the candidates of a pixel, for the first and the last one to have
-                              // neighbours
+        // before and behind the candidates of a pixel, for the first and the last one to have neighbours
+        margin = CostVolume::chunk
     };
     //! Memory for a pixel, by disparity: an interval may begin at the last one.
     int lineLength() const { return margin + volume.numDisparities + CostVolume::chunk + margin; }

@@ -104,7 +104,9 @@ int runProgram(int argc, const char* const argv[], const String& keys, const Str
             arguments.push_back(argument.c_str());
         cv::CommandLineParser parser((int)arguments.size(), arguments.data(), keys);
         parser.about(about);
-        checkArguments((int)arguments.size(), arguments.data(), parser, flags, maxPositional);
+        std::vector<String> allFlags = flags;
+        allFlags.push_back("list-tunables");
+        checkArguments((int)arguments.size(), arguments.data(), parser, allFlags, maxPositional);
         int status = 0;
         if (parser.has("help"))
             parser.printMessage();

@@ -36,9 +36,9 @@ void setThreads(const cv::CommandLineParser& parser);
 
 /** The main() of a program.
 
-Checks the arguments, see checkArguments(). Each error is reported in one line, and so is output that was lost,
-on a full disk for instance.
-@param flags Options without a value; --help is one anyway. "NAME=" is one that may have a value or not.
+Checks the arguments by checkArguments(). Each error is reported in one line, and so is output that was lost, on a full
+disk for instance.
+@param flags See checkArguments(); --list-tunables is one anyway.
 @param run Returns the exit status.
 @return The exit status: 1 after an error.
 */

@@ -24,7 +24,7 @@ static std::vector<String> setsOf(const std::vector<SceneResult>& results)
     return sets;
 }
 
-//! The results of a set that are to be in its tables: those of the pairs that were read, and matched by a method at least.
+//! The results of a set that are to be in its tables: of the pairs that were read, and matched by a method at least.
 static Selection resultsOfSet(const std::vector<SceneResult>& results, const String& set, Pair::Protocol protocol)
 {
     Selection selected;

@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "files.hpp"
+#include "../paths.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -74,19 +75,9 @@ void requireMapWriter(const String& path)
     }
 }
 
-//! Without links, also of a file that is not there yet
-static String placeOf(const String& path)
-{
-    if (utils::fs::exists(path))
-        return utils::fs::canonical(path);
-    const String folder = utils::fs::getParent(path);
-    return utils::fs::join(utils::fs::canonical(folder.empty() ? "." : folder),
-                           path.substr(path.find_last_of("/\\") + 1));
-}
-
 bool isSameFile(const String& path, const String& other)
 {
-    return !path.empty() && !other.empty() && placeOf(path) == placeOf(other);
+    return !path.empty() && !other.empty() && hdp_tools::placeOf(path) == hdp_tools::placeOf(other);
 }
 
 std::vector<uchar> encode(const String& extension, const Mat& image)

@@ -9,7 +9,6 @@
 #include "options.hpp"
 
 #include <iostream>
-#include <stdexcept>
 
 #include "opencv2/core/utils/logger.hpp"
 
@@ -99,11 +98,6 @@ int main(int argc, char** argv)
     catch (const cv::Exception& e)
     {
         std::cerr << "error: " << e.err << std::endl;
-        return 1;
-    }
-    catch (const std::runtime_error& e) // of checkArguments()
-    {
-        std::cerr << "error: " << e.what() << std::endl;
         return 1;
     }
     return status;

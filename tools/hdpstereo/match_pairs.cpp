@@ -1,6 +1,7 @@
 // This file is part of OpenCV project.
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
+#include "../paths.hpp"
 #include "files.hpp"
 #include "rectifier.hpp"
 #include "windows.hpp"
@@ -18,13 +19,12 @@
 
 using namespace cv;
 using cv::stereo::HDPTreeMatcher;
+using hdp_tools::fileName;
 
 struct NamedPair
 {
     String left, right, name;
 };
-
-static String fileName(const String& path) { return path.substr(path.find_last_of("/\\") + 1); }
 
 static String withoutExtension(const String& name) { return name.substr(0, name.rfind('.')); }
 

@@ -617,8 +617,8 @@ TEST(HDPStereo_Programs, camera_mistakes)
         EXPECT_EQ(0u, bad.errors.find("error: " + call.second)) << bad.errors;
         EXPECT_EQ(firstLine(bad.errors) + "\n", bad.errors);
     }
-    EXPECT_NE(String::npos,
-              run(folder, frames.program + both + " -c=" + frames.intrinsics).errors.find("T/data is missing"));
+    EXPECT_NE(String::npos, run(folder, frames.program + both + " -c=" + frames.intrinsics)
+                                .errors.find("intrinsics.yml': T/data is missing"));
 }
 
 }} // namespace opencv_test
