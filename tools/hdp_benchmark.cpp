@@ -5,8 +5,9 @@
 // The presets of cv::stereo::HDPTreeMatcher beside cv::StereoBM and cv::StereoSGBM on one pair: time, memory and, if the
 // truth is known, errors, as tables in Markdown.
 //
-// All methods are timed in one process, in turns, so that a machine that is busy for a while slows all of them. Memory
-// is measured in a process for each method: this program, run again with --memory-of.
+// All methods are timed in one process, in turns, so that a machine that is busy for a while slows all of them. Each
+// timed run follows an untimed one of its own, as the frames of a camera do: what a method before it left in caches and
+// page tables does not count. Memory is measured in a process for each method: this program, run again with --memory-of.
 
 #include <algorithm>
 #include <cstdio>
@@ -31,9 +32,8 @@ static const String KEYS =
     "{sizes           |     | times at these sizes and as the pair is, a line for each: WIDTHxHEIGHT/DISPARITIES, "
     "separated by commas; those of robots, 640x480/64,1280x720/128, if there is no value }"
     "{threads         |     | number of threads; all processors if not given }"
-    "{runs            | 7   | timed runs of each method, after one that is not timed }"
-    "{one-at-a-time   |     | keep the buffers of one method only, for pairs so large that all do not fit into memory; "
-    "each timed run then has an untimed one before it }"
+    "{runs            | 7   | timed runs of each method, each after one that is not timed }"
+    "{one-at-a-time   |     | keep the buffers of one method only, for pairs so large that all do not fit into memory }"
     "{stages          |     | the time of each stage of the presets, too }"
     "{memory-of       |     | measure the memory of this method, print it in bytes per pixel, and exit }";
 
@@ -84,10 +84,8 @@ static void measureRun(Measurement& result, Ptr<cv::StereoMatcher>& matcher, con
     const std::array<Mat, 2> images = imagesFor(method, pair.left, pair.right);
     Mat disparity;
     if (!matcher)
-    {
         matcher = method.create(pair.disparities);
-        matcher->compute(images[0], images[1], disparity);
-    }
+    matcher->compute(images[0], images[1], disparity);
     TickMeter timer;
     timer.start();
     matcher->compute(images[0], images[1], disparity);
