@@ -4,52 +4,65 @@
 # of this distribution and at http://opencv.org/license.html.
 
 '''
-What HDPTreeMatcher.setPriorDisparity() is worth on KITTI 2015:
-    PYTHONPATH=BUILD/python measure_prior.py FOLDER [PRESET [STEP]]
-FOLDER has SCENE/{left,right,disp_left}.png, of which every STEP-th is matched. The prior has 500 random points of the
-truth, with noise of 0.5 pixels: as they are, 10 % of them wrong by 5 to 50 pixels, those of the left half of the image
-by 15, and all of them by 20. Prints D1, the percentage of pixels that are wrong by more than 3 pixels and 5 %. Needs cv2.
+What HDPTreeMatcher.setPriorDisparity() is worth. The folder has SCENE/{left,right,disp_left}.png. The prior has random
+points of the truth, with noise: as they are, a tenth of them wrong by 5 to 50 pixels, those of the left half of the image
+by 15, and all of them by 20. Prints the percentage of wrong pixels. Needs cv2.
 '''
 
+import argparse
 import os
-import sys
 
 import cv2
 import numpy as np
 
 from hdpstereo import HDPTreeMatcher
 
-POINTS, SIGMA = 500, 0.5
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    parser.add_argument('folder')
+    parser.add_argument('preset', nargs='?', default='fast')
+    parser.add_argument('--scale', type=float, default=256, help='of the truth, 0 being unknown')
+    parser.add_argument('--num-disparities', type=int, default=256)
+    parser.add_argument('--points', type=int, default=500)
+    parser.add_argument('--sigma', type=float, default=0.5, help='of the points, in pixels')
+    parser.add_argument('--largest-error', type=float, default=3, help='of a right pixel, in pixels')
+    parser.add_argument('--largest-share', type=float, default=0.05, help='of its disparity, that it may be instead')
+    return parser.parse_args()
+
+
+def make_priors(truth, seed, options):
+    random = np.random.RandomState(seed)
+    places = np.argwhere(truth > 0)
+    rows, columns = places[random.choice(len(places), options.points, replace=False)].T
+    points = truth[rows, columns] + random.normal(0, options.sigma, options.points)
+    some = points.copy()
+    wrong = random.choice(options.points, options.points // 10, replace=False)
+    some[wrong] += random.uniform(5, 50, len(wrong)) * random.choice([-1, 1], len(wrong))
+    half = np.where(columns < truth.shape[1] // 2, points + 15, points)
+    for name, values in ('right', points), ('10 % wrong', some), ('half wrong', half), ('all wrong', points + 20):
+        prior = np.full(truth.shape, np.nan, np.float32)
+        prior[rows, columns] = values
+        yield name, prior
 
 
 def main():
-    folder, preset = sys.argv[1], (sys.argv[2:] or ['fast'])[0]
-    scenes = sorted(os.listdir(folder))[::int((sys.argv[3:] or [1])[0])]
+    options = parse_arguments()
     errors = {}
-    for seed, scene in enumerate(scenes):
-        left, right, truth = (cv2.imread(os.path.join(folder, scene, name + '.png'), flags)
+    for seed, scene in enumerate(sorted(os.listdir(options.folder))):
+        left, right, truth = (cv2.imread(os.path.join(options.folder, scene, name + '.png'), flags)
                               for name, flags in (('left', 1), ('right', 1), ('disp_left', -1)))
-        truth = truth / 256.0
-        random = np.random.RandomState(seed)
-        places = np.argwhere(truth > 0)
-        rows, columns = places[random.choice(len(places), POINTS, replace=False)].T
-        points = truth[rows, columns] + random.normal(0, SIGMA, POINTS)
-        some = points.copy()
-        wrong = random.choice(POINTS, POINTS // 10, replace=False)
-        some[wrong] += random.uniform(5, 50, len(wrong)) * random.choice([-1, 1], len(wrong))
-        half = np.where(columns < truth.shape[1] // 2, points + 15, points)
-        for name, values in (('no prior', None), ('right', points), ('10 % wrong', some), ('half wrong', half),
-                             ('all wrong', points + 20)):
-            matcher = HDPTreeMatcher.create(0, 256, preset=preset)
-            if values is not None:
-                prior = np.full(truth.shape, np.nan, np.float32)
-                prior[rows, columns] = values
-                matcher.setPriorDisparity(prior, SIGMA)
+        truth = truth / options.scale
+        matcher = HDPTreeMatcher.create(0, options.num_disparities, preset=options.preset)
+        for name, prior in [('no prior', None), *make_priors(truth, seed, options)]:
+            if prior is not None:
+                matcher.setPriorDisparity(prior, options.sigma)
             error = np.abs(matcher.compute(left, right) / 16.0 - truth)
-            errors.setdefault(name, []).append(100 * np.mean(((error > 3) & (error > 0.05 * truth))[truth > 0]))
+            wrong = (error > options.largest_error) & (error > options.largest_share * truth)
+            errors.setdefault(name, []).append(100 * np.mean(wrong[truth > 0]))
     for name, values in errors.items():
-        print('%-12s D1 %5.2f, %.2f of that without' % (name, np.mean(values),
-                                                        np.mean(values) / np.mean(errors['no prior'])))
+        share = np.mean(values) / np.mean(errors['no prior'])
+        print(f'{name:12} {np.mean(values):5.2f} %, {share:.2f} of that without')
 
 
 if __name__ == '__main__':

@@ -31,7 +31,7 @@ TEST(HDPStereo_SlowDisparityPrior, is_believed_as_far_as_the_images_do_not_contr
     {
         double none = 0, good = 0, some = 0, bad = 0, off = 0;
         const bool isHalf = createSystem(preset, 64)->getParams().finestLayer == 1;
-        for (int seed = 1; seed <= 6; ++seed)
+        for (int seed = 1; seed <= 16; ++seed)
         {
             const SyntheticPair pair = makeSyntheticPair(all.size(), 64, seed);
             const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 64);
@@ -49,11 +49,11 @@ TEST(HDPStereo_SlowDisparityPrior, is_believed_as_far_as_the_images_do_not_contr
             matcher->setPriorDisparity(prior, 0.5);
             off += errors();
         }
-        // 0.79, 0.81, 0.86, and 0.912 with ULTRAFAST, at half the resolution
+        // 0.83 to 0.85, and 0.916 with ULTRAFAST, at half the resolution
         EXPECT_LT(good, (isHalf ? 0.92 : 0.9) * none) << preset.name;
         EXPECT_LT(some, none) << preset.name;
         EXPECT_LE(bad, 1.05 * none) << preset.name;
-        EXPECT_LE(off, 1.1 * none) << preset.name << ", half of the image";
+        EXPECT_LE(off, 1.05 * none) << preset.name << ", half of the image";
     }
 }
 

@@ -30,22 +30,20 @@ public:
             excess_.push_back(excessOf(points[i]));
         }
         for (size_t i = 0; i < points.size(); ++i)
-            counts_.push_back(agrees_[i] || (claims_[i] && excess_[i] <= 25 * 7 && !isContradictedAround(i)));
+            counts_.push_back(isOfTheScene(i) && (agrees_[i] || (claims_[i] && excess_[i] <= 25 * 7 && isBelieved(i))));
     }
 
     Mat join(int maxDisparity) const
     {
         Mat joined = winners_.clone();
-        if (5 * std::count(agrees_.begin(), agrees_.end(), true) < 2 * (int)points_.size())
-            return joined;
-        Mat proposed = winners_.clone(), limits(winners_.size(), CV_32S, Scalar(-1)); // bits; -1: the winner stays
+        Mat proposed = winners_.clone(), limits(winners_.size(), CV_32F, Scalar(-1)); // bits; -1: the winner stays
         for (int y = 0; y < joined.rows; ++y)
             for (int x = 0; x < joined.cols; ++x)
-                propose(Point(x, y), maxDisparity, proposed.at<ushort>(y, x), limits.at<int>(y, x));
+                propose(Point(x, y), maxDisparity, proposed.at<ushort>(y, x), limits.at<float>(y, x));
         for (int y = 0; y < joined.rows; ++y)
             for (int x = 0; x < joined.cols; ++x)
-                if (limits.at<int>(y, x) >= 0 &&
-                    costAround(proposed, x, y) - costAround(winners_, x, y) <= 25 * limits.at<int>(y, x))
+                if (limits.at<float>(y, x) >= 0 &&
+                    costAround(proposed, x, y) - costAround(winners_, x, y) <= 25 * limits.at<float>(y, x))
                     joined.at<ushort>(y, x) = proposed.at<ushort>(y, x);
         return joined;
     }
@@ -104,21 +102,38 @@ private:
         return costAround(flat, point.place.x, point.place.y) - costAround(winners_, point.place.x, point.place.y);
     }
 
-    //! In the mean of all claims in 7 x 7 squares of the reach
-    bool isContradictedAround(size_t index) const
+    //! The points in 7 x 7 squares of the reach
+    std::vector<size_t> squaresAround(size_t index) const
     {
-        double sum = 0;
-        int count = 0;
+        std::vector<size_t> found;
         const Point own = points_[index].place / reach_;
         for (size_t i = 0; i < points_.size(); ++i)
         {
             const Point other = points_[i].place / reach_;
-            if (!claims_[i] || std::max(std::abs(other.x - own.x), std::abs(other.y - own.y)) > 3)
-                continue;
-            sum += excess_[i];
-            ++count;
+            if (std::max(std::abs(other.x - own.x), std::abs(other.y - own.y)) <= 3)
+                found.push_back(i);
         }
-        return sum > 25 * 3.5 * count;
+        return found;
+    }
+
+    //! In the mean of all claims around
+    bool isBelieved(size_t index) const
+    {
+        double excess = 0;
+        int claims = 0;
+        for (const size_t i : squaresAround(index))
+        {
+            excess += claims_[i] ? excess_[i] : 0;
+            claims += claims_[i];
+        }
+        return excess <= 25 * 3.5 * claims;
+    }
+
+    bool isOfTheScene(size_t index) const
+    {
+        const std::vector<size_t> all = squaresAround(index);
+        const auto agreeing = std::count_if(all.begin(), all.end(), [&](size_t i) { return agrees_[i]; });
+        return 5 * agreeing >= 2 * (int)all.size();
     }
 
     //! By a third of the points around, which may be wrong themselves
@@ -135,14 +150,15 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    void propose(Point place, int maxDisparity, ushort& proposed, int& limit) const
+    void propose(Point place, int maxDisparity, ushort& proposed, float& limit) const
     {
         const std::vector<Voice> voices = around(place, counts_);
         const float winner = winnerAt(place);
-        double speaksFor = 0, against = 0;
+        double speaksFor = 0, against = 0, all = 0;
         for (const Voice& voice : voices)
         {
             const PriorPoint& point = points_[voice.index];
+            all += voice.weight;
             if (areAlike(winner, point.disparity, point.sigma, voice.distance))
                 speaksFor += voice.weight;
             else if (!agrees_[voice.index] && areAlike(winner, winnerAt(point.place), point.sigma, voice.distance))
@@ -151,7 +167,7 @@ private:
         if (voices.size() < 2 || (speaksFor > 0 && speaksFor >= against))
             return;
         proposed = (ushort)std::max(0, std::min(cvRound(planeAt(place, voices) * 16), maxDisparity));
-        limit = against > 0 ? 7 : 4;
+        limit = against > 0 ? 7.f : (float)(7 * std::min(all / 0.25, 1.));
     }
 
     bool areOfOneSurface(size_t a, size_t b) const

@@ -14,8 +14,8 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(double, minAgreement, 0.4, "share of the points",
-            "that agree with the winners, in a prior of this scene: in a hard one half of the winners are wrong");
+HDP_TUNABLE(double, minAgreement, 0.4, "share of the points around",
+            "that agree with the winners where the prior is right: half of the winners of a hard scene are wrong");
 HDP_TUNABLE(double, tolerance, 0.7, "pixels", "of what agrees, beside two sigmas: less takes rounding for errors");
 HDP_TUNABLE(double, slope, 0.15, "pixels per pixel", "by which disparities of a surface may differ beside that");
 HDP_TUNABLE(int, reach, 48, "pixels of the image", "from a pixel to the points it knows: more sees other surfaces");
@@ -26,10 +26,11 @@ HDP_TUNABLE(double, distanceScale, 8, "pixels of the image", "by which the weigh
 HDP_TUNABLE(double, flatness, 0.1, "squared distanceScale", "by which planes resist being tilted: points in a row");
 HDP_TUNABLE(int, windowSide, 5, "pixels", "of the costs that are compared: single ones are noise");
 HDP_TUNABLE(double, contradiction, 7, "bits", "that a cost is higher by: more follows errors of the prior");
-HDP_TUNABLE(double, contradictionAlone, 4, "bits", "the same where no point speaks against a winner: thin things");
+HDP_TUNABLE(double, enoughWeight, 0.25, "weight of points",
+            "of which none speaks for a winner, to be believed as far as some against it: more keeps small things");
 HDP_TUNABLE(double, contradictionAround, 3.5, "bits",
             "the same in the mean of the points around: more follows errors that many of them have in common");
-HDP_TUNABLE(int, around, 3, "cells", "on each side, that this mean is over: fewer have too few points");
+HDP_TUNABLE(int, around, 3, "cells", "on each side, that points are around: fewer have too few points");
 
 //! A point near a pixel
 struct Neighbour
@@ -65,43 +66,36 @@ public:
         }
     }
 
-    //! Finds the states of the points. Returns whether enough agree for a prior of this scene.
-    bool judgePoints()
+    //! Finds the states of the points.
+    void judgePoints()
     {
-        size_t agreeing = 0;
         for (size_t i = 0; i < points_.size(); ++i)
-        {
             if (!areAlike(before_[i], points_[i].disparity, points_[i].sigma, 0))
                 states_[i] = FAILS;
-            agreeing += states_[i] == AGREES;
-        }
-        if (points_.empty() || agreeing < minAgreement * points_.size())
-            return false;
         parallelFor((int)points_.size(), [&](int i) {
             if (states_[i] != FAILS || !isSupported(i))
                 return;
             states_[i] = CLAIMS; // no other point asks for it
             excess_[i] = excessOf(i);
         });
-        judgeClaims();
-        return true;
+        judgeByThoseAround();
     }
 
     void join(int maxDisparity)
     {
-        Mat hypotheses(winners_.size(), CV_16U), isOpposed(winners_.size(), CV_8U), ofWinners, ofHypotheses;
+        Mat hypotheses(winners_.size(), CV_16U), beliefs(winners_.size(), CV_32F), ofWinners, ofHypotheses;
         parallelForRows(winners_.size(), std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
             for (int x = 0; x < width_; ++x)
-                isOpposed.ptr(y)[x] = propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
+                beliefs.ptr<float>(y)[x] = propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
         });
         sumCosts(winners_, ofWinners);
         sumCosts(hypotheses, ofHypotheses);
-        const int area = windowSide * windowSide;
+        const double limit = contradiction * windowSide * windowSide;
         parallelForRows(winners_.size(), [&](int y) {
             for (int x = 0; x < width_; ++x)
             {
                 const int more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners.ptr<ushort>(y)[x];
-                if (more <= area * (isOpposed.ptr(y)[x] ? contradiction : contradictionAlone))
+                if (more <= limit * beliefs.ptr<float>(y)[x])
                     winners_.ptr<ushort>(y)[x] = hypotheses.ptr<ushort>(y)[x];
             }
         });
@@ -178,23 +172,35 @@ private:
     int cellOf(Point place) const { return place.y / reach_ * grid_.width + place.x / reach_; }
 
     //! A claim counts unless the costs contradict it, or those around: what many have in common may be wrong as well,
-    //! and their mean tells that better.
-    void judgeClaims()
+    //! and their mean tells that better. Where few points agree, the prior is of something else, and all of them fail.
+    void judgeByThoseAround()
     {
-        Mat claims(grid_, CV_64FC2, Scalar::all(0)); // the sum of their excess, and their number
+        enum
+        {
+            EXCESS,
+            CLAIMING,
+            AGREEING,
+            ALL
+        };
+        Mat sums(grid_, CV_64FC4, Scalar::all(0)); // of the claims' excess, and the numbers of points
         for (size_t i = 0; i < points_.size(); ++i)
-            if (states_[i] == CLAIMS)
-                claims.ptr<Vec2d>()[cellOf(points_[i].place)] += Vec2d(excess_[i], 1);
-        boxFilter(claims, claims, -1, Size(2 * around + 1, 2 * around + 1), Point(-1, -1), false, BORDER_CONSTANT);
+        {
+            const bool claims = states_[i] == CLAIMS;
+            sums.ptr<Vec4d>()[cellOf(points_[i].place)] +=
+                Vec4d(claims ? excess_[i] : 0, claims, states_[i] == AGREES, 1);
+        }
+        boxFilter(sums, sums, -1, Size(2 * around + 1, 2 * around + 1), Point(-1, -1), false, BORDER_CONSTANT);
         const int area = windowSide * windowSide;
         for (size_t i = 0; i < points_.size(); ++i)
-            if (states_[i] == CLAIMS)
-            {
-                const Vec2d sums = claims.ptr<Vec2d>()[cellOf(points_[i].place)];
-                const bool isContradicted =
-                    excess_[i] > contradiction * area || sums[0] > contradictionAround * area * sums[1];
-                states_[i] = isContradicted ? FAILS : COUNTS;
-            }
+        {
+            const Vec4d own = sums.ptr<Vec4d>()[cellOf(points_[i].place)];
+            const bool isContradicted =
+                excess_[i] > contradiction * area || own[EXCESS] > contradictionAround * area * own[CLAIMING];
+            if (own[AGREEING] < minAgreement * own[ALL] || (states_[i] == CLAIMS && isContradicted))
+                states_[i] = FAILS;
+            else if (states_[i] == CLAIMS)
+                states_[i] = COUNTS;
+        }
     }
 
     //! Whether a third of the points around, by weight, agrees with a point
@@ -213,27 +219,28 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    //! The disparity that the points around a pixel propose: its winner, if they speak for it. Returns whether some
-    //! speak against it.
-    bool propose(Point place, int maxDisparity, std::vector<Neighbour>& found, ushort& proposed) const
+    //! The disparity that the points around a pixel propose: its winner, if they speak for it. Returns how far they are
+    //! to be believed, 0 to 1: that none is on the winner's surface tells little if they are far away.
+    float propose(Point place, int maxDisparity, std::vector<Neighbour>& found, ushort& proposed) const
     {
         const ushort own = winners_.ptr<ushort>(place.y)[place.x];
         const float winner = own * (1.f / subpixelScale);
         proposed = own;
         find(place, false, found);
-        double speaksFor = 0, against = 0;
+        double speaksFor = 0, against = 0, all = 0;
         for (const Neighbour& n : found)
         {
             const PriorPoint& point = points_[n.index];
+            all += n.weight;
             if (areAlike(winner, point.disparity, point.sigma, n.distance))
                 speaksFor += n.weight;
             else if (states_[n.index] == COUNTS && areAlike(winner, before_[n.index], point.sigma, n.distance))
                 against += n.weight;
         }
         if (found.size() < 2 || (speaksFor > 0 && speaksFor >= against))
-            return false;
+            return 0;
         proposed = (ushort)clamped(cvRound(planeAt(place, found) * subpixelScale), 0, maxDisparity);
-        return against > 0;
+        return against > 0 ? 1 : (float)std::min(all / enoughWeight, 1.);
     }
 
     //! The disparity of the plane through the points that are alike
@@ -331,9 +338,11 @@ void pointsOfLayer(const Mat& disparity, const Mat& sigma, int minDisparity, int
 void joinPrior(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer,
                int maxDisparity, Mat& winners)
 {
+    if (points.empty())
+        return;
     PriorJoin join(points, guide, cost, layer, winners);
-    if (join.judgePoints())
-        join.join(maxDisparity);
+    join.judgePoints();
+    join.join(maxDisparity);
 }
 
 }}} // namespace cv::stereo::hdp

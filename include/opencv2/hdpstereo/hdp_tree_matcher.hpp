@@ -563,9 +563,9 @@ public:
     /** @brief Tells disparities that are about known: of a lidar, of structure from motion, of the last survey.
 
     They are believed as far as the images do not contradict them. Where a point and the images differ, it counts if its
-    neighbours agree with it, and the costs contradict neither it nor, in the mean, those around it that differ as well.
-    A prior that mostly differs has no effect. Needs HDPTreeMatcher::COST_CENSUS. The prior stays until another one is
-    set. It is no parameter: files do not have it.
+    neighbours agree with it, and the costs contradict neither it nor, in the mean, those around it that differ as
+    well. Where most of a prior differs, it has no effect. Needs HDPTreeMatcher::COST_CENSUS. The prior stays until
+    another one is set. It is no parameter: files do not have it.
     @param disparity CV_32FC1 in pixels, of the images' size, NaN where nothing is known: nearly everywhere, perhaps.
     Copied. Empty: there is no prior.
     @param sigma Standard deviation of the disparities in pixels, finite, >= 0: a number, or CV_32FC1 of the same size.
