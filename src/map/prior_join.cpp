@@ -26,11 +26,11 @@ HDP_TUNABLE(double, distanceScale, 8, "pixels of the image", "by which the weigh
 HDP_TUNABLE(double, flatness, 0.1, "squared distanceScale", "by which planes resist being tilted: points in a row");
 HDP_TUNABLE(int, windowSide, 5, "pixels", "of the costs that are compared: single ones are noise");
 HDP_TUNABLE(double, contradiction, 7, "bits", "that a cost is higher by: more follows errors of the prior");
-HDP_TUNABLE(double, enoughWeight, 0.25, "weight of points",
-            "of which none speaks for a winner, to be believed as far as some against it: more keeps small things");
 HDP_TUNABLE(double, contradictionAround, 3.5, "bits",
             "the same in the mean of the points around: more follows errors that many of them have in common");
 HDP_TUNABLE(int, around, 3, "cells", "on each side, that points are around: fewer have too few points");
+HDP_TUNABLE(double, enoughWeight, 0.25, "weight of points",
+            "of other disparities, at which they are believed although none opposes a winner: less loses small things");
 
 //! A point near a pixel
 struct Neighbour
