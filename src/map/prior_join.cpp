@@ -66,23 +66,9 @@ public:
         }
     }
 
-    //! Finds the states of the points.
-    void judgePoints()
-    {
-        for (size_t i = 0; i < points_.size(); ++i)
-            if (!areAlike(before_[i], points_[i].disparity, points_[i].sigma, 0))
-                states_[i] = FAILS;
-        parallelFor((int)points_.size(), [&](int i) {
-            if (states_[i] != FAILS || !isSupported(i))
-                return;
-            states_[i] = CLAIMS; // no other point asks for it
-            excess_[i] = excessOf(i);
-        });
-        judgeByThoseAround();
-    }
-
     void join(int maxDisparity)
     {
+        judgePoints();
         Mat hypotheses(winners_.size(), CV_16U), beliefs(winners_.size(), CV_32F), ofWinners, ofHypotheses;
         parallelForRows(winners_.size(), std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
             for (int x = 0; x < width_; ++x)
@@ -171,35 +157,41 @@ private:
     //! Of the grid, row by row
     int cellOf(Point place) const { return place.y / reach_ * grid_.width + place.x / reach_; }
 
+    //! Finds the states of the points.
+    void judgePoints()
+    {
+        for (size_t i = 0; i < points_.size(); ++i)
+            if (!areAlike(before_[i], points_[i].disparity, points_[i].sigma, 0))
+                states_[i] = FAILS;
+        parallelFor((int)points_.size(), [&](int i) {
+            if (states_[i] != FAILS || !isSupported(i))
+                return;
+            states_[i] = CLAIMS; // no other point asks for it
+            excess_[i] = excessOf(i);
+        });
+        judgeByThoseAround();
+    }
+
     //! A claim counts unless the costs contradict it, or those around: what many have in common may be wrong as well,
     //! and their mean tells that better. Where few points agree, the prior is of something else, and all of them fail.
     void judgeByThoseAround()
     {
-        enum
-        {
-            EXCESS,
-            CLAIMING,
-            AGREEING,
-            ALL
-        };
-        Mat sums(grid_, CV_64FC4, Scalar::all(0)); // of the claims' excess, and the numbers of points
+        Mat sums(grid_, CV_64FC4, Scalar::all(0)); // by cell: the claims' excess; claims, points that agree, and all
         for (size_t i = 0; i < points_.size(); ++i)
-        {
-            const bool claims = states_[i] == CLAIMS;
             sums.ptr<Vec4d>()[cellOf(points_[i].place)] +=
-                Vec4d(claims ? excess_[i] : 0, claims, states_[i] == AGREES, 1);
-        }
+                Vec4d(excess_[i], states_[i] == CLAIMS, states_[i] == AGREES, 1);
         boxFilter(sums, sums, -1, Size(2 * around + 1, 2 * around + 1), Point(-1, -1), false, BORDER_CONSTANT);
         const int area = windowSide * windowSide;
         for (size_t i = 0; i < points_.size(); ++i)
         {
             const Vec4d own = sums.ptr<Vec4d>()[cellOf(points_[i].place)];
+            const double excess = own[0], claims = own[1], agreeing = own[2], all = own[3];
             const bool isContradicted =
-                excess_[i] > contradiction * area || own[EXCESS] > contradictionAround * area * own[CLAIMING];
-            if (own[AGREEING] < minAgreement * own[ALL] || (states_[i] == CLAIMS && isContradicted))
+                excess_[i] > contradiction * area || excess > contradictionAround * area * claims;
+            if (agreeing < minAgreement * all)
                 states_[i] = FAILS;
             else if (states_[i] == CLAIMS)
-                states_[i] = COUNTS;
+                states_[i] = isContradicted ? FAILS : COUNTS;
         }
     }
 
@@ -298,7 +290,7 @@ private:
     std::vector<std::vector<int>> cells_;
     std::vector<PointState> states_;
     std::vector<float> before_; // winners at the points
-    std::vector<int> excess_;   // of claims, see excessOf()
+    std::vector<int> excess_;   // of claims, see excessOf(); 0 of others
 };
 
 } // namespace
@@ -338,11 +330,8 @@ void pointsOfLayer(const Mat& disparity, const Mat& sigma, int minDisparity, int
 void joinPrior(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer,
                int maxDisparity, Mat& winners)
 {
-    if (points.empty())
-        return;
-    PriorJoin join(points, guide, cost, layer, winners);
-    join.judgePoints();
-    join.join(maxDisparity);
+    if (!points.empty())
+        PriorJoin(points, guide, cost, layer, winners).join(maxDisparity);
 }
 
 }}} // namespace cv::stereo::hdp
