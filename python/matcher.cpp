@@ -127,7 +127,10 @@ cv::Mat toInput(const py::object& array, const char* name, std::vector<py::array
 {
     if (py::isinstance<py::float_>(array) || py::isinstance<py::int_>(array))
         return cv::Mat(1, 1, CV_64F, cv::Scalar(array.cast<double>()));
-    return array.is_none() ? cv::Mat() : toMat(toImage(array, name), name, kept);
+    if (array.is_none())
+        return cv::Mat();
+    const py::array given = toImage(array, name);
+    return toMat(given.dtype().kind() == 'b' ? py::array(given.attr("view")("uint8")) : given, name, kept); // a mask
 }
 
 //! Pixels, NaN where one has no data or a filter has rejected it

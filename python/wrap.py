@@ -248,7 +248,7 @@ def main():
         stub += '    class %s(enum.IntEnum):\n' % name
         stub += ''.join('        %s = %s\n' % value for value in values)
         stub += ''.join('    %s: ClassVar[%s]\n' % (value, name) for value, _ in values) + '\n'
-    stub += '    class Params:\n        def __init__(\n            self, preset: int = ..., *,\n'
+    stub += '    class Params:\n        def __init__(\n            self, preset: Union[int, str] = ..., *,\n'
     stub += ',\n'.join('            %s: %s = ...' % (field.name, field.python_kind()) for field in params)
     stub += '\n        ) -> None: ...\n' + ''.join(field.stub(True) for field in params) + '\n'
     stub += '    class Findings:\n' + ''.join(field.stub(False) for field in findings) + '\n'

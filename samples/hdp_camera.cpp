@@ -46,7 +46,7 @@ static void fail(const String& message) { CV_Error(Error::StsError, message); }
 static int presetOf(const String& name)
 {
     if (name != "ultrafast" && name != "fast" && name != "quality")
-        fail("--preset=" + name + ": neither ultrafast nor fast, quality");
+        fail("--preset=" + name + " is none of ultrafast, fast and quality");
     return name == "ultrafast" ? HDPTreeMatcher::PRESET_ULTRAFAST
            : name == "fast"    ? HDPTreeMatcher::PRESET_FAST
                                : HDPTreeMatcher::PRESET_QUALITY;

@@ -48,7 +48,7 @@ public:
         const Mat left = leftArray.getMat(), right = rightArray.getMat();
         checkPair(left, right);
         checkInputs(inputs_, left.size());
-        const int depth = outputDepth(disparityArray);
+        const int depth = checkOutput(disparityArray, left.size());
         const auto makePlan = [&](const MatcherParameters& parameters) {
             return plan(parameters, left.size(), left.type(), pairModel_, inputs_);
         };
@@ -323,7 +323,7 @@ private:
         if (pairPlan.followsVideo)
             std::swap(lastFrame_, shared_.frame);
         adapted.treeStrategy = Ptr<TreeStrategy>(); // the caller's, whose life ends when the parameters are others
-        adapted.model = Ptr<DisparityPredictionModel>();
+        adapted.predictionModel = Ptr<DisparityPredictionModel>();
         result_.plan = adapted;
         return verdict;
     }
@@ -335,7 +335,7 @@ private:
         const FrameKey key = { scale, plan.pyramids.minDisparity / (double)scale,
                                largestDisparity(plan.alignment.numDisparities, finest) };
         predictFrame(left, key, lastFrame_, shared_.video, prediction_);
-        return { prediction_.verdict, hasPrior(lastFrame_, prediction_) };
+        return { prediction_.verdict, predictsDisparities(lastFrame_, prediction_) };
     }
 
     Mat confidenceOfLayer() const
@@ -355,12 +355,17 @@ private:
     //! one.
     void enlargeToImage(const Mat& ofLayer, int interpolation, OutputArray array) const
     {
-        const int extension = result_.plan.output.extension;
-        Mat extended = ofLayer;
-        if (result_.plan.finest().layer > 0)
-            resize(ofLayer, extended, result_.plan.size + Size(extension, 0), 0, 0, interpolation);
-        array.create(result_.plan.size, ofLayer.type());
-        extended.colRange(extension, extended.cols).copyTo(array);
+        const int extension = result_.plan.output.extension, scale = 1 << result_.plan.finest().layer;
+        const Size size = result_.plan.size, whole = ofLayer.size() * scale, extended = size + Size(extension, 0);
+        Mat enlarged = ofLayer;
+        if (scale > 1) // an odd row or column continues the one before it, as in the disparity map
+        {
+            resize(ofLayer, enlarged, whole, 0, 0, interpolation);
+            copyMakeBorder(enlarged, enlarged, 0, extended.height - whole.height, 0, extended.width - whole.width,
+                           BORDER_REPLICATE);
+        }
+        array.create(size, ofLayer.type());
+        enlarged.colRange(extension, enlarged.cols).copyTo(array);
     }
 
     //! Without the columns that are added to the images
@@ -373,9 +378,15 @@ private:
         ofLayer.colRange(result_.plan.output.extension >> layer, ofLayer.cols).copyTo(array);
     }
 
-    //! The depth of the map: that of the caller's array, if its type is fixed
-    int outputDepth(OutputArray disparity) const
+    //! Returns the depth of the map: that of the caller's array, if its type is fixed.
+    int checkOutput(OutputArray disparity, Size size) const
     {
+        if (!disparity.needed())
+            CV_Error(Error::StsBadArg, "disparity must be an array, not noArray()");
+        if (disparity.fixedSize() && disparity.size() != size)
+            CV_Error(Error::StsUnmatchedSizes,
+                     format("disparity must have the size of left, %d x %d, not %d x %d, as it is fixed", size.width,
+                            size.height, disparity.size().width, disparity.size().height));
         const int type = disparity.fixedType() ? disparity.type() : p_.disparityDepth;
         if (type != CV_16SC1 && type != CV_32FC1)
             CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1 if its type is fixed");

@@ -114,7 +114,7 @@ private:
         }
         else
         {
-            predictIntervals(*in_.pair.model, plan_.layer, result_.prior, trees.upperDisparities, trees.delta,
+            predictIntervals(*in_.pair.predictionModel, plan_.layer, result_.prior, trees.upperDisparities, trees.delta,
                              trees.margin, shared_.intervals);
             assignIntervals(in_.upper->disparity, size, shared_.intervals, own_.pixelIntv);
         }

@@ -44,9 +44,10 @@ inline std::string textOf(const hdp::PairPlan& p)
          << p.alignment.numDisparities << " " << p.alignment.maxRowOffset << " " << p.alignment.findsLight << " "
          << p.alignment.noiseThreshold << " " << p.alignment.finestLayer << " ranges " << p.hasRanges << " prior "
          << p.hasPrior << " follows video " << p.followsVideo << " looks for range " << p.looksForRange << "\nstrategy "
-         << (void*)p.treeStrategy.get() << " model " << (p.model ? p.model->getNumLayers() : 0) << "\noutput "
-         << p.output.minDisparity << " " << p.output.extension << " " << p.output.finestLayer << " " << p.output.isWhole
-         << " " << p.output.disp12MaxDiff << " " << p.output.speckleWindowSize << " " << p.output.speckleRange << "\n";
+         << (void*)p.treeStrategy.get() << " model " << (p.predictionModel ? p.predictionModel->getNumLayers() : 0)
+         << "\noutput " << p.output.minDisparity << " " << p.output.extension << " " << p.output.finestLayer << " "
+         << p.output.isWhole << " " << p.output.disp12MaxDiff << " " << p.output.speckleWindowSize << " "
+         << p.output.speckleRange << "\n";
     const hdp::ImageFrame& frame = p.given.alignment.frame;
     text << "given " << p.given.isGiven << " frame " << frame.whole << " " << frame.origin << "\n";
     for (const hdp::LayerPlan& layer : p.layers)

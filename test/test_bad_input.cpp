@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 #include "helpers.hpp"
+#include "synthetic_pair.hpp"
 #include "systems.hpp"
 
 namespace opencv_test { namespace {
@@ -103,6 +104,30 @@ TEST(HDPStereo_BadInput, output_of_a_fixed_other_type)
     const Mat image(12, 16, CV_8UC3, Scalar::all(7));
     Mat_<double> disparity;
     expectRejected([&] { HDPTreeMatcher::create()->compute(image, image, disparity); }, "disparity");
+}
+
+//! The memory of a video is that of the pairs before.
+TEST(HDPStereo_BadInput, output_that_cannot_be_written)
+{
+    const SyntheticPair first = makeSyntheticPair(Size(160, 100), 20, 3),
+                        second = makeSyntheticPair(Size(160, 100), 20, 4);
+    const Mat small(10, 12, CV_16S);
+    Mat maps[2];
+    for (bool fails : { false, true })
+    {
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 20);
+        matcher->setUseTemporalPrediction(true);
+        match(*matcher, first.left, first.right);
+        if (fails)
+        {
+            expectRejected([&] { matcher->compute(second.left, second.right, noArray()); },
+                           "disparity must be an array");
+            expectRejected([&] { matcher->compute(second.left, second.right, small); },
+                           "disparity must have the size of left, 160 x 100, not 12 x 10");
+        }
+        maps[fails] = match(*matcher, first.left, first.right).clone();
+    }
+    expectIdentical(maps[0], maps[1]);
 }
 
 //! A bad value leaves every parameter of the matcher as it was.

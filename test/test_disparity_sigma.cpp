@@ -55,6 +55,34 @@ double mismatchAt(const Mat& left, const Mat& right, const Mat& disparity, int x
     return std::sqrt(std::max(squares - sum * sum, 0.)) / (std::sqrt(gradients) + 0.5);
 }
 
+//! Each pixel of the layer is a block of the image, and the last ones go on beyond it, as in the map.
+TEST(HDPStereo_DisparitySigma, of_images_that_are_no_multiples_of_the_layer)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(187, 103), 32, 3);
+    for (int layer : { 1, 2, 3 })
+    {
+        const Ptr<M> matcher = M::create(0, 256); // enough for five layers
+        M::Params params;
+        params.finestLayer = layer;
+        params.numLayers = layer + 2;
+        matcher->setParams(params);
+        match(*matcher, pair.left, pair.right);
+        Mat confidence;
+        matcher->getConfidence(confidence);
+        const Mat sigma = sigmaOf(*matcher), reasons = reasonsOf(*matcher);
+        EXPECT_EQ(pair.left.size(), confidence.size());
+        EXPECT_GT(countNonZero(reasons != M::REASON_MATCHED), 0);
+        for (int y = 0; y < sigma.rows; ++y)
+            for (int x = 0; x < sigma.cols; ++x)
+            {
+                const int lastX = (sigma.cols >> layer) - 1, lastY = (sigma.rows >> layer) - 1;
+                const Point first(std::min(x >> layer, lastX) << layer, std::min(y >> layer, lastY) << layer);
+                ASSERT_EQ(sigma.at<float>(first), sigma.at<float>(y, x)) << Point(x, y);
+                ASSERT_EQ(reasons.at<uchar>(first), reasons.at<uchar>(y, x)) << Point(x, y);
+            }
+    }
+}
+
 TEST(HDPStereo_DisparitySigma, mismatch_is_that_of_the_definition)
 {
     RNG rng(81);

@@ -295,6 +295,8 @@ TEST(HDPStereo_PairModel, enlarged)
     expectRejected([&] { model.enlarged(2, 404, 240); }, "width");
     expectRejected([&] { model.enlarged(16, 100 << 16, 60 << 16); }, "times");
     expectRejected([&] { model.tile(0, 0, 50, 50).enlarged(1, 200, 120); }, "whole images");
+    model.rows.clear();
+    expectRejected([&] { model.enlarged(2, 403, 240); }, "rows must be 5 finite numbers");
 }
 
 //! Share of the pixels that tiles with a margin have otherwise than the whole, by more than a limit in pixels

@@ -439,11 +439,12 @@ TEST(HDPStereo_Plan, adapts_to_a_video)
         EXPECT_TRUE(plan.followsVideo);
         for (const hdp::VideoFindings& video : videos)
         {
-            SCOPED_TRACE(format("preset %d, verdict %d, prior %d", preset, video.verdict, video.hasPrior));
+            SCOPED_TRACE(format("preset %d, verdict %d, prior %d", preset, video.verdict, video.predictsDisparities));
             PairPlan adapted = hdp::adapt(plan, withNoise(2), video);
             EXPECT_EQ(video.verdict == hdp::CONTINUED, adapted.top().checksLastFrame);
-            EXPECT_EQ(video.hasPrior, adapted.top().prefersLastFrame);
-            EXPECT_EQ(video.hasPrior, adapted.finest().cost.tolerance == 0) << "faint texture counts in several frames";
+            EXPECT_EQ(video.predictsDisparities, adapted.top().prefersLastFrame);
+            EXPECT_EQ(video.predictsDisparities, adapted.finest().cost.tolerance == 0)
+                << "faint texture counts in several frames";
             const PairPlan alone = hdp::adapt(plan, withNoise(2), single);
             adapted.layers.front().checksLastFrame = adapted.layers.front().prefersLastFrame = false;
             for (size_t i = 0; i < alone.layers.size(); ++i)

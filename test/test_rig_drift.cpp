@@ -127,7 +127,8 @@ TEST(HDPStereo_RigDrift, refuses_what_is_no_rig_and_no_rows)
     const Ptr<RigDrift> drift = RigDrift::create(K, size);
     expectRejected([&] { drift->add(std::vector<double>(4)); }, "rows");
     expectRejected([&] { drift->add(std::vector<double>(5, std::nan(""))); }, "rows");
-    expectRejected([&] { drift->correct(makeCalibration(), Mat()); }, "R2");
+    for (const Mat& bad : { Mat(), Mat(Mat::zeros(3, 3, CV_64F)), Mat(Mat::eye(4, 3, CV_64F)) })
+        expectRejected([&] { drift->correct(makeCalibration(), bad); }, "R2 must be a rotation");
     expectRejected([&] { drift->correct(StereoCalibration(), Mat::eye(3, 3, CV_64F)); }, "calibration");
 }
 

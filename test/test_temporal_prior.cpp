@@ -159,7 +159,7 @@ TEST(HDPStereo_TemporalPrior, contradicted_frame)
 }
 
 //! None before a second pair has agreed, and none if nothing moves.
-TEST(HDPStereo_TemporalPrior, hasPrior)
+TEST(HDPStereo_TemporalPrior, predictsDisparities)
 {
     for (int frames : { 1, 2, 3 })
         for (bool isStill : { false, true })
@@ -169,7 +169,7 @@ TEST(HDPStereo_TemporalPrior, hasPrior)
                 video.last.frames = frames;
                 video.next.motion.isStill = isStill;
                 video.next.verdict = verdict;
-                EXPECT_EQ(frames > 1 && !isStill && verdict == CONTINUED, hasPrior(video.last, video.next));
+                EXPECT_EQ(frames > 1 && !isStill && verdict == CONTINUED, predictsDisparities(video.last, video.next));
             }
 }
 

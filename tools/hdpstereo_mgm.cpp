@@ -270,7 +270,7 @@ static DisparityRange readRange(const Call& call, Size size)
                              most.empty() ? 30 : cvCeil(toDisparity("-R", toNumber("-R", most))),
                              least.empty() && most.empty() && call.value("m").empty(), Mat(), Mat() };
     if (range.max < range.min)
-        fail(format("-R (30 without) must be at least -r (-30 without), %d, not %d", range.min, range.max));
+        fail(format("-R (%d) must not be less than -r (%d); without, they are 30 and -30", range.max, range.min));
     if (call.value("m").empty() != call.value("M").empty())
         fail("-m and -M need each other");
     if (!call.value("m").empty())

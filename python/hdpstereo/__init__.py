@@ -13,6 +13,8 @@ Fast non-local stereo matching: disparities of a rectified pair, for numpy array
 StereoRig reads calibrations, rectifies raw pairs, and makes depth of disparities.
 '''
 
+import operator
+
 from ._hdpstereo import (CV_16S, CV_32F, DisparityPredictionModel, HDPTreeMatcher, PairModel, RigDrift,
                          StereoCalibration, StereoRig, TreeState, TreeStrategy, __version__,
                          createMinimumSpanningTree, createRandomTree, createSegmentTree, getNumThreads,
@@ -24,7 +26,8 @@ __all__ = ['CV_16S', 'CV_32F', 'DisparityPredictionModel', 'HDPTreeMatcher', 'Pa
 
 # Parameters by name, and repr(), which has the form of the call that creates the matcher
 
-_construct = HDPTreeMatcher.__init__
+_construct, _construct_params = HDPTreeMatcher.__init__, HDPTreeMatcher.Params.__init__
+_like = HDPTreeMatcher.createLike
 
 
 def _in_camel_case(name):
@@ -42,10 +45,21 @@ def _preset(preset):
         raise ValueError('preset must be one of %s, not %r' % (names, preset)) from None
 
 
+def _integer(name, value):
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise TypeError('%s must be an int, not %r' % (name, value)) from None
+
+
+def _init_params(self, preset=HDPTreeMatcher.PRESET_FAST, **fields):
+    _construct_params(self, _preset(preset), **{_in_camel_case(name): value for name, value in fields.items()})
+
+
 def _init(self, minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_FAST, **parameters):
     parameters = {_in_camel_case(name): value for name, value in parameters.items()}
-    _construct(self, parameters.pop('minDisparity', minDisparity), parameters.pop('numDisparities', numDisparities),
-               _preset(preset))
+    _construct(self, _integer('minDisparity', parameters.pop('minDisparity', minDisparity)),
+               _integer('numDisparities', parameters.pop('numDisparities', numDisparities)), _preset(preset))
     params = self.getParams()
     for name, value in parameters.items():
         setter = getattr(self, 'set' + name[:1].upper() + name[1:], None)
@@ -60,6 +74,10 @@ def _init(self, minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_
 
 def _create(minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_FAST, **parameters):
     return HDPTreeMatcher(minDisparity, numDisparities, preset, **parameters)
+
+
+def _create_like(sgbm, preset=HDPTreeMatcher.PRESET_FAST):
+    return _like(sgbm, _preset(preset))
 
 
 def _fields(matcher):
@@ -91,5 +109,13 @@ preset: HDPTreeMatcher.PRESET_FAST, PRESET_ULTRAFAST, PRESET_QUALITY, PRESET_TRE
 parameters: all others by name, as Params and the setters have them. Names may be in snake case, too:
     HDPTreeMatcher.create(num_disparities=128, preset='quality', disp12_max_diff=1, fill_occlusions=False)'''
 
+_init_params.__doc__ = '''\
+The values of a preset, but for some fields: Params('quality', fill_occlusions=False).
+
+preset: as create() has it.
+fields: by name, in snake case, too.'''
+
 HDPTreeMatcher.__init__, HDPTreeMatcher.__repr__ = _init, _repr
-HDPTreeMatcher.create = staticmethod(_create)
+HDPTreeMatcher.Params.__init__ = _init_params
+_create_like.__doc__ = _like.__doc__
+HDPTreeMatcher.create, HDPTreeMatcher.createLike = staticmethod(_create), staticmethod(_create_like)

@@ -110,7 +110,7 @@ def main():
             assert result.returncode == 1 and 'error: --window must be X,Y,WIDTH,HEIGHT inside of 2000 x 900' in \
                 result.stdout, result.stdout
         before, left = (folder / 'out.tif').read_bytes(), (folder / 'left.tif').read_bytes()
-        for options, error in ((['--num-disparities=3000'], 'minDisparity and numDisparities must keep'),
+        for options, error in ((['--num-disparities=3000'], 'minDisparity + numDisparities - 1 must be in'),
                                (['--num-disparities=-1'], '--num-disparities must be > 0'),
                                (['--tile=0'], '--tile must be'),
                                (['--num-disparities=0', '--min-disparity=2'], '--num-disparities must be > 0')):

@@ -390,6 +390,12 @@ class Parameters(Test):
         self.assertIn(' matchingCost=COST_CENSUS, blockSize=7,', text)
         self.assertIn(' gamma=8.0,', text)
         self.assertRaisesText(TypeError, 'Params has no field side', lambda: HDPTreeMatcher.Params(side=3))
+        named = HDPTreeMatcher.Params('quality', fill_occlusions=False)
+        self.assertEqual((2, False), (named.scanlinePasses, named.fillOcclusions))
+        self.assertRaisesText(ValueError, "preset must be one of 'paper', 'fast', 'ultrafast', 'quality', 'tree', not 'best'", lambda: HDPTreeMatcher.Params('best'))
+        self.assertRaisesText(TypeError, 'numDisparities must be an int, not 16.5', lambda: HDPTreeMatcher(0, 16.5))
+        self.assertRaisesText(TypeError, "minDisparity must be an int, not 'two'",
+                              lambda: HDPTreeMatcher.create(min_disparity='two'))
         self.assertRaises(TypeError, lambda: HDPTreeMatcher.Params(numLayers='two'))
 
     def test_create_like(self):
@@ -400,10 +406,11 @@ class Parameters(Test):
             def __getattr__(self, name):
                 return lambda: self.values[name[3:]]
 
-        matcher = HDPTreeMatcher.createLike(Like(), HDPTreeMatcher.PRESET_QUALITY)
+        matcher = HDPTreeMatcher.createLike(Like(), 'quality')
         expected = HDPTreeMatcher(-2, 48, HDPTreeMatcher.PRESET_QUALITY)
         expected.setDisp12MaxDiff(1)
         expected.setSpeckleWindowSize(100)
+        expected.setSpeckleRange(0)
         self.assertEqual(parameters(expected), parameters(matcher))
         self.assertRaises(AttributeError, HDPTreeMatcher.createLike, None)
 
@@ -419,7 +426,8 @@ class Parameters(Test):
                 ('disparityDepth must be CV_16S or CV_32F, not 0', matcher.setDisparityDepth, 0),
                 ('treeStrategy must not be empty', matcher.setTreeStrategy, None),
                 ('layer must be >= 0, not -1', matcher.getLayerPrior, -1),
-                ('preset must be one of HDPTreeMatcher::PRESET_*, 0..4, not 9', HDPTreeMatcher, 0, 16, 9),
+                ('preset must be one of HDPTreeMatcher::PRESET_*, 0..4, not 9; it is no blockSize, which '
+                 'setBlockSize() sets', HDPTreeMatcher, 0, 16, 9),
                 ('numDisparities must be >= 0, not -16', HDPTreeMatcher.create, 0, -16),
                 ('k must be finite and >= 0', hdpstereo.createSegmentTree, -1),
                 ('seed must be >= 0', hdpstereo.createRandomTree, -1),
@@ -465,6 +473,8 @@ class Matching(Test):
         masked = matcher.compute(left, right, as_float=True)
         np.testing.assert_array_equal(mask == 0, np.isnan(masked))
         self.assertEqual(0, matcher.getConfidence()[mask == 0].max())
+        matcher.setMasks(mask != 0, None)
+        np.testing.assert_array_equal(masked, matcher.compute(left, right, as_float=True))
         matcher.setMasks(None, rightMask=None)
         self.assertSame(without, matcher.compute(left, right))
         left[mask == 0] = np.nan
@@ -480,6 +490,8 @@ class Matching(Test):
         disparity = matcher.compute(LEFT, RIGHT)
         self.assertEqual((True, True), (disparity.min() >= 3 * 16, disparity.max() <= 7 * 16))
         self.assertRaises(ValueError, lambda: matcher.setDisparityRange(limits + 4, limits))
+        matcher.setDisparityRange(limits, None)
+        self.assertGreaterEqual(matcher.compute(LEFT, RIGHT).min(), 3 * 16)
         matcher.setDisparityRange(None, None)
         self.assertSame(without, matcher.compute(LEFT, RIGHT))
         matcher.setPriorDisparity(TRUTH.astype(np.float32), 0.5)

@@ -110,7 +110,8 @@ private:
         int color = 0;
         for (int c = 0; c < channels; ++c)
             color = std::max(color, std::abs(p[c] - q[c]));
-        return std::exp(-distance / (distanceScale * scale_) - color / colorScale);
+        // A float, as the last bits of std::exp() differ between machines.
+        return (float)std::exp(-distance / (distanceScale * scale_) - color / colorScale);
     }
 
     //! The points around a pixel that weigh most, but for those that fail if they are not asked for

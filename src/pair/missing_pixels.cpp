@@ -6,6 +6,7 @@
 
 #include "../base/vectorized.hpp"
 
+#include <cfloat>
 #include <cstring>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -88,7 +89,7 @@ FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks
 
 void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, Mat& levels)
 {
-    const double scale = floats.white > floats.black ? USHRT_MAX / (floats.white - floats.black) : 0;
+    const double range = floats.white - floats.black, scale = range > FLT_MIN ? USHRT_MAX / range : 0;
     levels.create(image.size(), CV_16U);
     parallelForRows(image.size(), [&](int y) {
         const float* const row = image.ptr<float>(y);

@@ -205,7 +205,8 @@ void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         const RowFit fit = fitRows(moves, size);
         const MeanSquares ofFit = meanSquares(fit, size);
         const RowModel fitted(fit.coefficients);
-        findings.rowError = std::hypot(deviationFrom(fit.coefficients, moves), ownDeviation * (1 << layer));
+        const double deviation = deviationFrom(fit.coefficients, moves), own = ownDeviation * (1 << layer);
+        findings.rowError = std::sqrt(deviation * deviation + own * own); // not by std::hypot(), either
         findings.noise.deviation = noiseOf(matches) / greyScale;
         findings.noise.layer = layer;
         if (ofFit.deviation < ofBest.deviation)

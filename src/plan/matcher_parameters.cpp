@@ -141,7 +141,8 @@ Ptr<TreeStrategy> readStrategy(const FileNode& fn, const Ptr<TreeStrategy>& own)
 HDPTreeMatcher::Params::Params(int preset)
 {
     if (preset < PRESET_PAPER || preset > PRESET_TREE)
-        CV_Error(Error::StsOutOfRange, format("preset must be one of HDPTreeMatcher::PRESET_*, %d..%d, not %d",
+        CV_Error(Error::StsOutOfRange, format("preset must be one of HDPTreeMatcher::PRESET_*, %d..%d, not %d; "
+                                              "it is no blockSize, which setBlockSize() sets",
                                               (int)PRESET_PAPER, (int)PRESET_TREE, preset));
     const bool isPaper = preset == PRESET_PAPER, isTree = preset == PRESET_TREE, isQuality = preset == PRESET_QUALITY;
     const bool hasScanlines = !isPaper && !isTree;

@@ -16,7 +16,7 @@ struct MatcherParameters : HDPTreeMatcher::Params
     int minDisparity = 0;
     int numDisparities = 64; // 0: both are found in the pair
     int speckleWindowSize = 0;
-    int speckleRange = 0;
+    int speckleRange = 1; // disparities have fractions, so none but those of one are in 0
     int disp12MaxDiff = -1;
 };
 

@@ -18,12 +18,22 @@ const int limit = (SHRT_MAX + 1) / StereoMatcher::DISP_SCALE; // of disparities 
 //! Without the type that an empty array may have
 Mat toMat(InputArray array) { return array.empty() ? Mat() : array.getMat(); }
 
+//! For messages
+String typeOf(const Mat& map) { return map.dims == 2 ? typeToString(map.type()) : format("%d dimensions", map.dims); }
+
 Mat toMask(InputArray array, const char* name)
 {
     const Mat mask = toMat(array);
     if (!mask.empty() && (mask.dims != 2 || mask.type() != CV_8UC1))
-        CV_Error(Error::StsUnsupportedFormat, format("%s must be CV_8UC1, 0 where the image has no data", name));
+        CV_Error(Error::StsUnsupportedFormat,
+                 format("%s must be CV_8UC1, 0 where the image has no data, not %s", name, typeOf(mask).c_str()));
     return mask.clone();
+}
+
+//! A map of the caller, or one like the other of the two if it is empty
+Mat toLimits(const Mat& map, const Mat& other, int unlimited)
+{
+    return map.empty() && !other.empty() ? Mat(other.size(), other.type(), Scalar(unlimited)) : map;
 }
 
 Mat withoutNaN(const Mat& map, float value)
@@ -51,11 +61,18 @@ void setMasks(InputArray left, InputArray right, PairInputs& inputs)
 
 void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inputs)
 {
-    const Mat smallest = toMat(smallestArray), largest = toMat(largestArray);
-    if (!smallest.empty() && (smallest.dims != 2 || (smallest.type() != CV_16SC1 && smallest.type() != CV_32FC1)))
-        CV_Error(Error::StsUnsupportedFormat, "smallest must be CV_16SC1 or CV_32FC1, disparities in pixels");
-    if (largest.dims != smallest.dims || largest.type() != smallest.type() || largest.size() != smallest.size())
-        CV_Error(Error::StsUnmatchedSizes, "largest must have the size and type of smallest");
+    const Mat given[] = { toMat(smallestArray), toMat(largestArray) };
+    for (const Mat& map : given)
+        if (!map.empty() && (map.dims != 2 || (map.type() != CV_16SC1 && map.type() != CV_32FC1)))
+            CV_Error(Error::StsUnsupportedFormat,
+                     format("%s must be CV_16SC1 or CV_32FC1, disparities in pixels, not %s",
+                            &map == given ? "smallest" : "largest", typeOf(map).c_str()));
+    const Mat smallest = toLimits(given[0], given[1], -limit), largest = toLimits(given[1], given[0], limit - 1);
+    if (largest.type() != smallest.type() || largest.size() != smallest.size())
+        CV_Error(Error::StsUnmatchedSizes,
+                 format("largest must have the size and type of smallest, %d x %d and %s, not %d x %d and %s",
+                        smallest.cols, smallest.rows, typeOf(smallest).c_str(), largest.cols, largest.rows,
+                        typeOf(largest).c_str()));
     const int less = smallest.empty() ? 0 : countNonZero(largest < smallest);
     if (less > 0)
         CV_Error(Error::StsOutOfRange, format("largest must not be less than smallest, as it is in %d pixels", less));
@@ -79,12 +96,16 @@ void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inpu
     const Mat disparity = toMat(disparityArray).clone();
     Mat sigma = disparity.empty() ? Mat() : toMat(sigmaArray).clone();
     if (!disparity.empty() && (disparity.dims != 2 || disparity.type() != CV_32FC1))
-        CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_32FC1, in pixels, NaN where nothing is known");
+        CV_Error(Error::StsUnsupportedFormat,
+                 format("disparity must be CV_32FC1, in pixels, NaN where nothing is known, not %s",
+                        typeOf(disparity).c_str()));
     const bool isNumber = sigma.type() == CV_64FC1 && (sigma.total() == 1 || sigma.size() == Size(1, 4)); // or a Scalar
     if (isNumber)
         sigma = Mat(disparity.size(), CV_32F, Scalar(sigma.at<double>(0)));
     if (!disparity.empty() && (sigma.type() != CV_32FC1 || sigma.size() != disparity.size()))
-        CV_Error(Error::StsUnmatchedSizes, "sigma must be a number, or CV_32FC1 of the size of disparity");
+        CV_Error(Error::StsUnmatchedSizes,
+                 format("sigma must be a number, or CV_32FC1 of the size of disparity, %d x %d, not %s of %d x %d",
+                        disparity.cols, disparity.rows, typeOf(sigma).c_str(), sigma.cols, sigma.rows));
     if (!disparity.empty() && countNonZero((disparity == disparity) & ~((sigma >= 0) & (sigma <= FLT_MAX))) > 0)
         CV_Error(Error::StsOutOfRange, "sigma must be finite and >= 0 where there is a disparity");
     inputs.prior = disparity;

@@ -38,10 +38,10 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("depth", m.depth, m.depth == CV_8U || m.depth == CV_16U || m.depth == CV_32F, "CV_8U, CV_16U or CV_32F");
     visit("tileWidth", m.tileWidth, m.tileWidth > 0 && m.tileWidth <= m.width, "1..width");
     visit("tileHeight", m.tileHeight, m.tileHeight > 0 && m.tileHeight <= m.height, "1..height");
-    visit("x", m.x, m.x >= 0 && m.x <= m.width - m.tileWidth, "0..width - tileWidth");
-    visit("y", m.y, m.y >= 0 && m.y <= m.height - m.tileHeight, "0..height - tileHeight");
+    visit("x", m.x, m.x >= 0 && (int64)m.x + m.tileWidth <= m.width, "0..width - tileWidth");
+    visit("y", m.y, m.y >= 0 && (int64)m.y + m.tileHeight <= m.height, "0..height - tileHeight");
     visit("minDisparity", m.minDisparity, std::abs((double)m.minDisparity) <= maxWhole, "-2^24..2^24");
-    visit("numDisparities", m.numDisparities, m.numDisparities > 0, "> 0");
+    visit("numDisparities", m.numDisparities, m.numDisparities > 0 && m.numDisparities <= maxWhole, "1..2^24");
     visit("addedColumns", m.addedColumns, m.addedColumns >= 0 && m.addedColumns <= maxWhole, "0..2^24");
     visit("areRowsMoved", m.areRowsMoved, true, "");
     visit("isLightChanged", m.isLightChanged, true, "");
@@ -142,6 +142,7 @@ PairModel PairModel::enlarged(int times, int largeWidth, int largeHeight) const
     if (largeWidth >> times != width || largeHeight >> times != height)
         CV_Error(Error::StsUnmatchedSizes, format("width and height must be %d x %d times %d, not %d x %d", width,
                                                   height, 1 << times, largeWidth, largeHeight));
+    checkPairModel(*this);
     const double scale = 1 << times;
     PairModel model = *this;
     model.width = model.tileWidth = largeWidth;

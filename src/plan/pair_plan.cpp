@@ -90,9 +90,12 @@ void checkCombinations(const MatcherParameters& p, Size size, bool hasPrior)
     const int64 min = ((int64)p.minDisparity - 1) * M::DISP_SCALE;
     const int64 max = ((int64)p.minDisparity + p.numDisparities - 1) * M::DISP_SCALE;
     if (min < SHRT_MIN || max > SHRT_MAX)
-        CV_Error(Error::StsOutOfRange, format("minDisparity and numDisparities must keep (minDisparity - 1) * %d and "
-                                              "(minDisparity + numDisparities - 1) * %d in CV_16S",
-                                              (int)M::DISP_SCALE, (int)M::DISP_SCALE));
+        CV_Error(
+            Error::StsOutOfRange,
+            format("minDisparity - 1 and minDisparity + numDisparities - 1 must be in %d..%d, as CV_16S has them times "
+                   "%d; minDisparity is %d and numDisparities %d",
+                   SHRT_MIN / M::DISP_SCALE, SHRT_MAX / M::DISP_SCALE, (int)M::DISP_SCALE, p.minDisparity,
+                   p.numDisparities));
     const char* const needsCensus = p.aggregation == M::AGGREGATION_SCANLINES        ? "AGGREGATION_SCANLINES"
                                     : p.aggregation == M::AGGREGATION_TREE_SCANLINES ? "AGGREGATION_TREE_SCANLINES"
                                     : p.fillOcclusions                               ? "fillOcclusions"
@@ -268,9 +271,9 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
 
 //! What differs by less is as often noise as texture. Where several frames have agreed, their noise averages out, and
 //! faint texture is worth more.
-int censusTolerance(const LayerPlan& layer, const LayerNoise& noise, bool hasPrior)
+int censusTolerance(const LayerPlan& layer, const LayerNoise& noise, bool isPredicted)
 {
-    if (hasPrior)
+    if (isPredicted)
         return 0;
     const int least = !layer.isFinest; // rounded means and faint shading are no texture
     const int tolerance = cvRound(toleratedNoise * greyScale * noise.ofLayer(layer.layer));
@@ -315,8 +318,8 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     plan.treeStrategy = p.treeStrategy;
     // A tile is matched as the image that it is a part of.
     const Size whole = model.empty() ? size : Size(model.width, model.height);
-    plan.model = modelOf(p, whole);
-    const int layers = countLayers(p, whole, plan.model);
+    plan.predictionModel = modelOf(p, whole);
+    const int layers = countLayers(p, whole, plan.predictionModel);
     checkPairModelOf(model, size, type, layers);
     const int finest = std::min(p.finestLayer, layers - 1);
     const int matchedType = CV_MAT_DEPTH(type) == CV_32F ? CV_16UC1 : type; // see completePair()
@@ -345,12 +348,12 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
     for (LayerPlan& layer : adapted.layers)
     {
         // With what the last frame predicts, the layer above has its disparities from many frames.
-        if (video.hasPrior && layer.method == RANGE_SCANLINES)
+        if (video.predictsDisparities && layer.method == RANGE_SCANLINES)
             layer.rangePenalties.maxPrior = RangePenalties::maxMaxPrior;
-        if (video.hasPrior && layer.method == WINDOW_SCANLINES)
+        if (video.predictsDisparities && layer.method == WINDOW_SCANLINES)
             layer.smoothness.least = SmoothnessWeight::one;
         if (layer.cost.isCensus)
-            layer.cost.tolerance = censusTolerance(layer, findings.noise, video.hasPrior);
+            layer.cost.tolerance = censusTolerance(layer, findings.noise, video.predictsDisparities);
         for (ScanlinePenalties& penalties : layer.passes)
             penalties.edgeNoise = saturate_cast<uchar>(edgeNoise * findings.noise.ofLayer(layer.layer));
         if (layer.surfaceDifference > 0)
@@ -359,7 +362,7 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
     }
     LayerPlan& top = adapted.layers.front();
     top.checksLastFrame = video.verdict == CONTINUED && top.method == TREE_SCANLINES;
-    top.prefersLastFrame = video.hasPrior && (top.method == TREE_SCANLINES || top.method == COST_SCANLINES);
+    top.prefersLastFrame = video.predictsDisparities && (top.method == TREE_SCANLINES || top.method == COST_SCANLINES);
     return adapted;
 }
 

@@ -105,7 +105,7 @@ struct PairPlan
     bool followsVideo = false;     // and the finest layer is joined with the last frame
     std::vector<LayerPlan> layers; // that are matched, the top one first
     Ptr<TreeStrategy> treeStrategy;
-    Ptr<DisparityPredictionModel> model; // of the layers with predicted intervals; none if no layer has them
+    Ptr<DisparityPredictionModel> predictionModel; // of the layers with predicted intervals; none if no layer has them
     OutputPlan output;
 
     const LayerPlan& top() const { return layers.front(); }

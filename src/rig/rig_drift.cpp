@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "opencv2/hdpstereo/stereo_rig.hpp"
+#include "calibration_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -112,7 +113,7 @@ public:
     StereoCalibration correct(const StereoCalibration& calibration, InputArray R2Array) const CV_OVERRIDE
     {
         const Mat R2Mat = R2Array.getMat(), &R = calibration.R, &T = calibration.T;
-        if (R2Mat.size() != Size(3, 3) || R2Mat.channels() != 1)
+        if (R2Mat.size() != Size(3, 3) || R2Mat.channels() != 1 || !hdp::isRotation(R2Mat))
             CV_Error(Error::StsBadArg, "R2 must be a rotation, 3 x 3");
         if (R.size() != Size(3, 3) || T.total() != 3 || R.type() != CV_64F || T.type() != CV_64F ||
             calibration.cameraMatrix2.size() != Size(3, 3) || calibration.cameraMatrix2.type() != CV_64F)

@@ -21,7 +21,7 @@ enum Verdict
 struct VideoFindings
 {
     Verdict verdict;
-    bool hasPrior; // the last frame predicts disparities, see hasPrior()
+    bool predictsDisparities; // see the function of this name
 };
 
 //! What the disparities of a map stand for; only maps of the same key are compared.

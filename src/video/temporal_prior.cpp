@@ -32,7 +32,7 @@ float predict(const FrameMemory& last, const FramePrediction& p, int x, int y)
 
 } // namespace
 
-bool hasPrior(const FrameMemory& last, const FramePrediction& prediction)
+bool predictsDisparities(const FrameMemory& last, const FramePrediction& prediction)
 {
     return prediction.isMoving() && last.frames > 1;
 }

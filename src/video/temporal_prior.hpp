@@ -11,7 +11,7 @@ namespace cv { namespace stereo { namespace hdp {
 
 //! Whether the last frame predicts disparities: not before a second pair can have agreed with the first one, nor if
 //! nothing moves, as joinLastFrame() keeps disparities then.
-CV_EXPORTS bool hasPrior(const FrameMemory& last, const FramePrediction& prediction);
+CV_EXPORTS bool predictsDisparities(const FrameMemory& last, const FramePrediction& prediction);
 
 /** The disparities that the last frame predicts for the pixels of a volume: those that more than one pair has had, as a
 single pair is wrong as often as this one. Where the image stands still and looks moved as well, with different

@@ -83,7 +83,7 @@ static void warnOfPair(const HDPTreeMatcher& matcher)
     const double believable = 3; // pixels
     if (matcher.getMaxRowOffset() == 0)
         return;
-    if (findings.noise == 0 && std::count(findings.rows.begin(), findings.rows.end(), 0.) == (int)findings.rows.size())
+    if (findings.rowError == 0) // too few corners were matched
         std::cerr
             << "warning: hardly a corner of the left image was found in the right one: are the two swapped, the pair "
                "not rectified, or --min-disparity and --num-disparities not those of the scene?\n";

@@ -88,9 +88,7 @@ void requireDisparitiesOfPng(const CommandLineParser& parser)
 void setKnownDisparities(const CommandLineParser& parser, const Mat& smallest, const Mat& largest, const Mat& prior,
                          HDPTreeMatcher& matcher)
 {
-    const Mat unlimited(std::max(smallest.rows, largest.rows), std::max(smallest.cols, largest.cols), CV_32F,
-                        Scalar(std::numeric_limits<float>::quiet_NaN()));
-    matcher.setDisparityRange(smallest.empty() ? unlimited : smallest, largest.empty() ? unlimited : largest);
+    matcher.setDisparityRange(smallest, largest);
     matcher.setPriorDisparity(prior, Mat(1, 1, CV_64F, Scalar(numberOf(parser, "prior-sigma"))));
 }
 
@@ -103,7 +101,8 @@ Ptr<HDPTreeMatcher> createPlainMatcher(const CommandLineParser& parser, int widt
                                             { "paper", HDPTreeMatcher::PRESET_PAPER } };
     const auto preset = presets.find(parser.get<String>("preset"));
     if (preset == presets.end())
-        CV_Error(Error::StsBadArg, "--preset=" + parser.get<String>("preset") + " is unknown, see --help");
+        CV_Error(Error::StsBadArg,
+                 "--preset=" + parser.get<String>("preset") + " is none of ultrafast, fast, quality, tree and paper");
     const int minDisparity = integerOf(parser, "min-disparity"), numDisparities = numDisparitiesOf(parser, width);
     if (numDisparities == 0 && minDisparity != 0)
         CV_Error(Error::StsBadArg, "--min-disparity does not go with --num-disparities=0, which finds it, too");

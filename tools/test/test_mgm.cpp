@@ -229,7 +229,7 @@ TEST(HDPStereo_Mgm, wrong_calls)
         { "-r -31 -R", "LEFT, RIGHT and OUT are needed" },
         { "-q 3", "the option -q is unknown" },
         { "-r near -R 0", "-r must be a number, not 'near'" },
-        { "-r 5 -R 4", "-R (30 without) must be at least -r (-30 without), 5, not 4" },
+        { "-r 5 -R 4", "-R (4) must not be less than -r (5)" },
         { "-r -2048 -R 0", "-r must be from -2047 to 2047, not -2048" },
         { "-r 0 -R 1e30", "-R must be from -2047 to 2047, not 1e+30" },
         { "-m a.tif", "-m and -M need each other" },

@@ -47,7 +47,7 @@ column. getConfidence() tells how reliable each disparity is, getFindings() what
 - minDisparity, numDisparities: the range of disparities in pixels, minDisparity to minDisparity + numDisparities - 1.
   minDisparity has any sign; a negative one adds up to numDisparities columns on the left of the images. numDisparities
   is > 0, and not necessarily a multiple of 16, or 0: both are found in the pair, see Findings::numDisparities, and the
-  parameter minDisparity has no meaning. This takes 10 to 60 ms, and the range is about twice as large as necessary.
+  parameter minDisparity has no meaning. This takes 20 to 150 ms, and the range is about twice as large as necessary.
   Where setDisparityRange() limits all pixels, it is that of all of them, within the images' width. Otherwise a pair
   in which fewer than 10 corners have matches, as in images without texture, is an error. The frames of a video keep
   the range of the first one while it has all disparities that are found, and is not twice as large.
@@ -61,7 +61,8 @@ The filters are those of cv::StereoMatcher, and off by default:
 - disp12MaxDiff: the maximal valid difference, in pixels, between the disparity of a pixel and the maximal one of those
   that match the same pixel of the right image. <= 0: no check.
 - speckleWindowSize, speckleRange: the filter for speckles, see cv::filterSpeckles. The window size is a number of
-  pixels, <= 0: no filter. speckleRange is in pixels, >= 0; more than 2047 counts as 2047.
+  pixels, <= 0: no filter. speckleRange is in pixels, >= 0, and 1 at first; more than 2047 counts as 2047. 0 rejects
+  nearly all, as disparities have fractions.
 - blockSize: the same as Params::blockSize.
 
 Params has everything else. @ref tutorial_hdpstereo_matching explains the algorithm, how to choose a preset, and what
@@ -202,8 +203,8 @@ public:
 
         Rectified images have the same point in the same row. Temperature, a knock or a poor calibration change that,
         and half a row already costs accuracy. compute() matches some hundred corners, and moves the rows of the right
-        image if these say that rows are off by more than an eighth of a pixel. >= 0, at the worst corner of the image;
-        larger differences are not believed. 0: off. PAPER: 0, others: 64. */
+        image if these say that rows are off by more than 0.12 pixels (root of the mean square). >= 0, at the worst
+        corner of the image; larger differences are not believed. 0: off. PAPER: 0, others: 64. */
         CV_PROP_RW int maxRowOffset;
 
         /** @brief Whether the right image gets the light of the left one before they are matched.
@@ -239,7 +240,7 @@ public:
         /** @brief Maximal number of disparities of the top layer, which searches all of them.
 
         Layers are added until the top one has no more, but with intervals no more layers than predictionModel is for;
-        beyond the second none that would leave it fewer than 16. >= 0; 0: there are numLayers layers. PAPER: 0, TREE:
+        a third or later layer is not added if it would have fewer than 16 disparities. >= 0; 0: there are numLayers layers. PAPER: 0, TREE:
         90, QUALITY: 55, others: 45. */
         CV_PROP_RW int maxTopDisparities;
 
@@ -436,7 +437,7 @@ public:
         A point of the right image that is u pixels right of its centre and v below it was
         \f$m_0 + m_1 u + m_2 v + m_3 u v + m_4 v^2\f$ pixels below its row, as small rotations of a camera and another
         focal length make it. @ref tutorial_hdpstereo_matching tells how to correct a calibration by them. Zeros if too
-        few corners were matched or Params::maxRowOffset is 0. */
+        few corners were matched, rowError being 0 then, or if Params::maxRowOffset is 0. */
         CV_PROP std::vector<double> rows;
 
         //! Whether the rows of the right image were moved before matching.
@@ -555,16 +556,17 @@ public:
     @param smallest CV_16SC1 or CV_32FC1, in pixels, of the images' size or coarser: each pixel then has the range of
     the nearest one. Below 2048, as disparities of CV_16S are. NaN limits nothing. Copied. Both empty: there are no
     ranges.
-    @param largest Of the same size and type; nowhere less than smallest or than -2048.
+    @param largest Of the same size and type; nowhere less than smallest or than -2048. If only one of the two is
+    empty, it limits nothing.
     @throws cv::Exception if the maps are not that; both are unchanged.
      */
     CV_WRAP virtual void setDisparityRange(InputArray smallest, InputArray largest) = 0;
 
     /** @brief Tells disparities that are about known: of a lidar, of structure from motion, of the last survey.
 
-    They are believed as far as the images do not contradict them. Where a point and the images differ, it counts if its
-    neighbours agree with it, and the costs contradict neither it nor, in the mean, those around it that differ as
-    well. Where most of a prior differs, it has no effect. Needs HDPTreeMatcher::COST_CENSUS. The prior stays until
+    They are believed as far as the images do not contradict them. A point that disagrees with the images counts only if
+    neighbouring points support it, and if the matching costs do not clearly contradict it or them. Where most of the
+    points around disagree with the images, none of them counts. Needs HDPTreeMatcher::COST_CENSUS. The prior stays until
     another one is set. It is no parameter: files do not have it.
     @param disparity CV_32FC1 in pixels, of the images' size, NaN where nothing is known: nearly everywhere, perhaps.
     Copied. Empty: there is no prior.
@@ -582,8 +584,8 @@ public:
 
     It is no probability: it serves to sort or weight pixels, or to reject those below a threshold. 160 is a high
     value, 200 is hardly ever reached, and the median of a map is usually between 50 and 100. As a threshold, 20 leaves
-    out about half of the pixels that are wrong by more than one, and a tenth of the right ones; 60 nearly all of the
-    wrong ones, and a quarter to a half of the right ones. BENCHMARK.md has the shares. How wrong a disparity is, in
+    out about half of the pixels that are wrong by more than one, and a tenth of the right ones; 60 three quarters or
+    more of the wrong ones, and a quarter to a half of the right ones. BENCHMARK.md has the shares. How wrong a disparity is, in
     pixels, getDisparitySigma() tells.
     @param confidence Receives CV_8UC1 of the left image's size: from 0 to 255, larger is more reliable; 0 where a
     pixel has no data or a filter rejected it. Empty before the first compute() and after one that threw an exception.
@@ -592,11 +594,12 @@ public:
 
     /** @brief Returns the standard deviation of each disparity's error in the last compute().
 
-    About 68 % of the errors of pixels with a value are not larger; it is calibrated on pairs of known truth. It comes
+    50 to 80 % of the errors of a map are not larger, depending on the scenes: it is calibrated on pairs of known truth,
+    some of which is not more exact itself. It comes
     from getConfidence(), from how much matched levels differ for the texture there is, from Findings::rowError, and
     from Findings::noise.
-    About two thirds of the disparities that are wrong by more than 3 pixels have one above 1; how much they are wrong
-    it does not tell. It is computed by this call.
+    Of the disparities that are wrong by more than 3 pixels, 40 to 90 % have one above 1, which does not say by how much
+    they are wrong. It is computed by this call.
     @param sigma Receives CV_32FC1 of the left image's size, in pixels; infinite where a pixel has no data or a filter
     rejected it. Empty before the first compute() and after one that threw an exception.
      */
@@ -661,6 +664,7 @@ public:
     @param minDisparity First disparity in pixels, of any sign.
     @param numDisparities Number of candidates, >= 0; 0: both are found in each pair.
     @param preset One of HDPTreeMatcher::PRESET_FAST, PRESET_ULTRAFAST, PRESET_QUALITY, PRESET_TREE and PRESET_PAPER.
+    Not the blockSize, which is the third argument of cv::StereoSGBM::create().
     @throws cv::Exception if numDisparities or preset is out of range.
      */
     CV_WRAP static Ptr<HDPTreeMatcher> create(int minDisparity = 0, int numDisparities = 64,
@@ -669,7 +673,7 @@ public:
     /** @brief Creates a matcher that takes the place of a cv::StereoSGBM.
 
     minDisparity, numDisparities, disp12MaxDiff, speckleWindowSize and speckleRange are taken over as they are now; a
-    negative speckleRange becomes 0. What else a cv::StereoSGBM has is of its own algorithm, and is not taken over:
+    negative speckleRange becomes 0. A disp12MaxDiff of 0 checks nothing here, where cv::StereoSGBM takes 1. What else a cv::StereoSGBM has is of its own algorithm, and is not taken over:
     blockSize, as a block is no window of a census; P1 and P2, which are in units of another cost (see Params::P1);
     mode; preFilterCap; and uniquenessRatio, as nothing here compares the best with the second best cost.
     getConfidence() serves to reject what is not reliable.

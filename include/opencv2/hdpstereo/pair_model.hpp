@@ -92,7 +92,7 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     CV_PROP_RW double white; //!< level of CV_32F that is matched as 65535: finite, >= black
     CV_PROP_RW int bits;     //!< that levels of CV_16U have: 8..16. For CV_8U 8
     //! What the dark levels of a dark pair are brightened by, for HDPTreeMatcher::COST_CENSUS: 1..4. From 1 to 2 and
-    //! from 2 to 4, ever fewer of the bright levels are held back.
+    //! from 2 to 4, fewer and fewer of the bright levels are compressed.
     CV_PROP_RW double brightness;
     //! Whether the left image has no colours: edges are those of its grey levels then, for HDPTreeMatcher::COST_CENSUS.
     CV_PROP_RW bool isGrey;

@@ -96,11 +96,12 @@ public:
     CV_WRAP virtual void getMasks(OutputArray left, OutputArray right) const = 0;
 
     /** @brief Computes the depth of each pixel: its distance from the cameras' plane.
-    @param disparity CV_16SC1, times 16, or CV_32FC1 in pixels.
+    @param disparity CV_16SC1, times 16, or CV_32FC1 in pixels, of rectified images of getSize(), or of a part of these.
     @param depth Receives CV_32FC1 in metres, NaN where there is none, or CV_16UC1 in millimetres, 0 where there is
     none, or more than 65.535 m.
     @param depthType CV_32F or CV_16U.
-    @param minDisparity What is less, not above 0 or not finite is no disparity. In pixels.
+    @param minDisparity In pixels. Disparities below it, at or below 0, or not finite are invalid. Rejected pixels of a
+    matcher with minDisparity > 1 are above 0, so it is to be given then.
     @throws cv::Exception if an argument is of another type.
      */
     CV_WRAP virtual void computeDepth(InputArray disparity, OutputArray depth, int depthType = CV_32F,

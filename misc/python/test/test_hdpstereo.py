@@ -34,7 +34,7 @@ PARAMETERS = {
     'NumDisparities': (40, 33),
     'BlockSize': (1, 5),
     'SpeckleWindowSize': (0, 100),
-    'SpeckleRange': (0, 2),
+    'SpeckleRange': (1, 2),
     'Disp12MaxDiff': (-1, 1),
     'UsePrediction': (True, False),
     'UseMedianPrefilter': (False, True),
@@ -667,7 +667,8 @@ class hdpstereo_test(TestCase):
                 ('TreeStrategy', None, 'treeStrategy must not be empty')):
             self.assertRejected(message, set_, matcher, setter, value)
         self.assertRejected('numDisparities must be >= 0, not -16', cv.stereo.HDPTreeMatcher.create, 0, -16)
-        self.assertRejected('preset must be one of HDPTreeMatcher::PRESET_*, 0..4, not 9',
+        self.assertRejected('preset must be one of HDPTreeMatcher::PRESET_*, 0..4, not 9; it is no blockSize, which '
+                 'setBlockSize() sets',
                             cv.stereo.HDPTreeMatcher.create, 0, 16, 9)
         self.assertRejected('k must be finite and >= 0', cv.stereo.createSegmentTree, -1)
         self.assertRejected('seed must be >= 0', cv.stereo.createRandomTree, -1)
@@ -716,8 +717,8 @@ class hdpstereo_test(TestCase):
         self.assertRaises(cv.error, matcher.compute, left > 7, right > 7)  # bool
         matcher.setMinDisparity(2000)
         matcher.setNumDisparities(200)
-        self.assertRejected('minDisparity and numDisparities must keep (minDisparity - 1) * 16 and '
-                            '(minDisparity + numDisparities - 1) * 16 in CV_16S', matcher.compute, left, right)
+        self.assertRejected('minDisparity - 1 and minDisparity + numDisparities - 1 must be in -2048..2047, as CV_16S has '
+                            'them times 16; minDisparity is 2000 and numDisparities 200', matcher.compute, left, right)
         matcher.setMinDisparity(0)
         matcher.setNumDisparities(32)
         self.assertSame(expected, matcher.compute(left, right))  # as usable as before
