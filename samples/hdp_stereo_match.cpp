@@ -35,6 +35,8 @@ static void match(const CommandLineParser& parser)
     const Mat left = imread(parser.get<String>("@left")), right = imread(parser.get<String>("@right"));
     if (left.empty() || right.empty())
         CV_Error(Error::StsError, "cannot read the images");
+    if (!parser.has("@out"))
+        CV_Error(Error::StsBadArg, "OUT is missing: hdp_stereo_match LEFT RIGHT OUT.png");
 
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, parser.get<int>("num-disparities"), preset->second);
     Mat disparity, confidence;

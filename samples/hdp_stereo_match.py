@@ -139,7 +139,8 @@ def time_in_turns(matchers, pairs, runs):
 
 def main():
     parser = argparse.ArgumentParser(description='Disparity of a rectified stereo pair by HDPTreeMatcher.')
-    parser.add_argument('left', nargs='?', help='left image; without one, the Aloe pair of OpenCV\'s samples')
+    parser.add_argument('left', nargs='?', help='left image; without one, the Aloe pair of OpenCV\'s samples/data, in '
+                        'OPENCV_SAMPLES_DATA_PATH')
     parser.add_argument('right', nargs='?', help='right image')
     parser.add_argument('--preset', choices=PRESETS, default='fast', help='set of parameters (default: fast)')
     parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity in pixels (default: 0)')

@@ -89,10 +89,10 @@ public:
         });
         pair_.left = pair_.right = Mat(); // which may be the caller's
         result_.isMatched = true;
-        result_.model = pairPlan.given.isGiven ? pairModel_
-                                               : toPairModel(pairPlan.pyramids, left.size(), left.depth(),
-                                                             pairPlan.alignment.numDisparities, pair_.floats,
-                                                             pyramids_.levels, result_.findings);
+        result_.model = pairPlan.given.isGiven
+                            ? pairModel_
+                            : toPairModel(pairPlan.pyramids, left.size(), left.depth(), pairPlan.numDisparities,
+                                          pair_.floats, pyramids_.levels, result_.findings);
     }
 
     // cv::StereoMatcher
@@ -141,21 +141,18 @@ public:
         const Result& r = result_.isMatched ? result_ : none;
         // The model is about the centre of the right image that is matched, which has columns added and is shifted.
         const RowModel rows = r.findings.rows.about(0.5 * r.model.addedColumns + r.model.minDisparity);
-        const double brightness =
-            r.isMatched ? roundedBrightness(pyramids_.levels.brightness) : 1; // of what was matched
-        const LightModel light = r.findings.light.scaled(1 / brightness);
         Findings findings;
         findings.rows.assign(rows.coefficients.val, rows.coefficients.val + RowModel::terms);
         findings.areRowsMoved = r.findings.hasRows;
-        findings.light.assign(light.coefficients.val, light.coefficients.val + LightModel::terms);
+        findings.light = r.model.light;
         findings.isLightChanged = r.findings.hasLight;
         findings.rowError = findings.noise = findings.minDisparity = findings.numDisparities = 0;
         if (!r.isMatched)
             return findings;
         findings.minDisparity = r.plan.output.minDisparity;
-        findings.numDisparities = r.plan.alignment.numDisparities;
-        findings.rowError = r.findings.rowError;
-        findings.noise = r.findings.noise.ofLayer(r.plan.finest().layer) / brightness;
+        findings.numDisparities = r.plan.numDisparities;
+        findings.rowError = r.model.rowError;
+        findings.noise = r.noiseOfLayer(r.plan.finest().layer);
         findings.searchRatios.assign(r.plan.top().layer + 1, 0);
         for (const LayerPlan& layer : r.plan.layers)
             findings.searchRatios[layer.layer] = layers_[layer.layer].searchRatio;
@@ -204,8 +201,8 @@ public:
         if (plan.cost.isCensus)
             levelMismatch(layers_[plan.layer].disparity, scratch_[plan.layer].census, mismatch);
         const float rounding = result_.plan.output.isWhole ? 0.34f : 0.f; // of 68 % of what is rounded to whole pixels
-        const double noise = result_.findings.noise.ofLayer(0) / roundedBrightness(pyramids_.levels.brightness);
-        disparitySigma(confidenceOfLayer(), mismatch, result_.findings.rowError, noise, rounding, ofLayer);
+        disparitySigma(confidenceOfLayer(), mismatch, result_.model.rowError, result_.noiseOfLayer(0), rounding,
+                       ofLayer);
         double scale = 1;
         for (int layer = 0; layer < plan.layer; ++layer)
             scale *= sigmaPerLayer;
@@ -262,6 +259,9 @@ private:
         PairPlan plan;
         PairFindings findings;
         PairModel model;
+
+        //! In levels of the images, not of brightened ones
+        double noiseOfLayer(int layer) const { return LayerNoise{ model.noise, model.noiseLayer }.ofLayer(layer); }
     };
 
     //! To values that are valid, or not at all
@@ -333,7 +333,7 @@ private:
     {
         const int finest = plan.finest().layer, scale = 1 << finest;
         const FrameKey key = { scale, plan.pyramids.minDisparity / (double)scale,
-                               largestDisparity(plan.alignment.numDisparities, finest) };
+                               largestDisparity(plan.numDisparities, finest) };
         predictFrame(left, key, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, predictsDisparities(lastFrame_, prediction_) };
     }

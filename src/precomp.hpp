@@ -13,15 +13,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! f(i) for each i of 0 .. count - 1, by all threads
-template <typename F> void parallelFor(int count, const F& f)
-{
-    parallel_for_(Range(0, count), [&](const Range& range) {
-        for (int i = range.start; i < range.end; ++i)
-            f(i);
-    });
-}
-
 //! f(i, scratch) for each i of 0 .. count - 1, by all threads; each has a copy of the scratch.
 template <typename Scratch, typename F> void parallelFor(int count, const Scratch& scratch, const F& f)
 {
@@ -32,22 +23,18 @@ template <typename Scratch, typename F> void parallelFor(int count, const Scratc
     });
 }
 
+//! f(i) for each i of 0 .. count - 1, by all threads
+template <typename F> void parallelFor(int count, const F& f)
+{
+    parallelFor(count, 0, [&](int i, int) { f(i); });
+}
+
 //! How many parts of an image are done by themselves: what takes some microseconds is not worth waking a thread, and an
 //! even number gives also two threads as much to do.
 inline int countParts(const Size& size)
 {
     const double pixels = 1 << 14; // of a part, at least about
     return std::max(2 * cvRound(size.area() / (2 * pixels)), 1);
-}
-
-//! f(y) for each row of an image, by all threads
-template <typename F> void parallelForRows(const Size& size, const F& f)
-{
-    const auto part = [&](const Range& rows) {
-        for (int y = rows.start; y < rows.end; ++y)
-            f(y);
-    };
-    parallel_for_(Range(0, size.height), part, countParts(size));
 }
 
 //! f(y, scratch) for each row of an image, by all threads; each has a copy of the scratch.
@@ -59,6 +46,12 @@ template <typename Scratch, typename F> void parallelForRows(const Size& size, c
             f(y, own);
     };
     parallel_for_(Range(0, size.height), part, countParts(size));
+}
+
+//! f(y) for each row of an image, by all threads
+template <typename F> void parallelForRows(const Size& size, const F& f)
+{
+    parallelForRows(size, 0, [&](int y, int) { f(y); });
 }
 
 //! Enlarges a vector to at least so many elements, and returns them: memory to work in, which is never made smaller.

@@ -139,7 +139,7 @@ void checkInputs(const PairInputs& inputs, Size size)
 void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities& known)
 {
     const OutputPlan& output = plan.output;
-    const int first = output.minDisparity, numDisparities = plan.alignment.numDisparities;
+    const int first = output.minDisparity, numDisparities = plan.numDisparities;
     std::vector<int> key = { inputs.changes,   plan.size.width,    plan.size.height, first,
                              numDisparities,   output.extension,   output.isWhole,   plan.top().hasFractions,
                              plan.top().layer, plan.finest().layer };

@@ -315,6 +315,7 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     if (plan.hasRanges) // the layer above was matched within them, and support points take as long as without
         p.disparityPrior = M::PRIOR_UPPER_LAYER;
     plan.size = size;
+    plan.numDisparities = p.numDisparities;
     plan.treeStrategy = p.treeStrategy;
     // A tile is matched as the image that it is a part of.
     const Size whole = model.empty() ? size : Size(model.width, model.height);

@@ -95,7 +95,8 @@ struct LayerPlan
 //! What is done for a pair
 struct PairPlan
 {
-    Size size; // of the images
+    Size size;              // of the images
+    int numDisparities = 0; // the same
     PyramidPlan pyramids;
     AlignmentPlan alignment;
     GivenPair given;               // what is not looked for in the pair, but known
