@@ -278,7 +278,7 @@ private:
             });
             joinWithPrior();
             if (!plan_.isFinest)
-                findResidual(); // without priors
+                findResidual(); // without the costs of windows for what is far from predicted
             if (plan_.fillsOcclusions)
             {
                 leaveWithoutData(own_.passResidual);

@@ -20,7 +20,8 @@ struct LayerResult
 {
     Mat disparity;             // CV_16UC1, a disparity map
     Mat winners;               // the same before the median
-    Mat residual;              // their matching costs before occlusions were filled, UCHAR_MAX without data
+    Mat residual;              // their matching costs, where the layer below or occlusions need them, before these were
+                               // filled; UCHAR_MAX without data
     double searchRatio = 0;    // R_l of the paper's Table 1
     std::vector<double> prior; // P(D_l) up to a factor; empty if the layer was not predicted from one
 };

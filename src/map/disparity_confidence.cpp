@@ -26,7 +26,9 @@ HDP_TUNABLE(int, alternative, 2, "pixels",
             "may be other matches");
 HDP_TUNABLE(float, hiddenShare, 0.5f, "share",
             "of the confidence that a pixel keeps which fails the left-right check: some of them are right");
-HDP_TUNABLE(int, medianWindow, 7, "cells", "the same of M; smaller, as the median changes single pixels");
+HDP_TUNABLE(int, medianWindow, 7, "cells",
+            "side of the squares that M is averaged over; a smaller one than those of costs, as the median changes "
+            "single pixels");
 HDP_TUNABLE(int, maxDifference, 8, "pixels",
             "that one from the layer above or the map before the median counts as: few pixels do not decide for a "
             "window");

@@ -8,7 +8,8 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-// Filters of a disparity map, in the order in which they run. Each is in a file of its own.
+// Filters of a disparity map, in the order in which they run, but for voteAtEdges(), which is the last but one. Each is
+// in a file of its own.
 
 //! Median of size x size pixels, 3, 5 or 7, borders replicated: several times faster than cv::medianBlur, which does
 //! not share the work on a column of the window. disparity: CV_16UC1; filtered: another Mat.

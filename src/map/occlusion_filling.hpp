@@ -13,13 +13,14 @@ struct OcclusionFilling
 {
     enum
     {
-        minSurface = 4,    // columns of a surface at the border of the right image: fewer are there by chance
-        nearBorder = 3,    // columns of the right image, from 1 on, that are its border: matches there are off by some
-        pixelsPerBest = 7, // left of a surface that begins at the border farther inside, of which one may be the best
-                           // match of its column: a smaller number takes other surfaces for it
-        pixelsPerVisible = 8, // left of a surface that hides them, of which one may be visible: some match by chance
-        pixelsPerShown = 4,   // the same, of which one may not be behind nearer ones: a smaller number takes things
-                              // farther inside for the border
+        minSurface = 4, // columns of a surface at the border of the right image: fewer are there by chance
+        nearBorder = 3, // columns of the right image, from 1 on, that are its border: matches there are off by some
+        // Of the pixels left of a surface, at most one in so many
+        pixelsPerBest = 7,    // is the best match of its column, if the surface begins at the border: a smaller number
+                              // takes other surfaces for it
+        pixelsPerVisible = 8, // is visible, if the surface hides them: some match by chance
+        pixelsPerShown = 4,   // is not behind nearer ones then: a smaller number takes things farther inside for the
+                              // border
         mostByChance = 3,    // columns between two gaps that are no shorter, and match by chance: more lose thin things
         minSlopeColumns = 8, // of the surface at the border, to tell its slope: fewer tell noise
         maxSlopeColumns = 32 // of it, to be as many as are filled: more are bent

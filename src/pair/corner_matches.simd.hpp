@@ -42,7 +42,7 @@ RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const T
 
 namespace {
 
-const short middle = 512; // of levels up to 1023
+const short middle = 512; // of levels up to 1023: windowSums() and correlate() subtract it
 
 } // namespace
 
@@ -77,7 +77,8 @@ void structureTensors(const ushort* first, size_t step, int count, int* columns,
     }
 }
 
-// Levels count from here, so that all numbers below have 32 bits: |level| <= 512, and n^2 512^2 < 2^31 for n pixels.
+// Levels count from the middle, so that all numbers below have 32 bits: |level| <= 512, and n^2 512^2 < 2^31 for n
+// pixels.
 void windowSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales)
 {
     const int side = CornerMatching::searchSide, pixels = side * side, width = count + side - 1;

@@ -10,7 +10,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-// The graph pyramid of section 2.1 with S = 2. Functions of the stages are exported for the tests only.
+// The graph pyramid of section 2.1 with S = 2
 
 //! Number of layers, at most numLayers, in which an image of this size has at least one pixel.
 CV_EXPORTS int countLayers(Size size, int numLayers);

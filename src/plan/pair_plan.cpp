@@ -335,7 +335,7 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
         plan.layers.push_back(planLayer(p, whole, layer, layers, finest));
         plan.layers.back().frame = plan.given.alignment.frame.ofLayer(layer);
     }
-    if (plan.hasRanges)
+    if (plan.hasRanges && plan.top().method != COST_SCANLINES)
         plan.layers.front().trees.beta = rangeBeta;
     const int speckleRange = p.speckleWindowSize > 0 ? p.speckleRange : 0;
     plan.output = { p.minDisparity,  extension,           finest,      !p.useSubpixel,

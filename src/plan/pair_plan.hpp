@@ -18,8 +18,8 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-// All that is decided for a pair. The parameters are asked here and nowhere else; the stages carry out. A member that a
-// layer has no use for keeps its first value.
+// All that is decided for a pair. What says how to match is asked here and nowhere else; the stages carry out. A member
+// that a layer has no use for keeps its first value.
 
 //! How the winners of a layer are found
 enum LayerMethod

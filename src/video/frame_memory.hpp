@@ -57,6 +57,11 @@ struct FrameMemory
         countMask = (1 << detailBits) - 1,
         scale = subpixelScale << detailBits // of disparities with all their bits: means over frames need them
     };
+    //! detail of a disparity in 1 / scale pixel, rounded for the map by adding half a unit of that
+    static CV_ALWAYS_INLINE int detailOf(int rounded, int count)
+    {
+        return (rounded & ((1 << detailBits) - 1)) << detailBits | count;
+    }
     //! A disparity in 1 / scale pixel; joinRow() rounds it for the map, so it may be half a unit of that below it.
     static CV_ALWAYS_INLINE int finer(int disparity, int detail)
     {

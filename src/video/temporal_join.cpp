@@ -239,7 +239,7 @@ Verdict joinLastFrame(const CensusCost& cost, const FrameMemory& last, const Fra
     {
         disparity.copyTo(next.disparity);
         next.detail.create(disparity.size(), CV_8U);
-        next.detail.setTo(Scalar(1 << (2 * FrameMemory::detailBits - 1) | 1)); // no rest, one frame
+        next.detail.setTo(Scalar(FrameMemory::detailOf(1 << (FrameMemory::detailBits - 1), 1))); // no rest, one frame
     }
     else if (!join(cost, last, prediction, scratch, next, disparity))
         return CONTRADICTED;

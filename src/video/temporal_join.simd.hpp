@@ -233,7 +233,7 @@ void joinRow(const ushort* measured, const ushort* unmoved, const uchar* unmoved
         const int joinedCount = choose(isNew, 1, choose(agrees, std::min(count + 1, maxCount), count - 1));
         const int rounded = joined + half;
         disparity[x] = (ushort)(rounded >> FrameMemory::detailBits);
-        detail[x] = (uchar)((rounded & FrameMemory::countMask) << FrameMemory::detailBits | joinedCount);
+        detail[x] = (uchar)FrameMemory::detailOf(rounded, joinedCount);
     }
 }
 

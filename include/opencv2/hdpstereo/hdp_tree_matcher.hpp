@@ -78,10 +78,10 @@ on several parameters or on the images is checked by compute(), before any work.
 - Params::predictionModel has too few layers;
 - numDisparities is 0, and the pair has too few corners to find the range: found by some work, before matching;
 - the images are not those of the PairModel that is set;
-- the output array has a fixed type other than CV_16SC1 and CV_32FC1;
+- the output array is cv::noArray(), or has a fixed type other than CV_16SC1 and CV_32FC1, or another fixed size;
 - a mask or a prior has not the size of the images, or the maps of setDisparityRange() are larger;
-- a TreeStrategy throws, or does not leave a permutation of the edges. Only this is found while matching; the matcher
-  stays usable, and the output array is unchanged.
+- a TreeStrategy throws, or does not leave a permutation of the edges, or trees have more than 2^36 costs. Only this is
+  found while matching; the matcher stays usable, and the output array is unchanged.
 
 The result depends neither on the number of threads nor on the instruction set. A matcher may be used by one thread at a
 time; two matchers never share state. Its buffers are kept for the next pair. clear() forgets the frames of a video.
@@ -240,8 +240,8 @@ public:
         /** @brief Maximal number of disparities of the top layer, which searches all of them.
 
         Layers are added until the top one has no more, but with intervals no more layers than predictionModel is for;
-        a third or later layer is not added if it would have fewer than 16 disparities. >= 0; 0: there are numLayers layers. PAPER: 0, TREE:
-        90, QUALITY: 55, others: 45. */
+        a third or later layer is not added if it would have fewer than 16 disparities. >= 0; 0: there are numLayers
+        layers. PAPER: 0, TREE: 90, QUALITY: 55, others: 45. */
         CV_PROP_RW int maxTopDisparities;
 
         /** @brief Layer at which matching ends; its map is enlarged to the size of the image.
@@ -566,8 +566,8 @@ public:
 
     They are believed as far as the images do not contradict them. A point that disagrees with the images counts only if
     neighbouring points support it, and if the matching costs do not clearly contradict it or them. Where most of the
-    points around disagree with the images, none of them counts. Needs HDPTreeMatcher::COST_CENSUS. The prior stays until
-    another one is set. It is no parameter: files do not have it.
+    points around disagree with the images, none of them counts. Needs HDPTreeMatcher::COST_CENSUS. The prior stays
+    until another one is set. It is no parameter: files do not have it.
     @param disparity CV_32FC1 in pixels, of the images' size, NaN where nothing is known: nearly everywhere, perhaps.
     Copied. Empty: there is no prior.
     @param sigma Standard deviation of the disparities in pixels, finite, >= 0: a number, or CV_32FC1 of the same size.
@@ -585,8 +585,8 @@ public:
     It is no probability: it serves to sort or weight pixels, or to reject those below a threshold. 160 is a high
     value, 200 is hardly ever reached, and the median of a map is usually between 50 and 100. As a threshold, 20 leaves
     out about half of the pixels that are wrong by more than one, and a tenth of the right ones; 60 three quarters or
-    more of the wrong ones, and a quarter to a half of the right ones. BENCHMARK.md has the shares. How wrong a disparity is, in
-    pixels, getDisparitySigma() tells.
+    more of the wrong ones, and a quarter to a half of the right ones. BENCHMARK.md has the shares. How wrong a
+    disparity is, in pixels, getDisparitySigma() tells.
     @param confidence Receives CV_8UC1 of the left image's size: from 0 to 255, larger is more reliable; 0 where a
     pixel has no data or a filter rejected it. Empty before the first compute() and after one that threw an exception.
      */
@@ -673,10 +673,10 @@ public:
     /** @brief Creates a matcher that takes the place of a cv::StereoSGBM.
 
     minDisparity, numDisparities, disp12MaxDiff, speckleWindowSize and speckleRange are taken over as they are now; a
-    negative speckleRange becomes 0. A disp12MaxDiff of 0 checks nothing here, where cv::StereoSGBM takes 1. What else a cv::StereoSGBM has is of its own algorithm, and is not taken over:
-    blockSize, as a block is no window of a census; P1 and P2, which are in units of another cost (see Params::P1);
-    mode; preFilterCap; and uniquenessRatio, as nothing here compares the best with the second best cost.
-    getConfidence() serves to reject what is not reliable.
+    negative speckleRange becomes 0. A disp12MaxDiff of 0 checks nothing here, where cv::StereoSGBM takes 1. What
+    else a cv::StereoSGBM has is of its own algorithm, and is not taken over: blockSize, as a block is no window of a
+    census; P1 and P2, which are in units of another cost (see Params::P1); mode; preFilterCap; and uniquenessRatio, as
+    nothing here compares the best with the second best cost. getConfidence() serves to reject what is not reliable.
     @param sgbm Not empty. It is read, and not kept.
     @param preset See create().
     @throws cv::Exception if numDisparities or preset is out of range.
