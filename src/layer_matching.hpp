@@ -9,7 +9,6 @@
 #include "paper/support_points.hpp"
 #include "plan/pair_plan.hpp"
 #include "scanlines/candidate_windows.hpp"
-#include "scanlines/other_surfaces.hpp"
 #include "scanlines/smoothness_weights.hpp"
 #include "video/temporal_join.hpp"
 

@@ -5,7 +5,6 @@
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "window_prediction.hpp"
-#include "../src/scanlines/candidate_windows.hpp"
 
 namespace opencv_test { namespace {
 
@@ -79,6 +78,32 @@ void expectWindows(const Prediction& prediction, int numDisparities)
             else
                 ASSERT_TRUE(w.predicted[0] == own && w.predicted[1] == other);
         }
+}
+
+TEST(HDPStereo_OtherSurfaces, rule)
+{
+    RNG rng(60);
+    hdp::SurfaceBuffers buffers;
+    Mat others;
+    int found = 0;
+    for (const Size& size : { Size(1, 1), Size(4, 1), Size(35, 20), Size(80, 18), Size(20, 161) })
+        for (int numDisparities : { 1, 12, 70 })
+        {
+            SCOPED_TRACE(testing::Message() << size << ", disparities " << numDisparities);
+            Prediction prediction(patchesAbove(rng, size, numDisparities, 7));
+            prediction.addThinStructures(rng, numDisparities);
+            hdp::findOtherSurfaces(prediction.upper, prediction.unfiltered, buffers, others);
+            ASSERT_EQ(size, others.size());
+            ASSERT_EQ(CV_16UC1, others.type());
+            for (int y = 0; y < size.height; ++y)
+                for (int x = 0; x < size.width; ++x)
+                {
+                    ASSERT_EQ(oracle::otherSurface(prediction, y, x), others.at<ushort>(y, x))
+                        << "y " << y << " x " << x;
+                    found += others.at<ushort>(y, x) != 2 * prediction.upper.at<ushort>(y, x);
+                }
+        }
+    EXPECT_GT(found, 1000) << "nothing is tested where there are none";
 }
 
 TEST(HDPStereo_CandidateWindows, properties)

@@ -6,7 +6,7 @@
 #include "helpers.hpp"
 #include "oracles.hpp"
 #include "../src/scanlines/scanline_aggregation.hpp"
-#include "../src/scanlines/other_surfaces.hpp"
+#include "../src/scanlines/candidate_windows.hpp"
 #include "../src/scanlines/scanline_aggregation.simd.hpp"
 
 namespace opencv_test { namespace {

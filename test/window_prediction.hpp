@@ -5,7 +5,7 @@
 #define OPENCV_HDPSTEREO_TEST_WINDOW_PREDICTION_HPP
 
 #include "test_precomp.hpp"
-#include "../src/scanlines/other_surfaces.hpp"
+#include "../src/scanlines/candidate_windows.hpp"
 
 namespace opencv_test {
 

@@ -5,16 +5,50 @@
 #include "candidate_windows.hpp"
 #include "candidate_windows.simd.hpp"
 #include "scanlines/candidate_windows.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "other_surfaces.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
+HDP_TUNABLE(int, neighborhood, 3, "pixels of the upper layer",
+            "in which the surface beyond a discontinuity is: in more there is often a third one");
+HDP_TUNABLE(int, maxStripes, 16, "stripes", "for as many threads: more filter the rows between them twice");
+HDP_TUNABLE(int, minStripeHeight, 16, "rows", "for the same reason");
+
+HDP_DISPATCH(findOthersOfRow)
 HDP_DISPATCH(predictRow)
 HDP_DISPATCH(restrictRow)
 
 } // namespace
+
+void findOtherSurfaces(const Mat& upper, const Mat& unfiltered, SurfaceBuffers& buffers, Mat& others)
+{
+    const Mat maps[] = { upper, unfiltered };
+    const Size size = upper.size();
+    // Not Mat::ones(): the first thread with an expression sets them up, in OpenCV, which ThreadSanitizer does not see.
+    const Mat kernel(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U, Scalar(1));
+    for (int map = 0; map < 2; ++map)
+    {
+        buffers.min[map].create(size, CV_16U);
+        buffers.max[map].create(size, CV_16U);
+    }
+    others.create(size, CV_16U);
+    const int stripes = std::max(1, std::min<int>(maxStripes, size.height / minStripeHeight));
+    parallel_for_(Range(0, stripes), [&](const Range& range) {
+        const Range rows(size.height * range.start / stripes, size.height * range.end / stripes);
+        for (int map = 0; map < 2; ++map)
+        {
+            Mat minima = buffers.min[map].rowRange(rows), maxima = buffers.max[map].rowRange(rows);
+            erode(maps[map].rowRange(rows), minima, kernel); // a stripe sees its neighbours' rows
+            dilate(maps[map].rowRange(rows), maxima, kernel);
+        }
+        const auto rowOf = [&](int map, int y) -> DisparityRow {
+            return { maps[map].ptr<ushort>(y), buffers.min[map].ptr<ushort>(y), buffers.max[map].ptr<ushort>(y) };
+        };
+        for (int y = rows.start; y < rows.end; ++y)
+            dispatched::findOthersOfRow(rowOf(0, y), rowOf(1, y), size.width, others.ptr<ushort>(y));
+    });
+}
 
 void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat& windows)
 {
