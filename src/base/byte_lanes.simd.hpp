@@ -127,10 +127,7 @@ struct ByteLanes
     CV_ALWAYS_INLINE ByteLanes min(const ByteLanes& b) const { return v_min(v, b.v); }
     CV_ALWAYS_INLINE ByteLanes difference(const ByteLanes& b) const { return v_absdiff(v, b.v); } // its absolute value
 
-    //! Half of each lane, rounded down
-    CV_ALWAYS_INLINE ByteLanes half() const { return shiftedRight<1>(); }
-    //! A quarter of each lane, rounded down
-    CV_ALWAYS_INLINE ByteLanes quarter() const { return shiftedRight<2>(); }
+    //! Each lane divided by 2^bits, rounded down
     template <int bits> CV_ALWAYS_INLINE ByteLanes shiftedRight() const
     {
 #if HDP_LANES_NEON

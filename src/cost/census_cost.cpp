@@ -41,28 +41,28 @@ void CensusCost::prepare(const Mat& left, const Mat& right, int numDisparities, 
                          const PairMasks& masks)
 {
     limits_.prepare(masks, numDisparities);
-    planes_.width = left.cols;
-    planes_.count = blockSize / 2; // as the radius
+    width_ = left.cols;
+    planes_ = blockSize / 2; // as the radius
     prepareImage(left, blockSize / 2, tolerance, false, 0);
     prepareImage(right, blockSize / 2, tolerance, true, numDisparities + costPadding);
-    planes_.left = left_.ptr() + 4 * censusMargin;
-    planes_.right = right_.ptr() + censusMargin;
-    planes_.leftStep = left_.step;
-    planes_.rightStep = right_.step;
-    planes_.rightPlaneStep = right_.step * left.rows;
+    firstLeft_ = left_.ptr() + 4 * censusMargin;
+    firstRight_ = right_.ptr() + censusMargin;
+    leftStep_ = left_.step;
+    rightStep_ = right_.step;
+    planeStride_ = right_.step * left.rows;
 }
 
 void CensusCost::prepareImage(const Mat& image, int radius, int tolerance, bool isRight, int after)
 {
-    const int width = image.cols, planes = planes_.count, rows = image.rows;
+    const int width = image.cols, rows = image.rows;
     const int cols = (int)alignSize(width, censusColumns); // what is computed past the width is overwritten or not read
     if (isRight)
-        right_.create((planes + 1) * rows, censusMargin + std::max(width + after, cols) + censusMargin, CV_8U);
+        right_.create((planes_ + 1) * rows, censusMargin + std::max(width + after, cols) + censusMargin, CV_8U);
     else
         left_.create(rows, censusMargin + cols + censusMargin, CV_8UC4);
     parallel_for_(Range(0, (rows + censusRows - 1) / censusRows), [&](const Range& range) {
         Mat flipped, bordered;
-        Mat leftPlanes(isRight ? 0 : (planes + 1) * censusRows, cols, CV_8U);
+        Mat leftPlanes(isRight ? 0 : (planes_ + 1) * censusRows, cols, CV_8U);
         for (int i = range.start; i < range.end; ++i)
         {
             const int first = i * censusRows, end = std::min(first + censusRows, rows);
@@ -78,27 +78,27 @@ void CensusCost::prepareImage(const Mat& image, int radius, int tolerance, bool 
                 const size_t planeSize = isRight ? right_.step * rows : leftPlanes.step * censusRows;
                 const short* grey = bordered.ptr<short>(y - first + radius) + radius; // all levels are below 32768
                 dispatched::censusRow(window, grey, isRight, cols, row, planeSize);
-                for (int plane = 0; plane <= planes && isRight; ++plane, row += planeSize)
+                for (int plane = 0; plane <= planes_ && isRight; ++plane, row += planeSize)
                 {
                     std::fill(row - censusMargin, row, row[0]);
                     std::fill(row + width, row - censusMargin + right_.cols, row[width - 1]);
                 }
             }
             if (!isRight)
-                mergePlanes(leftPlanes, planes, left_(Rect(censusMargin, first, cols, end - first)));
+                mergePlanes(leftPlanes, planes_, left_(Rect(censusMargin, first, cols, end - first)));
         }
     });
 }
 
 void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, float* cost) const
 {
-    dispatched::evaluateCensusCost(planes_, pixels, count, first, lanes, cost);
+    dispatched::evaluateCensusCost(*this, pixels, count, first, lanes, cost);
     limits_.apply(pixels, count, first, lanes, 1.f, 1, cost);
 }
 
 void CensusCost::evaluate(const int* pixels, int count, int first, int lanes, uchar* cost) const
 {
-    dispatched::evaluateCensusCost(planes_, pixels, count, first, lanes, cost);
+    dispatched::evaluateCensusCost(*this, pixels, count, first, lanes, cost);
     limits_.apply(pixels, count, first, lanes, (uchar)1, 1, cost);
 }
 
@@ -106,7 +106,7 @@ void CensusCost::ofDisparities(const Mat& disparity, Mat& costs) const
 {
     costs.create(disparity.size(), CV_8U);
     parallelForRows(disparity.size(), [&](int y) {
-        dispatched::censusCostOfRow(planes_, y, disparity.ptr<ushort>(y), costs.ptr(y));
+        dispatched::censusCostOfRow(*this, y, disparity.ptr<ushort>(y), costs.ptr(y));
         limits_.apply(y, disparity.ptr<ushort>(y), costs.ptr(y));
     });
 }
@@ -116,7 +116,7 @@ void TwoLayerCost::evaluate(const int* pixels, int count, int first, int lanes, 
     if (below_)
     {
         CV_DbgAssert(first % 2 == 0);
-        dispatched::countTwoLayers(own_.data(), below_->data(), pixels, count, first, lanes, cost);
+        dispatched::countTwoLayers(own_, *below_, pixels, count, first, lanes, cost);
         own_.limits().apply(pixels, count, first, lanes, (uchar)scale, steps(), cost);
         return;
     }

@@ -8,16 +8,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The census of a pair, as CensusCost holds it, see CensusCost::leftPixels() and CensusCost::rightPlane()
-struct CensusPlanes
-{
-    int width; // of the image
-    int count; // of planes
-    const uchar *left, *right;
-    size_t leftStep, rightStep; // from a row to the next
-    size_t rightPlaneStep;      // from a plane to the next
-};
-
 //! What the census of a row of grey levels compares
 struct CensusWindow
 {
@@ -71,25 +61,20 @@ public:
     void ofDisparities(const Mat& disparity, Mat& costs) const CV_OVERRIDE;
 
     //! The size of the images
-    Size size() const { return Size(planes_.width, left_.rows); }
-    //! All of it
-    const CensusPlanes& data() const { return planes_; }
+    Size size() const { return Size(width_, left_.rows); }
     //! The number of planes of 8 bits that hold the census of a pixel
-    int planes() const { return planes_.count; }
+    int planes() const { return planes_; }
     //! The number of comparisons in the census of a pixel
     int comparisons() const { return planes() == 3 ? 24 : planes() == 2 ? 12 : 4; } // windows of 7, 5 and 3
     //! The census of a row of the left image and its grey levels in 8 bits: 4 bytes per pixel, the planes and greyByte.
     //! There are 16 more pixels to read before and behind the row.
-    const uchar* leftPixels(int y) const { return planes_.left + y * planes_.leftStep; }
+    const uchar* leftPixels(int y) const { return firstLeft_ + y * leftStep_; }
     //! A row of the right image's census, or of its grey levels for plane = planes(): candidate d of pixel x is at
     //! [width - 1 - x + d]. There are 16 more bytes to read before the row, of the last column, and 48
     //! behind the last candidate.
-    const uchar* rightPlane(int plane, int y) const
-    {
-        return planes_.right + plane * planes_.rightPlaneStep + y * planes_.rightStep;
-    }
+    const uchar* rightPlane(int plane, int y) const { return firstRight_ + plane * planeStride_ + y * rightStep_; }
     //! Bytes from a plane of the right image to the next
-    size_t planeStride() const { return planes_.rightPlaneStep; }
+    size_t planeStride() const { return planeStride_; }
     enum
     {
         greyByte = 3,
@@ -99,9 +84,11 @@ public:
 private:
     void prepareImage(const Mat& image, int radius, int tolerance, bool isRight, int after);
 
-    CensusPlanes planes_ = CensusPlanes();
+    int width_ = 0, planes_ = 0;
     Mat left_;  // CV_8UC4, see leftPixels()
     Mat right_; // CV_8UC1, the planes of the census and the grey levels below one another, see rightPlane()
+    const uchar *firstLeft_ = nullptr, *firstRight_ = nullptr; // of row 0
+    size_t leftStep_ = 0, rightStep_ = 0, planeStride_ = 0;    // from a row or plane to the next
 };
 
 /** The matching cost of a layer's pixels at the disparities of the layer below, which has the texture that means of

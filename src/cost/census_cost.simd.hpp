@@ -26,14 +26,14 @@ void censusRow(const CensusWindow& window, const short* grey, bool mirrored, int
 
 //! CensusCost::evaluate(), in floats or bytes
 template <typename T>
-void evaluateCensusCost(const CensusPlanes& census, const int* pixels, int count, int first, int lanes, T* cost);
+void evaluateCensusCost(const CensusCost& census, const int* pixels, int count, int first, int lanes, T* cost);
 
 //! TwoLayerCost::evaluate() with a layer below
-void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
-                    int lanes, uchar* cost);
+void countTwoLayers(const CensusCost& own, const CensusCost& below, const int* pixels, int count, int first, int lanes,
+                    uchar* cost);
 
 //! CensusCost::ofDisparities() for row y
-void censusCostOfRow(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost);
+void censusCostOfRow(const CensusCost& census, int y, const ushort* disparity, uchar* cost);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -86,9 +86,8 @@ struct PixelCensus
 {
     const uchar *left, *right;
 
-    PixelCensus(const CensusPlanes& census, int y, int x, int first)
-        : left(census.left + y * census.leftStep + 4 * x),
-          right(census.right + y * census.rightStep + (census.width - 1 - x + first))
+    PixelCensus(const CensusCost& census, int y, int x, int first)
+        : left(census.leftPixels(y) + 4 * x), right(census.rightPlane(0, y) + (census.size().width - 1 - x + first))
     {
     }
 
@@ -132,10 +131,10 @@ template <int planes> struct CensusCosts
     template <int lanes> struct OfLayer
     {
         template <typename T>
-        static void run(const CensusPlanes& census, const int* pixels, int count, int first, T* cost)
+        static void run(const CensusCost& census, const int* pixels, int count, int first, T* cost)
         {
-            evaluatePixels<lanes>(census.width, pixels, count, cost, [&](int y, int x, int k) {
-                return PixelCensus(census, y, x, first).costs<planes>(census.rightPlaneStep, k);
+            evaluatePixels<lanes>(census.size().width, pixels, count, cost, [&](int y, int x, int k) {
+                return PixelCensus(census, y, x, first).costs<planes>(census.planeStride(), k);
             });
         }
     };
@@ -143,16 +142,16 @@ template <int planes> struct CensusCosts
     //! Those of the layer and the one below
     template <int lanes> struct OfTwoLayers
     {
-        static void run(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
+        static void run(const CensusCost& own, const CensusCost& below, const int* pixels, int count, int first,
                         uchar* cost)
         {
-            evaluatePixels<lanes>(own.width, pixels, count, cost, [&](int y, int x, int k) {
-                const size_t plane = below.rightPlaneStep;
+            evaluatePixels<lanes>(own.size().width, pixels, count, cost, [&](int y, int x, int k) {
+                const size_t plane = below.planeStride();
                 const PixelCensus upper(below, 2 * y, 2 * x, first), lower(below, 2 * y + 1, 2 * x, first);
-                const ByteLanes ofOwn = PixelCensus(own, y, x, first / 2).costs<planes>(own.rightPlaneStep, k / 2);
+                const ByteLanes ofOwn = PixelCensus(own, y, x, first / 2).costs<planes>(own.planeStride(), k / 2);
                 const ByteLanes sum = upper.costs<planes>(plane, k) + upper.costs<planes, 1>(plane, k) +
                                       lower.costs<planes>(plane, k) + lower.costs<planes, 1>(plane, k);
-                return ofOwn.sumsOfHalves() + sum + (sum + ByteLanes::repeat(1)).half();
+                return ofOwn.sumsOfHalves() + sum + (sum + ByteLanes::repeat(1)).shiftedRight<1>();
             });
         }
     };
@@ -161,25 +160,25 @@ template <int planes> struct CensusCosts
 } // namespace
 
 template <typename T>
-void evaluateCensusCost(const CensusPlanes& census, const int* pixels, int count, int first, int lanes, T* cost)
+void evaluateCensusCost(const CensusCost& census, const int* pixels, int count, int first, int lanes, T* cost)
 {
-    if (census.count == 3)
+    if (census.planes() == 3)
         runTask<CensusCosts<3>::OfLayer>(lanes, census, pixels, count, first, cost);
-    else if (census.count == 2)
+    else if (census.planes() == 2)
         runTask<CensusCosts<2>::OfLayer>(lanes, census, pixels, count, first, cost);
     else
         runTask<CensusCosts<1>::OfLayer>(lanes, census, pixels, count, first, cost);
 }
 
-template void evaluateCensusCost(const CensusPlanes&, const int*, int, int, int, float*);
-template void evaluateCensusCost(const CensusPlanes&, const int*, int, int, int, uchar*);
+template void evaluateCensusCost(const CensusCost&, const int*, int, int, int, float*);
+template void evaluateCensusCost(const CensusCost&, const int*, int, int, int, uchar*);
 
-void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const int* pixels, int count, int first,
-                    int lanes, uchar* cost)
+void countTwoLayers(const CensusCost& own, const CensusCost& below, const int* pixels, int count, int first, int lanes,
+                    uchar* cost)
 {
-    if (own.count == 3)
+    if (own.planes() == 3)
         runTask<CensusCosts<3>::OfTwoLayers>(lanes, own, below, pixels, count, first, cost);
-    else if (own.count == 2)
+    else if (own.planes() == 2)
         runTask<CensusCosts<2>::OfTwoLayers>(lanes, own, below, pixels, count, first, cost);
     else
         runTask<CensusCosts<1>::OfTwoLayers>(lanes, own, below, pixels, count, first, cost);
@@ -187,28 +186,29 @@ void countTwoLayers(const CensusPlanes& own, const CensusPlanes& below, const in
 
 namespace {
 
-template <int count> void costOfRow(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost)
+template <int planes> void costOfRow(const CensusCost& census, int y, const ushort* disparity, uchar* cost)
 {
     const int block = 64;
-    const uchar* left = planes.left + y * planes.leftStep;
-    const uchar* right = planes.right + y * planes.rightStep + planes.width - 1;
+    const int width = census.size().width;
+    const uchar* left = census.leftPixels(y);
+    const uchar* right = census.rightPlane(0, y) + width - 1;
     unsigned differences[block];
-    for (int begin = 0; begin < planes.width; begin += block)
+    for (int begin = 0; begin < width; begin += block)
     {
-        const int size = std::min(block, planes.width - begin);
+        const int size = std::min(block, width - begin);
         for (int i = 0, x = begin; i < size; ++i, ++x)
             differences[i] =
-                censusDifference<count>(left + 4 * x, right - x + wholeDisparity(disparity[x]), planes.rightPlaneStep);
+                censusDifference<planes>(left + 4 * x, right - x + wholeDisparity(disparity[x]), census.planeStride());
         HDP_VECTORIZED for (int i = 0; i < size; ++i) cost[begin + i] = (uchar)countCensusBits(differences[i]);
     }
 }
 
 } // namespace
 
-void censusCostOfRow(const CensusPlanes& planes, int y, const ushort* disparity, uchar* cost)
+void censusCostOfRow(const CensusCost& census, int y, const ushort* disparity, uchar* cost)
 {
-    const auto costs = planes.count == 3 ? &costOfRow<3> : planes.count == 2 ? &costOfRow<2> : &costOfRow<1>;
-    costs(planes, y, disparity, cost);
+    const auto costs = census.planes() == 3 ? &costOfRow<3> : census.planes() == 2 ? &costOfRow<2> : &costOfRow<1>;
+    costs(census, y, disparity, cost);
 }
 
 #endif

@@ -114,7 +114,7 @@ private:
         const ptrdiff_t plane = (ptrdiff_t)planeStride_;
         const ByteLanes grey = ByteLanes::repeatByte<at + CensusCost::greyByte>(left);
         const ByteLanes difference = grey.difference(right.at(planes * plane - column));
-        const ByteLanes contrast = difference.min(ByteLanes::repeat(maxContrast)).quarter();
+        const ByteLanes contrast = difference.min(ByteLanes::repeat(maxContrast)).shiftedRight<2>();
         const ByteLanes first = ByteLanes::repeatByte<at>(left) ^ right.at(-column);
         if (planes == 1)
             return contrast + first.countBits();
