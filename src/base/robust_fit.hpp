@@ -73,10 +73,7 @@ std::vector<double> fitResiduals(const std::vector<FitSample<terms>>& samples, c
     return residuals;
 }
 
-/** Least squares, reweighted for Cauchy's distribution of the residuals.
-@param samples Not empty.
-@param prior
-@param start Where the iteration begins. */
+//! Least squares, reweighted for Cauchy's distribution of the residuals, from a start on. There has to be a sample.
 template <int terms>
 RobustFit<terms> fitRobustly(const std::vector<FitSample<terms>>& samples, const FitPrior<terms>& prior,
                              const Vec<double, terms>& start)

@@ -19,11 +19,7 @@ inline void sumOverWindows(const Mat& values, const Range& rows, int side, int d
     boxFilter(values.rowRange(rows), sums, depth, Size(side, side), Point(-1, -1), false, BORDER_REPLICATE);
 }
 
-/** The same around all pixels, by several threads.
-@param values Whole numbers of one channel.
-@param side Of the windows, in pixels; odd.
-@param depth CV_16U, CV_16S or CV_32S.
-@param sums Receives the sums; another Mat. */
+//! The same around all pixels, by several threads
 inline void sumOverWindows(const Mat& values, int side, int depth, Mat& sums)
 {
     const int stripe = 128; // rows of a thread: fewer compute the rows between stripes more often

@@ -15,13 +15,10 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** A row of an image: the planes of its census, which have a bit for each pixel of the checkerboard around the centre,
 set if it is clearly darker, and behind them that of the grey levels in 8 bits.
-@param window The window.
 @param grey The first pixel of the row, levels times greyScale; it has a border of the radius, and may be read up to
 column cols.
 @param mirrored Whether the image is mirrored: so is the window then, so that the bits are the same ones.
-@param cols Columns to compute.
-@param row Receives the row of the first plane.
-@param planeSize From a plane to the next. */
+@param row Receives the row of the first plane. */
 void censusRow(const CensusWindow& window, const short* grey, bool mirrored, int cols, uchar* row, size_t planeSize);
 
 //! CensusCost::evaluate(), in floats or bytes

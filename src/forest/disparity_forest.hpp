@@ -54,11 +54,7 @@ struct JoinerParams
 joins the trees at its ends if Rule 2 and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the
 image side by side; the trees and their roots are those of trying one edge after the other, for any number of stripes.
 @param image CV_8UC1 or CV_8UC3, the image that gives the edge weights.
-@param pixelIntv CV_16UC2 of its size.
-@param strategy Rule 1 and Rule 2.
-@param params The rest.
-@param buffers Memory to work in.
-@param forest The result. */
+@param pixelIntv CV_16UC2 of its size. */
 CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy,
                             const JoinerParams& params, ForestBuffers& buffers, DisparityForest& forest);
 

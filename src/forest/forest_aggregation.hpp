@@ -71,21 +71,13 @@ public:
 
 /** Winner-takes-all over an aggregated cost, C(p, x) = sum over q in the tree of S(p, q) M(q, x) (section 3.3), in two
 passes; the lowest candidate wins a tie.
-@param forest The forest.
-@param problem Candidates, cost and disparities.
-@param gamma Of the similarity.
-@param buffers Memory to work in.
 @param disparity CV_16UC1 of the layer's size; pixels of trees without candidates keep what they have. */
 CV_EXPORTS void takeWinners(const DisparityForest& forest, const AggregationProblem& problem, double gamma,
                             AggregationBuffers& buffers, Mat& disparity);
 
 /** Winner-takes-all over C(p, x), x in TreeIntv of the pixel's tree; the lowest disparity wins a tie.
-@param forest The forest.
-@param cost The layer's matching cost.
-@param gamma Of the similarity.
 @param subpixel Whether to add the minimum of the parabola through the winner's cost and its neighbours' in TreeIntv;
 otherwise all disparities are whole.
-@param buffers Memory to work in.
 @param disparity Receives CV_16UC1 of the layer's size, a disparity map; 0 where TreeIntv is empty. */
 CV_EXPORTS void aggregateForest(const DisparityForest& forest, const MatchingCost& cost, double gamma, bool subpixel,
                                 AggregationBuffers& buffers, Mat& disparity);
@@ -100,10 +92,6 @@ MeanNode::unit, both less than unit,
 U(p) = M(p) + sum over p's children c of round(s(c) (U(c) - M(p)) / unit), from the leaves to the root, and
 V(p) = U(p) + round(t(p) (V(parent) - U(p)) / unit), from the root to the leaves; V = U at the root.
 Halves are rounded up. So means of equal costs are these costs, and all means are in the range of the costs.
-@param forest The forest.
-@param cost The layer's matching cost.
-@param gamma Of the similarity.
-@param buffers Memory to work in.
 @param volume Receives V times CostVolume::scale, rounded. */
 CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const TwoLayerCost& cost, double gamma,
                                AggregationBuffers& buffers, CostVolume& volume);

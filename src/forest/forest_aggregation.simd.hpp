@@ -11,26 +11,16 @@ namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** Aggregates the costs of a run of candidates over a tree in two passes, and takes the winners.
-@param walk The tree's walk.
-@param size Number of pixels of the tree.
 @param similarity Table of S of neighbours, by the edge's weight.
-@param run The candidates.
 @param lanes 4, 8, 16 or 32, and not less than there are candidates.
 @param joins Whether winners holds those of the candidates before the run; it receives those of all then.
-@param costs M of pixel i and the k-th candidate at [i * lanes + k]; receives C. Others mean nothing.
-@param winners Receives each pixel's winner. */
+@param costs M of pixel i and the k-th candidate at [i * lanes + k]; receives C. Others mean nothing. */
 void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes, bool joins,
                   float* costs, RunWinner* winners);
 
 /** The means of a run of candidates over a tree, see aggregateMeans().
-@param walk The tree's walk.
-@param nodes Its shares.
-@param size As in aggregateRun().
-@param run The candidates.
-@param lanes As in aggregateRun().
 @param costs M of pixel i and the k-th candidate at [i * lanes + k], times CostVolume::scale. Others mean nothing.
-@param means Memory for as many.
-@param volume Receives the means. */
+@param means Memory for as many. */
 void averageRun(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, int lanes, const uchar* costs,
                 short* means, CostVolume& volume);
 

@@ -14,7 +14,6 @@ that raises the costs least above those of the disparities, and is not tilted wi
 If it raises them by little, and many disparities lie on it, all pixels of the tree get its disparities, but for those
 whose costs contradict them.
 @param forest The forest that the volume belongs to.
-@param volume The costs.
 @param disparity CV_16UC1, the winners of the volume, of which those of planes are replaced.
 @return Number of trees that have a plane. */
 CV_EXPORTS int takeTreePlanes(const DisparityForest& forest, const CostVolume& volume, Mat& disparity);

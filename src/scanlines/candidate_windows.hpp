@@ -30,7 +30,6 @@ from it: the first one there is of
 - the farthest one of those before the median.
 @param upper The disparities of the layer above, CV_16UC1, a disparity map.
 @param unfiltered The same before the median, which removes thin structures.
-@param buffers Memory to work in.
 @param others Receives CV_16UC1 of the size of the layer above, in 1 / subpixelScale pixel of the layer: the other
 surface, or the pixel's own disparity if there is none. */
 CV_EXPORTS void findOtherSurfaces(const Mat& upper, const Mat& unfiltered, SurfaceBuffers& buffers, Mat& others);
@@ -70,7 +69,6 @@ CV_EXPORTS void predictWindows(const Mat& upper, const Mat& others, int numDispa
 
 /** Leaves runs out of windows that have no candidate which a pixel may have: the other run's window is whole then.
 @param intervals A DisparityInterval per window, the hull of those of its pixels.
-@param numDisparities Of the layer.
 @param windows From predictWindows(), changed. */
 CV_EXPORTS void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows);
 

@@ -113,14 +113,11 @@ aggregateVolume().
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
 start anew some rows before each of them. A tile has those of the image that it lies in.
-@param below The census cost of the layer below.
 @param frame Where the layer lies in a larger image, if it is that of a tile.
 @param candidates Their number, at most RangeProblem::mostCandidates.
 @param upper The disparities of the layer above, CV_16UC1, a disparity map.
 @param weights w, CV_8UC2, of the layer, see weighEdges().
 @param intervals The candidates of the layer's pixels, DisparityInterval, or an empty Mat: all of them.
-@param penalties The penalties.
-@param buffers Memory to work in.
 @param disparity Receives CV_16UC1 of the size of weights, a disparity map. */
 CV_EXPORTS void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candidates, const Mat& upper,
                                const Mat& weights, const Mat& intervals, const RangePenalties& penalties,

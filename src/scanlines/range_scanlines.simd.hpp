@@ -13,11 +13,7 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** Aggregates a stripe of the layer.
-@param problem The layer.
-@param stripe Its rows.
-@param scratch Memory to work in.
-@param disparity As in aggregateRange(). */
+//! A stripe of aggregateRange()
 void aggregateRangeStripe(const RangeProblem& problem, const ScanlineStripe& stripe, RangeScratch& scratch,
                           Mat& disparity);
 

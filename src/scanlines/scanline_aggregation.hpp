@@ -129,16 +129,11 @@ sub-pixel part, see winnerFraction().
 
 The image is cut into stripes that do not depend on the number of threads; the directions from above and from below
 start anew some rows before each of them. A tile has those of the image that it lies in.
-@param cost The layer's census cost.
 @param weights w, CV_8UC2, of the layer, see weighEdges().
 @param frame Where they lie in a larger image, if they are a tile of one; from an even row on.
-@param numDisparities Of the layer.
-@param maxDisparity That of a map of the layer. The winner may be beyond the ends of the range;
-its disparity is not.
+@param maxDisparity That of a map of the layer. The winner may be beyond the ends of the range; its disparity is not.
 @param windows From predictWindows().
 @param smoothness s, from weighSmoothness().
-@param penalties The penalties.
-@param buffers Memory to work in.
 @param disparity Receives CV_16UC1, a disparity map.
 @param residual Receives the winners' own C(p, d), CV_8UC1. */
 CV_EXPORTS void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageFrame& frame,

@@ -11,14 +11,8 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** Aggregates a stripe of the image.
-@param problem The layer.
-@param stripe Its rows.
-@param scratch Memory to work in.
-@param stored The same, ScanlineScratch::storedBytes() for each row from the first one of the stripe's reach to its
-last, and for one more if their number is odd; for ScanlineScratch::blocks * maxRows at least.
-@param disparity As in aggregateScanlines().
-@param residual As in aggregateScanlines(). */
+//! A stripe of aggregateScanlines(). stored: memory, ScanlineScratch::storedBytes() for each row from the first one of
+//! its reach to its last own one, one more if their number is odd; for ScanlineScratch::blocks * maxRows at least
 void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
                      uchar* stored, Mat& disparity, Mat& residual);
 

@@ -17,7 +17,6 @@ struct ScanlineStripe
 
 /** The stripes of an image, or what a tile of it has of them; an even number of them, so that also two threads have as
 much to do.
-@param frame Of the image.
 @param height Rows of it that are there.
 @param rows About as many in a stripe. */
 CV_EXPORTS std::vector<ScanlineStripe> stripesOf(const ImageFrame& frame, int height, int rows);

@@ -21,7 +21,6 @@ struct EdgePenalties
 /** large(p, q) between each pixel of a row and its neighbours to the right and in the next row.
 @param row Weights of the row's edges, of which those to the right are read.
 @param toNext Weights of those between it and the next row, which are those below of the upper one.
-@param pixels Of the row.
 @param edges Receives two penalties per pixel. */
 inline void weighScanlineEdges(const uchar* row, const uchar* toNext, const EdgePenalties& pixels, int width,
                                int edgeNoise, uchar* edges)

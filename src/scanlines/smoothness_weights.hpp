@@ -48,7 +48,6 @@ are large, penalties count more; where bits agree, or surfaces are many, they co
 @param residual The costs of its winners, CV_8UC1; UCHAR_MAX: a pixel without data.
 @param bits That a cost is the number of.
 @param plan The windows, and limits from SmoothnessWeight::min to SmoothnessWeight::max.
-@param buffers Memory to work in.
 @param weights Receives CV_8UC1, a SmoothnessWeight per pixel of the layer above. */
 CV_EXPORTS void weighSmoothness(const Mat& upper, const Mat& residual, int bits, const SmoothnessPlan& plan,
                                 SmoothnessBuffers& buffers, Mat& weights);

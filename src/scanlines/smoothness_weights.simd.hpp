@@ -10,10 +10,7 @@ namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** What a row shows of both terms.
-@param upper Its disparities.
 @param below Those of the next row, or its own if it is the last one.
-@param residual Its costs.
-@param bits That a cost is the number of.
 @param matched Receives the costs, by chance at most; pixels without data have a usual one.
 @param breaks Receives how many of a pixel's neighbours to the right and below are another surface. */
 void findTermsOfRow(const ushort* upper, const ushort* below, const uchar* residual, int width, int bits,

@@ -52,7 +52,6 @@ direction. Of the first candidate and of the last one, the fraction may lie towa
 that of the slope between those next to it, or that which leaves the fraction at 0. Pixels without candidates get 0.
 @param volume The costs C.
 @param weights w, CV_8UC2, see weighEdges().
-@param penalties The penalties.
 @param sums Memory to work in: those of the directions so far, in the order of the volume; it only ever grows.
 @param disparity Receives CV_16UC1, a disparity map. */
 CV_EXPORTS void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumePenalties& penalties,

@@ -13,16 +13,11 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** The directions from the left and from the right, to the sums.
-@param problem The layer.
-@param rows Some rows.
-@param lines Memory to work in, see VolumeProblem::lineMemory(). */
+//! The directions from the left and from the right over some rows, to the sums. lines: memory, see
+//! VolumeProblem::lineMemory()
 void aggregateRows(const VolumeProblem& problem, const Range& rows, short* lines);
 
-/** The directions from above and from below, added to the sums, and the winners.
-@param problem The layer.
-@param columns Some columns.
-@param lines Memory to work in, see VolumeProblem::lineMemory(). */
+//! Those from above and from below over some columns, added to the sums, and the winners
 void aggregateColumns(const VolumeProblem& problem, const Range& columns, short* lines);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
