@@ -33,16 +33,10 @@ struct ByteLanes
 {
 #if HDP_LANES_AVX2
     typedef v_uint8x32 Vector;
-    enum
-    {
-        groups = 2
-    };
+    static const int groups = 2;
 #else
     typedef v_uint8x16 Vector;
-    enum
-    {
-        groups = 1
-    };
+    static const int groups = 1;
 #endif
     Vector v;
 

@@ -14,19 +14,13 @@ struct SixteenWords
 {
 #if HDP_LANES_AVX2
     typedef v_uint16x16 Vector;
-    enum
-    {
-        parts = 1
-    };
+    static const int parts = 1;
     static Vector all(int word) { return v256_setall_u16((ushort)word); }
     static Vector loadPart(const ushort* words) { return v256_load(words); }
     static Vector loadPart(const uchar* bytes) { return v256_load_expand(bytes); }
 #else
     typedef v_uint16x8 Vector;
-    enum
-    {
-        parts = 2
-    };
+    static const int parts = 2;
     static Vector all(int word) { return v_setall_u16((ushort)word); }
     static Vector loadPart(const ushort* words) { return v_load(words); }
     static Vector loadPart(const uchar* bytes) { return v_load_expand(bytes); }

@@ -75,11 +75,8 @@ public:
     const uchar* rightPlane(int plane, int y) const { return firstRight_ + plane * planeStride_ + y * rightStep_; }
     //! Bytes from a plane of the right image to the next
     size_t planeStride() const { return planeStride_; }
-    enum
-    {
-        greyByte = 3,
-        mostTolerance = 1023
-    };
+    static const int greyByte = 3;
+    static const int mostTolerance = 1023;
 
 private:
     void prepareImage(const Mat& image, int radius, int tolerance, bool isRight, int after);
@@ -101,10 +98,7 @@ Without a layer below, candidates are those of the layer, and cost(p, d) = C(p, 
 class CV_EXPORTS TwoLayerCost
 {
 public:
-    enum
-    {
-        scale = 8 // of the costs, for their fractions
-    };
+    static const int scale = 8; // of the costs, for their fractions
 
     //! From the costs of a layer, and of the one below, twice as large, or null. They have to stay where they are.
     TwoLayerCost(const CensusCost& own, const CensusCost* below) : own_(own), below_(below) {}

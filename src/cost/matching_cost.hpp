@@ -14,11 +14,9 @@ match nor avoided as a bad one would be. */
 class CV_EXPORTS CostLimits
 {
 public:
-    enum
-    {
-        none = 255,
-        ordinary = 8 // bits of the census: more drives surfaces out of what is masked, less draws them into it
-    };
+    static const int none = 255;
+    // Bits of the census: more drives surfaces out of what is masked, less draws them into it
+    static const int ordinary = 8;
 
     /** Takes the masks of a layer.
     @param masks Empty: there are no limits.
@@ -46,10 +44,7 @@ public:
     void hideUnmatched(int y, const ushort* disparity, uchar* visible) const;
 
 private:
-    enum
-    {
-        margin = 32
-    };
+    static const int margin = 32;
     int width_ = 0;
     Mat left_, right_;
 };

@@ -12,12 +12,10 @@ namespace cv { namespace stereo { namespace hdp {
 //! Costs of the candidates of all pixels, those of TreeIntv of a pixel's tree
 struct CV_EXPORTS CostVolume
 {
-    enum
-    {
-        scale = TwoLayerCost::scale, // of the costs, for their fractions
-        chunk = 16,                  // costs that are stored together
-        contradiction = 3 * scale    // see isContradicted()
-    };
+    static const int scale = TwoLayerCost::scale; // of the costs, for their fractions
+    static const int chunk = 16;                  // costs that are stored together
+    static const int contradiction = 3 * scale;   // see isContradicted()
+
     struct Candidates // of a pixel
     {
         unsigned firstChunk; // its number in costs

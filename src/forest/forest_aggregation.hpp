@@ -33,11 +33,8 @@ struct MeanNode
     short toParent, fromParent; // shares s(p) and t(p), see aggregateMeans()
     short hasChildren;          // -1, or 0 if there are none, or none with a share
     short hasSibling;           // -1, or 0 for the last child of its parent: there is no sum of others to be added to
-    enum
-    {
-        unit = 1 << 15,
-        meanScale = 1 << 10 // of the means of bits
-    };
+    static const int unit = 1 << 15;
+    static const int meanScale = 1 << 10; // of the means of bits
 };
 
 //! Memory of one thread for the trees it works on, by position in the walk

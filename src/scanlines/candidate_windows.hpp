@@ -39,13 +39,12 @@ around the pixel's own disparity. The other one is around that of another surfac
 the first one if there is none. */
 struct CandidateWindow
 {
-    enum
-    {
-        runs = 2,
-        runLength = 8, // candidates; half a vector of bytes
-        candidates = runs * runLength,
-        beyondRange = 1 // candidates beyond each end of the range, as neighbours of the last one for its fraction
-    };
+    static const int runs = 2;
+    static const int runLength = 8; // candidates; half a vector of bytes
+    static const int candidates = runs * runLength;
+    // Candidates beyond each end of the range, as neighbours of the last one for its fraction
+    static const int beyondRange = 1;
+
     short first[runs];      // the first disparity of each run
     ushort predicted[runs]; // what the run is there for, in 1 / subpixelScale pixel of the layer
 

@@ -17,11 +17,8 @@ namespace {
 template <int count> class RangeLanes
 {
 public:
-    enum
-    {
-        vector = 16 * ByteLanes::groups,
-        mostVectors = RangeProblem::mostCandidates / 16
-    };
+    static const int vector = 16 * ByteLanes::groups;
+    static const int mostVectors = RangeProblem::mostCandidates / 16;
 
     //! Those of one pixel
     struct Pixel
@@ -81,10 +78,7 @@ template <int count> class RangeCosts
 public:
     typedef RangeLanes<count> Lanes;
     typedef typename Lanes::Pixel Pixel;
-    enum
-    {
-        parts = 3 // of a cost, of pixels (0, 0), (1, 1) and (1, 0) of the four below
-    };
+    static const int parts = 3; // of a cost, of pixels (0, 0), (1, 1) and (1, 0) of the four below
 
     //! What gives those of a row of pixels
     struct Row

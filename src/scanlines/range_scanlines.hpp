@@ -14,16 +14,14 @@ namespace cv { namespace stereo { namespace hdp {
 //! Of aggregateRange(), in halves of a bit of the census
 struct RangePenalties
 {
+    static const int largest = 190; // penalty: all costs of a direction are bytes
+    static const int maxMaxPrior = 15;
+
     int small, large;  // for a step of one candidate and for a larger one between neighbours of one colour
     int leastLarge;    // for a larger one at any edge
     double gamma;      // of an edge's similarity exp(-w / gamma), which the large penalty is multiplied by
     int priorDistance; // candidates from what is predicted, for each of which a cost rises by one
     int maxPrior;      // the most that it rises by
-    enum
-    {
-        largest = 190, // penalty: all costs of a direction are bytes
-        maxMaxPrior = 15
-    };
 };
 
 //! What is aggregated, see aggregateRange()
@@ -37,11 +35,8 @@ struct RangeProblem
     std::vector<uchar> priors;  // by the distance from the predicted candidate, from -candidates on
     std::vector<uchar> outside; // 255, 0 and 255 again, pixelBytes() each
 
-    enum
-    {
-        longestVector = 32, // bytes
-        mostCandidates = 1024
-    };
+    static const int longestVector = 32; // bytes
+    static const int mostCandidates = 1024;
     //! Fills penalties, priors and outside.
     CV_EXPORTS void prepare(const RangePenalties& penalties);
     int pixelBytes() const { return (int)alignSize(candidates, longestVector); } // of the candidates, at most
@@ -54,10 +49,7 @@ struct RangeProblem
 //! Memory of a thread for its stripe
 struct RangeScratch
 {
-    enum
-    {
-        block = 2 // rows that are followed side by side
-    };
+    static const int block = 2; // rows that are followed side by side
 
     //! Provides the memory for stripes of so many rows.
     CV_EXPORTS void prepare(const RangeProblem& problem, int rows);
@@ -80,10 +72,7 @@ struct RangeScratch
 private:
     uchar* at(size_t pixel) { return alignPtr(bytes.data(), alignment) + alignment + pixel * pixelBytes; }
 
-    enum
-    {
-        alignment = 64
-    };
+    static const int alignment = 64;
     int width, pixelBytes;
     std::vector<uchar> bytes;
 };

@@ -20,10 +20,7 @@ struct ScanlinePenalties
     int prior;        // for 2 pixels between a candidate and what its run was predicted for, 1..4: costs have 8 bits
     int nearer;       // for candidates of another surface that is nearer, 0..4
     int edgeNoise;    // grey levels that an edge's weight may have by noise, 0..255
-    enum
-    {
-        max = 100 // bits; costs with it have 8 bits
-    };
+    static const int max = 100; // bits; costs with it have 8 bits
 };
 
 //! What is aggregated, see aggregateScanlines()
@@ -48,13 +45,10 @@ struct ScanlineProblem
 /** Memory of a sweep over one stripe. A block is the rows that are in one vector, at most maxRows. */
 struct ScanlineScratch
 {
-    enum
-    {
-        blocks = 2, // that are done side by side
-        maxRows = 2,
-        margin = 2 * maxRows, // of all that is stored by column, on both sides
-        alignment = 64        // of directions: vectors that are in two lines of the cache take longer
-    };
+    static const int blocks = 2; // that are done side by side
+    static const int maxRows = 2;
+    static const int margin = 2 * maxRows; // of all that is stored by column, on both sides
+    static const int alignment = 64;       // of directions: vectors that are in two lines of the cache take longer
 
     //! Of a row of windows
     struct Windows

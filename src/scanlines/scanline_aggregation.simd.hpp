@@ -70,12 +70,9 @@ public:
     }
 
 private:
-    enum
-    {
-        groups = Block::groups,
-        behind = groups, // steps, of the second block: what it reads is older than a step
-        chunk = 32       // steps whose costs are in the cache
-    };
+    static const int groups = Block::groups;
+    static const int behind = groups; // steps, of the second block: what it reads is older than a step
+    static const int chunk = 32;      // steps whose costs are in the cache
 
     //! What is done upward
     enum Task

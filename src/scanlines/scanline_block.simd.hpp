@@ -39,10 +39,7 @@ class ScanlineBlock
 {
 public:
     typedef CandidateWindow Window;
-    enum
-    {
-        groups = ByteLanes::groups
-    };
+    static const int groups = ByteLanes::groups;
 
     //! What the directions carry from step to step: H of the pixel beside, and of the columns of the row before
     struct Carried
@@ -160,11 +157,8 @@ public:
     }
 
 private:
-    enum
-    {
-        lanes = groups * Window::candidates,
-        margin = ScanlineScratch::margin
-    };
+    static const int lanes = groups * Window::candidates;
+    static const int margin = ScanlineScratch::margin;
     static_assert(groups <= (int)ScanlineScratch::maxRows, "the scratch memory is for larger blocks");
 
     template <int layout> void storeCosts(const Range& steps, uchar* stored) const

@@ -99,11 +99,8 @@ public:
     }
 
 private:
-    enum
-    {
-        margin = ScanlineScratch::margin,
-        mostDistance = 3 * Window::candidates / 2 * subpixelScale // of a candidate from its prediction
-    };
+    static const int margin = ScanlineScratch::margin;
+    static const int mostDistance = 3 * Window::candidates / 2 * subpixelScale; // of a candidate from its prediction
 
     // Bytes may alias everything but what is local.
 

@@ -12,12 +12,9 @@ namespace cv { namespace stereo { namespace hdp {
 //! What penalties are multiplied by, in 1 / one
 struct SmoothnessWeight
 {
-    enum
-    {
-        one = 64,
-        min = one * 2 / 5, // beyond these few pixels say too much
-        max = one * 9 / 5
-    };
+    static const int one = 64;
+    static const int min = one * 2 / 5; // beyond these few pixels say too much
+    static const int max = one * 9 / 5;
 };
 
 //! How smoothness is weighed: the radius of the windows, 1 pixel of the layer above or more, and limits of the weights

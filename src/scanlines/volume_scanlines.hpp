@@ -13,10 +13,7 @@ struct VolumePenalties
 {
     int small, large; // for a step of one disparity and for a larger one between neighbours of one colour
     double gamma;     // of an edge's similarity exp(-w / gamma), which the large penalty is multiplied by
-    enum
-    {
-        largest = 100 * CostVolume::scale
-    };
+    static const int largest = 100 * CostVolume::scale;
 };
 
 //! What is aggregated, see aggregateVolume(), and where to
@@ -28,12 +25,9 @@ struct VolumeProblem
     short* sums;             // of the directions, in the order of the costs
     ushort* disparity;
 
-    enum
-    {
-        maxScanlines = 64, // that are followed side by side
-        // before and behind the candidates of a pixel, for the first and the last one to have neighbours
-        margin = CostVolume::chunk
-    };
+    static const int maxScanlines = 64; // that are followed side by side
+    // before and behind the candidates of a pixel, for the first and the last one to have neighbours
+    static const int margin = CostVolume::chunk;
     //! Memory for a pixel, by disparity: an interval may begin at the last one.
     int lineLength() const { return margin + volume.numDisparities + CostVolume::chunk + margin; }
     //! Memory for scanlines that are followed side by side: two pixels of each, the sums of one, and a

@@ -38,10 +38,7 @@ struct WordLanes
     static WordLanes load(const short* words) { return v_load(words); }
     static WordLanes load(const uchar* bytes) { return v_reinterpret_as_s16(v_load_expand(bytes)); }
 #endif
-    enum
-    {
-        count = sizeof(Vector) / sizeof(short)
-    };
+    static const int count = sizeof(Vector) / sizeof(short);
     Vector v;
 
     WordLanes(const Vector& vector) : v(vector) {}
@@ -326,10 +323,7 @@ private:
             disparityOfSums(winners.whole[k], winners.rise[k], winners.slope[k], CostVolume::scale, halving);
     }
 
-    enum
-    {
-        margin = VolumeProblem::margin
-    };
+    static const int margin = VolumeProblem::margin;
     short lanes_[WordLanes::count]; // 0, 1, ..
     const VolumeProblem& p_;
     const int scanlines_, length_, lineLength_;

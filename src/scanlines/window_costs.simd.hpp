@@ -17,10 +17,7 @@ const int maxContrast = 23;
 class WindowCosts
 {
 public:
-    enum
-    {
-        hasLimits = 4 // a layout of the costs: the number of planes, and this if they are limited
-    };
+    static const int hasLimits = 4; // a layout of the costs: the number of planes, and this if they are limited
 
     WindowCosts(const CensusCost& cost, int width)
         : cost_(cost), planeStride_(cost.planeStride()), lastColumn_(width - 1)
@@ -74,10 +71,7 @@ public:
     }
 
 private:
-    enum
-    {
-        groups = ByteLanes::groups
-    };
+    static const int groups = ByteLanes::groups;
 
     //! Where the candidates of the groups begin, and those at an offset from there
     struct OneRun
