@@ -39,28 +39,13 @@ struct SixteenWords
         return of([=](int i) { return loadPart(from + i * 16 / parts); });
     }
 
-    SixteenWords max(const SixteenWords& b) const
-    {
-        return of([&](int i) { return v_max(v[i], b.v[i]); });
-    }
-    SixteenWords min(const SixteenWords& b) const
-    {
-        return of([&](int i) { return v_min(v[i], b.v[i]); });
-    }
-    SixteenWords difference(const SixteenWords& b) const // its absolute value
-    {
-        return of([&](int i) { return v_absdiff(v[i], b.v[i]); });
-    }
+    SixteenWords max(const SixteenWords& b) const { return with<v_max>(b); }
+    SixteenWords min(const SixteenWords& b) const { return with<v_min>(b); }
+    SixteenWords difference(const SixteenWords& b) const { return with<v_absdiff>(b); } // its absolute value
 
     // Modulo 2^16
-    SixteenWords plus(const SixteenWords& b) const
-    {
-        return of([&](int i) { return v_add_wrap(v[i], b.v[i]); });
-    }
-    SixteenWords minus(const SixteenWords& b) const
-    {
-        return of([&](int i) { return v_sub_wrap(v[i], b.v[i]); });
-    }
+    SixteenWords plus(const SixteenWords& b) const { return with<v_add_wrap>(b); }
+    SixteenWords minus(const SixteenWords& b) const { return with<v_sub_wrap>(b); }
 
     //! Its own lanes where those of a and b are the same, 0 elsewhere
     SixteenWords whereEqual(const SixteenWords& a, const SixteenWords& b) const
@@ -83,6 +68,11 @@ private:
         SixteenWords result;
         HDP_UNROLLED for (int i = 0; i < parts; ++i) result.v[i] = part(i);
         return result;
+    }
+    template <Vector operation(const Vector&, const Vector&)>
+    CV_ALWAYS_INLINE SixteenWords with(const SixteenWords& b) const
+    {
+        return of([&](int i) { return operation(v[i], b.v[i]); });
     }
 
 #if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9
