@@ -13,12 +13,10 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-typedef std::vector<TunableVariable*> Tunables;
-
 //! By name
-Tunables& allTunables()
+std::vector<TunableInfo*>& allTunables()
 {
-    static Tunables tunables; // made by the first one, in whatever file that is
+    static std::vector<TunableInfo*> tunables; // made by the first one, in whatever file that is
     return tunables;
 }
 
@@ -31,33 +29,30 @@ String stemOf(const String& file)
 
 } // namespace
 
-TunableVariable::TunableVariable(const char* file, const TunableInfo& information) : info(information)
+void addTunable(const char* file, TunableInfo& info)
 {
     info.name = stemOf(file) + "." + info.name;
-    Tunables& all = allTunables();
-    const auto isBefore = [](const TunableVariable* a, const TunableVariable* b) {
-        return a->info.name < b->info.name;
-    };
-    all.insert(std::upper_bound(all.begin(), all.end(), this, isBefore), this);
+    std::vector<TunableInfo*>& all = allTunables();
+    const auto isBefore = [](const TunableInfo* a, const TunableInfo* b) { return a->name < b->name; };
+    all.insert(std::upper_bound(all.begin(), all.end(), &info, isBefore), &info);
 }
 
 void setTunable(const String& name, const String& value)
 {
     String names;
-    for (TunableVariable* tunable : allTunables())
+    for (TunableInfo* info : allTunables())
     {
-        TunableInfo& info = tunable->info;
-        names += (names.empty() ? "" : ", ") + info.name;
-        if (info.name != name)
+        names += (names.empty() ? "" : ", ") + info->name;
+        if (info->name != name)
             continue;
         char* end = nullptr;
         const double number = std::strtod(value.c_str(), &end);
         const bool isValid =
-            number >= info.least && number <= info.most && (!info.isWhole || number == cvFloor(number));
+            number >= info->least && number <= info->most && (!info->isWhole || number == cvFloor(number));
         if (end == value.c_str() || *end != 0 || !isValid)
-            CV_Error(Error::StsBadArg, "'" + value + "' is not " + (info.isWhole ? "a whole number" : "a number") +
-                                           ", which " + name + " takes (" + info.unit + ")");
-        info.value = number;
+            CV_Error(Error::StsBadArg, "'" + value + "' is not " + (info->isWhole ? "a whole number" : "a number") +
+                                           ", which " + name + " takes (" + info->unit + ")");
+        info->value = number;
         return;
     }
     CV_Error(Error::StsBadArg, "no tunable is called '" + name + "', there are: " + names);
@@ -66,8 +61,8 @@ void setTunable(const String& name, const String& value)
 std::vector<TunableInfo> listTunables()
 {
     std::vector<TunableInfo> infos;
-    for (const TunableVariable* tunable : allTunables())
-        infos.push_back(tunable->info);
+    for (const TunableInfo* info : allTunables())
+        infos.push_back(*info);
     return infos;
 }
 

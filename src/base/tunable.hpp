@@ -49,27 +49,25 @@ CV_EXPORTS void setTunable(const String& name, const String& value);
 //! All tunables, by name
 CV_EXPORTS std::vector<TunableInfo> listTunables();
 
-//! Is known by its name from its constructor on, and forever: it is a global variable.
-class TunableVariable
-{
-public:
-    TunableVariable(const char* file, const TunableInfo& information);
+//! Lists a tunable by its name from now on, and forever: it is a global variable.
+void addTunable(const char* file, TunableInfo& info);
 
-    TunableInfo info;
-};
-
-template <typename T> class Tunable final : public TunableVariable
+template <typename T> class Tunable final
 {
 public:
     typedef std::numeric_limits<T> Limits;
 
     Tunable(const char* file, const char* name, T value, const char* unit, const char* reason)
-        : TunableVariable(file, { name, (double)value, (double)value, Limits::is_integer, (double)Limits::lowest(),
-                                  (double)Limits::max(), unit, reason })
+        : info_({ name, (double)value, (double)value, Limits::is_integer, (double)Limits::lowest(),
+                  (double)Limits::max(), unit, reason })
     {
+        addTunable(file, info_);
     }
 
-    operator T() const { return (T)info.value; }
+    operator T() const { return (T)info_.value; }
+
+private:
+    TunableInfo info_;
 };
 
 }}} // namespace cv::stereo::hdp
