@@ -38,34 +38,19 @@ void CostVolume::create(const DisparityForest& forest)
     usualChunks_ = most <= 2 * mean ? most : mean;
     chunks = (size_t)size.area() * usualChunks_;
     if (isUniform)
-        keepPixels(forest);
+        pixels_.resize(size.area());
     else
-        addUnusual(forest);
-    provideCosts();
-}
-
-void CostVolume::keepPixels(const DisparityForest& forest)
-{
-    pixels_.resize(size.area());
-    firstPixels_.clear();
-    int first = 0;
+        candidates.resize(size.area());
+    starts_.clear();
+    unsigned pixels = 0;
     for (const DisparityTree& tree : forest.trees)
     {
-        firstPixels_.push_back(first);
-        first += tree.size;
-    }
-}
-
-void CostVolume::addUnusual(const DisparityForest& forest)
-{
-    candidates.resize(size.area());
-    firstChunks_.clear();
-    for (const DisparityTree& tree : forest.trees)
-    {
-        firstChunks_.push_back((unsigned)chunks);
+        starts_.push_back(isUniform ? pixels : (unsigned)chunks);
+        pixels += tree.size;
         if (chunksOf(tree.interval) > usualChunks_)
             chunks += (size_t)tree.size * chunksOf(tree.interval);
     }
+    provideCosts();
 }
 
 void CostVolume::provideCosts()
@@ -81,12 +66,12 @@ void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pi
     const int count = forest.trees[tree].size;
     if (isUniform)
     {
-        std::copy_n(pixels, count, &pixels_[firstPixels_[tree]]);
+        std::copy_n(pixels, count, &pixels_[starts_[tree]]);
         return;
     }
     const unsigned own = chunksOf(interval), usual = usualChunks_;
     for (int i = 0; i < count; ++i)
-        candidates[pixels[i]] = { own <= usual ? pixels[i] * usual : firstChunks_[tree] + i * own, interval };
+        candidates[pixels[i]] = { own <= usual ? pixels[i] * usual : starts_[tree] + i * own, interval };
 }
 
 void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const DisparityInterval& interval)

@@ -7,6 +7,7 @@
 #include "forest_edges.simd.hpp"
 #include "forest/forest_edges.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 #include "../base/vectorized.hpp"
+#include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -46,13 +47,6 @@ template <typename F> void visitEdges(const Mat& weights, const Mat& pixelIntv, 
     }
 }
 
-//! From the number of edges of each weight, at weight + 1, to that of lighter ones, at weight
-void sumUp(int (&places)[257])
-{
-    for (int w = 0; w < 256; ++w)
-        places[w + 1] += places[w];
-}
-
 } // namespace
 
 void weighEdges(const Mat& image, Mat& weights)
@@ -81,9 +75,9 @@ void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, st
 
 void selectEdgesByWeight(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges)
 {
-    int places[257] = { 0 };
+    int places[257] = { 0 }; // by weight: the number of edges that are lighter
     visitEdges(weights, pixelIntv, rows, [&](int, int weight, int isKept) { places[weight + 1] += isKept; });
-    sumUp(places);
+    std::partial_sum(places, places + 257, places);
     const int count = places[256];
     edges.resize(count + 1); // the last one is for those that are not kept
     visitEdges(weights, pixelIntv, rows, [&](int edge, int weight, int isKept) {
@@ -99,7 +93,7 @@ void sortByWeight(const Mat& weights, std::vector<int>& edges)
     int places[257] = { 0 };
     for (int edge : edges)
         ++places[weight[edge] + 1];
-    sumUp(places);
+    std::partial_sum(places, places + 257, places);
     std::vector<int> sorted(edges.size());
     for (int edge : edges)
         sorted[places[weight[edge]]++] = edge;

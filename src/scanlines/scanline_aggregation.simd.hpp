@@ -35,8 +35,8 @@ public:
     Sweep(const ScanlineProblem& problem, const ScanlineStripe& stripe, bool isUpward, ScanlineScratch& scratch,
           uchar* stored)
         : p_(problem), rows_(stripe.rows), reach_(stripe.reach), steps_(Block::countSteps(problem.size.width)),
-          stored_(stored), tables_{ { problem, isUpward, Block::groups, scratch.orders, scratch.windows[0] },
-                                    { problem, isUpward, Block::groups, scratch.orders, scratch.windows[1] } },
+          stored_(stored), tables_{ { problem, isUpward, scratch.orders, scratch.windows[0] },
+                                    { problem, isUpward, scratch.orders, scratch.windows[1] } },
           blocks_{ { problem, isUpward, scratch.verticalOfColumns(), scratch.ofBlocks[0] },
                    { problem, isUpward, scratch.verticalOfColumns(), scratch.ofBlocks[1] } },
           windows_(nullptr), upperRow_(-1), enteredTables_(0)

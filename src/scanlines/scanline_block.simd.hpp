@@ -4,8 +4,6 @@
 
 // Compiled once for each instruction set, as the *.simd.hpp that include it: no include guard.
 #include "scanline_aggregation.hpp"
-#include "../base/byte_lanes.simd.hpp"
-#include "../base/vectorized.hpp"
 #include "scanline_windows.simd.hpp"
 #include "winner_fraction.hpp"
 #include <cstring>

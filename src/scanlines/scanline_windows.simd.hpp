@@ -4,6 +4,7 @@
 
 // Compiled once for each instruction set, as the *.simd.hpp that include it: no include guard.
 #include "scanline_aggregation.hpp"
+#include "../base/byte_lanes.simd.hpp"
 #include "../base/vectorized.hpp"
 #include <cstring>
 
@@ -47,10 +48,10 @@ class ScanlineWindows
 public:
     typedef CandidateWindow Window;
 
-    //! groups: rows of a block; orders: see ScanlineScratch
-    ScanlineWindows(const ScanlineProblem& problem, bool isUpward, int groups,
-                    const std::vector<uchar> (&orders)[Window::runs], ScanlineScratch::Windows& scratch)
-        : p_(problem), isUpward_(isUpward), groups_(groups), pairs_((problem.size.width + 1) / 2),
+    //! orders: see ScanlineScratch
+    ScanlineWindows(const ScanlineProblem& problem, bool isUpward, const std::vector<uchar> (&orders)[Window::runs],
+                    ScanlineScratch::Windows& scratch)
+        : p_(problem), isUpward_(isUpward), pairs_((problem.size.width + 1) / 2),
           isContiguous_(scratch.isContiguous.data() + margin), small_(scratch.small.data() + margin),
           nearer_(scratch.nearer.data()), slopes_(scratch.slopes.data()), large_(scratch.large.data()),
           least_(scratch.least.data()), priors_(firstStep(scratch.priors)), intoSide_(firstStep(scratch.intoSide)),
@@ -137,9 +138,9 @@ private:
         }
         const short *const low = first_[0], *const high = first_[1]; // 0 in the column before
         uchar* const isContiguous = isContiguous_;
-        const bool isSingle = groups_ == 1;
+        const bool isSingle = ByteLanes::groups == 1;
         HDP_VECTORIZED for (int x = 0; x < pairs; ++x) isContiguous[x] =
-            (uchar)((high[x] - low[x] == length) & ((isSingle) | (high[x - 1] - low[x - 1] == length)));
+            (uchar)((high[x] - low[x] == length) & (isSingle | (high[x - 1] - low[x - 1] == length)));
         uchar *const slopes = slopes_, *const nearer = nearer_;
         const uchar edgeSlope = (uchar)p_.penalties.edgeSlope, borderSlope = (uchar)p_.penalties.borderSlope;
         const uchar ofNearer = (uchar)p_.penalties.nearer;
@@ -212,6 +213,11 @@ private:
     {
         const uchar* of[Window::runs]; // that of a disparity, or 255, for each run
 
+        Lanes(const Window& window, const uchar* low, const uchar* high)
+            : of{ low - window.first[0], high - window.first[1] }
+        {
+        }
+
         //! Which of them have the candidates of `to`
         CV_ALWAYS_INLINE void order(const Window& to, uchar* order) const
         {
@@ -226,12 +232,6 @@ private:
         }
     };
 
-    static Lanes lanesOf(const Window& window, const uchar* low, const uchar* high)
-    {
-        const Lanes lanes = { { low - window.first[0], high - window.first[1] } };
-        return lanes;
-    }
-
     //! The windows before, along a row, have the lanes in a sweep upward, and those behind in one downward.
     void enterSide(const Window* row)
     {
@@ -239,10 +239,10 @@ private:
         uchar* const intoSide = intoSide_;
         const bool isUpward = isUpward_;
         Window before = row[0];
-        Lanes lanesBefore = lanesOf(before, low, high);
+        Lanes lanesBefore(before, low, high);
         forEachWindow(row, [&](const Window& own, int x) {
             uchar* const here = intoSide - (ptrdiff_t)x * Window::candidates;
-            const Lanes lanes = lanesOf(own, low, high);
+            const Lanes lanes(own, low, high);
             if (isUpward)
                 lanesBefore.order(own, here);
             else
@@ -258,7 +258,7 @@ private:
         uchar* const intoNext = intoNext_;
         const int lastWindow = p_.windows->cols - 1;
         forEachWindow(row, [&](const Window& own, int x) {
-            lanesOf(rowBefore[std::min(x, lastWindow)], low, high)
+            Lanes(rowBefore[std::min(x, lastWindow)], low, high)
                 .order(own, intoNext - (ptrdiff_t)x * Window::candidates);
         });
     }
@@ -270,7 +270,7 @@ private:
 
     const ScanlineProblem& p_;
     const bool isUpward_;
-    const int groups_, pairs_; // pairs of columns
+    const int pairs_; // of columns
     // The scratch memory, from column or step 0 on
     short *first_[Window::runs], *distance_[Window::runs], *firstOfColumn_[Window::runs];
     uchar *const isContiguous_, *const small_, *const nearer_, *const slopes_, *const large_, *const least_;
