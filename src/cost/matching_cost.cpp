@@ -76,8 +76,6 @@ void CostLimits::hideUnmatched(int y, const ushort* disparity, uchar* visible) c
         visible[x] = limit[wholeDisparity(disparity[x]) - x] == none ? visible[x] : 0;
 }
 
-MatchingCost::~MatchingCost() {}
-
 void MatchingCost::ofDisparities(const Mat& disparity, Mat& costs) const
 {
     costs.create(disparity.size(), CV_32S);

@@ -53,7 +53,7 @@ private:
 class CV_EXPORTS MatchingCost
 {
 public:
-    virtual ~MatchingCost();
+    virtual ~MatchingCost() {}
 
     /** Costs M(p, x) of some pixels.
     @param pixels The pixels, y * width + x each.

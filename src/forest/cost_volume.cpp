@@ -108,19 +108,12 @@ void excludeCandidates(const Mat& intervals, CostVolume& volume)
         {
             const DisparityInterval& own = intervals.ptr<DisparityInterval>(y)[x];
             const CostVolume::Candidates all = volume.of(y * volume.size.width + x);
-            uchar* costs = volume.costs.data() + all.start();
-            // From a chunk's first candidate on
-            int first = own.first - all.interval.first, behind = own.last + 1 - all.interval.first;
-            for (int c = 0; c < all.chunks(); ++c)
-            {
-                const uchar begin = (uchar)clamped(first, 0, +CostVolume::chunk),
-                            end = (uchar)clamped(behind, 0, +CostVolume::chunk);
-                HDP_VECTORIZED for (uchar k = 0; k < CostVolume::chunk; ++k) costs[k] |=
-                    (uchar)(k < begin || k >= end ? UCHAR_MAX : 0);
-                costs += CostVolume::chunk;
-                first -= CostVolume::chunk;
-                behind -= CostVolume::chunk;
-            }
+            uchar* const costs = volume.costs.data() + all.start();
+            const int count = all.chunks() * CostVolume::chunk;
+            const int first = clamped(own.first - all.interval.first, 0, count),
+                      behind = clamped(own.last + 1 - all.interval.first, 0, count);
+            std::fill(costs, costs + first, (uchar)UCHAR_MAX);
+            std::fill(costs + behind, costs + count, (uchar)UCHAR_MAX);
         }
     });
 }

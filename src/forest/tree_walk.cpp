@@ -4,8 +4,6 @@
 #include "../precomp.hpp"
 #include "tree_walk.hpp"
 
-#include "forest_edges.hpp"
-
 namespace cv { namespace stereo { namespace hdp {
 
 void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk& walk)

@@ -47,8 +47,6 @@ struct CandidateWindow
 
     short first[runs];      // the first disparity of each run
     ushort predicted[runs]; // what the run is there for, in 1 / subpixelScale pixel of the layer
-
-    bool isContiguous() const { return first[1] == first[0] + runLength; }
 };
 
 //! The first of a number of candidates around a disparity, or around the middle between two

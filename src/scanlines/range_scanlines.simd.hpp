@@ -274,18 +274,17 @@ private:
         {
             const int y = rows.start + r;
             const ptrdiff_t first = r * (ptrdiff_t)width_;
-            const Row row = { costs_.row(y),
-                              edges(y, 0),
-                              y > stripe.reach.start ? edges(y - 1, 1) : nullptr,
-                              own_.costs(r),
-                              own_.beside(r),
-                              own_.sums(r),
-                              own_.below(y - stripe.rows.start),
-                              own_.whole.data() + first,
-                              own_.rise.data() + first,
-                              own_.slope.data() + first,
-                              0 };
-            rows_[r] = row;
+            rows_[r] = { costs_.row(y),
+                         edges(y, 0),
+                         y > stripe.reach.start ? edges(y - 1, 1) : nullptr,
+                         own_.costs(r),
+                         own_.beside(r),
+                         own_.sums(r),
+                         own_.below(y - stripe.rows.start),
+                         own_.whole.data() + first,
+                         own_.rise.data() + first,
+                         own_.slope.data() + first,
+                         0 };
         }
     }
 

@@ -177,10 +177,12 @@ private:
                 };
                 if (!isUniform && !last[k].reaches(own))
                     large = enter(own, large, last[k], before + k * lineLength);
-                const Lowest lowest =
+                const int winner =
                     step<role, vectors>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
-                if (role == LAST)
-                    setWinner(total, interval, lowest, k, winners);
+                if (role != LAST)
+                    continue;
+                const WinnerSlope beside = slopeOfWinner(total, winner, interval.size() - 1);
+                winners.set(k, interval.first + winner, beside.rise, beside.slope);
             }
             if (role == LAST)
                 takeDisparities(winners, scanlines, disparity + first);
@@ -239,15 +241,10 @@ private:
         return large;
     }
 
-    struct Lowest // of the sums of a pixel
-    {
-        int sum, position; // of the first of them
-    };
-
-    //! L of a pixel, from that of the pixel before; finds the lowest sum in the last direction.
+    //! L of a pixel, from that of the pixel before; in the last direction, returns the first of the lowest sums.
     template <int role, int vectors>
-    CV_ALWAYS_INLINE Lowest step(const Pixel& own, const WordLanes& small, int large, const short* before, short* here,
-                                 LastPixel& last) const
+    CV_ALWAYS_INLINE int step(const Pixel& own, const WordLanes& small, int large, const short* before, short* here,
+                              LastPixel& last) const
     {
         const WordLanes least = WordLanes::repeat(last.minimum), jump = WordLanes::repeat(last.minimum + large),
                         noCandidate = WordLanes::repeat(none);
@@ -283,16 +280,11 @@ private:
             last.end = own.first + count;
         }
         last.minimum = minimum.minimum();
-        Lowest lowest = { 0, 0 };
-        if (role == LAST)
-        {
-            lowest.sum = lowestSum.minimum();
-            // Where the lowest sum is higher than that: no position
-            lowest.position = (position + WordLanes::load(lanes_))
-                                  .replaced(lowestSum, WordLanes::repeat(lowest.sum), WordLanes::repeat(SHRT_MAX))
-                                  .minimum();
-        }
-        return lowest;
+        if (role != LAST)
+            return 0;
+        // Where the lowest sum is higher than that of all: no position
+        const WordLanes lowest = WordLanes::repeat(lowestSum.minimum());
+        return (position + WordLanes::load(lanes_)).replaced(lowestSum, lowest, WordLanes::repeat(SHRT_MAX)).minimum();
     }
 
     //! The winner of a pixel per scanline, and what winnerFraction() is given
@@ -308,13 +300,6 @@ private:
             slope[k] = (short)sumsSlope;
         }
     };
-
-    static void setWinner(const short* sums, const DisparityInterval& interval, const Lowest& lowest, int scanline,
-                          Winners& winners)
-    {
-        const WinnerSlope beside = slopeOfWinner(sums, lowest.position, interval.size() - 1);
-        winners.set(scanline, interval.first + lowest.position, beside.rise, beside.slope);
-    }
 
     void takeDisparities(const Winners& winners, int scanlines, ushort* disparity) const
     {

@@ -54,8 +54,6 @@ CV_ALWAYS_INLINE int subpixelUnits(float fraction)
 }
 
 /** The disparity of a winner from sums of four directions, in units of a disparity map.
-@param whole The winner.
-@param rise,slope As of winnerFraction().
 @param bit What a bit of the census costs in one direction.
 @param halving 1 if there are two candidates per pixel of disparity, else 0. */
 CV_ALWAYS_INLINE ushort disparityOfSums(int whole, int rise, int slope, int bit, int halving)
