@@ -233,7 +233,7 @@ public:
     //! All directions of a block of rows, and their winners
     void run(const Range& rows, const ScanlineStripe& stripe, Mat& disparity)
     {
-        const int height = rows.size();
+        const int height = rows.size(), bit = 2; // costs are halves of it
         enterBlock(rows, stripe);
         for (int x = width_ - 1; x >= 0; --x)
             for (int r = 0; r < height; ++r)
@@ -244,10 +244,10 @@ public:
             for (int r = active.start; r < active.end; ++r)
                 rows_[r].winner = finishPixel(rows_[r], t - r);
             for (int r = active.start; r < active.end; ++r)
-                setWinner(rows_[r], t - r);
+                rows_[r].winners.set(t - r, rows_[r].sums, 0, rows_[r].winner, p_.candidates - 1);
         }
         for (int r = 0; r < height; ++r)
-            takeDisparities(rows_[r], disparity.ptr<ushort>(rows.start + r));
+            rows_[r].winners.takeDisparities(width_, bit, 1, disparity.ptr<ushort>(rows.start + r));
     }
 
 private:
@@ -260,8 +260,7 @@ private:
         typename RangeCosts<count>::Row costRow;
         const uchar *toRight, *toAbove;       // edges of the first column; to the row above: or none
         uchar *costs, *beside, *sums, *below; // see RangeScratch
-        ushort* whole;
-        short *rise, *slope;
+        Winners winners;
         int winner; // of the last pixel
     };
 
@@ -281,9 +280,7 @@ private:
                          own_.beside(r),
                          own_.sums(r),
                          own_.below(y - stripe.rows.start),
-                         own_.whole.data() + first,
-                         own_.rise.data() + first,
-                         own_.slope.data() + first,
+                         { own_.whole.data() + first, own_.rise.data() + first, own_.slope.data() + first },
                          0 };
         }
     }
@@ -360,23 +357,6 @@ private:
                 return k * Lanes::vector + lane; // lanes without a candidate have 255, and come last
         }
         return 0;
-    }
-
-    void setWinner(const Row& row, int x) const
-    {
-        const WinnerSlope beside = slopeOfWinner(row.sums, row.winner, p_.candidates - 1);
-        row.whole[x] = (ushort)row.winner;
-        row.rise[x] = (short)beside.rise;
-        row.slope[x] = (short)beside.slope;
-    }
-
-    void takeDisparities(const Row& row, ushort* disparity) const
-    {
-        const int bit = 2; // costs are halves of it
-        const ushort* const whole = row.whole;
-        const short *const rise = row.rise, *const slope = row.slope;
-        HDP_VECTORIZED for (int x = 0; x < width_; ++x) disparity[x] =
-            disparityOfSums(whole[x], rise[x], slope[x], bit, 1);
     }
 
     const RangeProblem& p_;

@@ -141,7 +141,7 @@ private:
         // Local, as stores may alias all else
         const CostVolume& volume = p_.volume;
         const CostVolume::Candidates all = volume.of(0);
-        const int stride = all.chunks() * CostVolume::chunk;
+        const int stride = all.chunks() * CostVolume::chunk, halving = volume.steps == 2; // of whole and fraction
         const uchar *const weights = p_.weights, *const costs = volume.costs.data();
         short *const sums = p_.sums, *const total = total_;
         ushort* const disparity = p_.disparity;
@@ -150,7 +150,9 @@ private:
         const WordLanes small = WordLanes::repeat(p_.small);
         short *before = before_, *here = here_;
         LastPixel last[VolumeProblem::maxScanlines];
-        Winners winners;
+        ushort whole[VolumeProblem::maxScanlines];
+        short rise[VolumeProblem::maxScanlines], slope[VolumeProblem::maxScanlines];
+        const Winners winners = { whole, rise, slope }; // of the pixels side by side
         if (isUniform)
             beginLines(all.interval);
 
@@ -166,7 +168,7 @@ private:
                 {
                     last[k] = LastPixel();
                     if (role == LAST)
-                        winners.set(k, 0, 0, 1);
+                        winners.set(k, total, 0, 0, 0);
                     continue;
                 }
                 const size_t start = isUniform ? (size_t)pixel * stride : candidates.start();
@@ -179,13 +181,11 @@ private:
                     large = enter(own, large, last[k], before + k * lineLength);
                 const int winner =
                     step<role, vectors>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
-                if (role != LAST)
-                    continue;
-                const WinnerSlope beside = slopeOfWinner(total, winner, interval.size() - 1);
-                winners.set(k, interval.first + winner, beside.rise, beside.slope);
+                if (role == LAST)
+                    winners.set(k, total, interval.first, winner, interval.size() - 1);
             }
             if (role == LAST)
-                takeDisparities(winners, scanlines, disparity + first);
+                winners.takeDisparities(scanlines, CostVolume::scale, halving, disparity + first);
             std::swap(before, here);
         }
     }
@@ -285,27 +285,6 @@ private:
         // Where the lowest sum is higher than that of all: no position
         const WordLanes lowest = WordLanes::repeat(lowestSum.minimum());
         return (position + WordLanes::load(lanes_)).replaced(lowestSum, lowest, WordLanes::repeat(SHRT_MAX)).minimum();
-    }
-
-    //! The winner of a pixel per scanline, and what winnerFraction() is given
-    struct Winners
-    {
-        ushort whole[VolumeProblem::maxScanlines];
-        short rise[VolumeProblem::maxScanlines], slope[VolumeProblem::maxScanlines];
-
-        void set(int k, int disparity, int sumsRise, int sumsSlope)
-        {
-            whole[k] = (ushort)disparity;
-            rise[k] = (short)sumsRise;
-            slope[k] = (short)sumsSlope;
-        }
-    };
-
-    void takeDisparities(const Winners& winners, int scanlines, ushort* disparity) const
-    {
-        const int halving = p_.volume.steps == 2; // of whole and fraction
-        HDP_VECTORIZED for (int k = 0; k < scanlines; ++k) disparity[k] =
-            disparityOfSums(winners.whole[k], winners.rise[k], winners.slope[k], CostVolume::scale, halving);
     }
 
     static const int margin = VolumeProblem::margin;

@@ -28,24 +28,6 @@ CV_ALWAYS_INLINE float winnerFraction(float rise, float slope, float blunt, floa
     return 0.5f * (u + share * (root - u));
 }
 
-//! What winnerFraction() is given of a winner
-struct WinnerSlope
-{
-    int rise, slope;
-};
-
-/** That of candidate k of 0 .. last, from the sums of all. Beyond the first and the last candidate: the slope beside
-them, or that which leaves the tip at the end. Of less than three candidates there is no fraction. */
-template <typename Sum> CV_ALWAYS_INLINE WinnerSlope slopeOfWinner(const Sum* sums, int k, int last)
-{
-    if (last < 2)
-        return { 0, 1 };
-    const int sum = sums[k];
-    const int before = k > 0 ? sums[k - 1] : sum + std::max(sums[2] - sums[1], sums[1] - sum);
-    const int after = k < last ? sums[k + 1] : sum + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - sum);
-    return { before - after, std::max(std::max(before, after) - sum, 1) };
-}
-
 //! In units of a disparity map, rounded to the nearest as cvRound() does, but in vectors, too
 CV_ALWAYS_INLINE int subpixelUnits(float fraction)
 {
@@ -53,15 +35,43 @@ CV_ALWAYS_INLINE int subpixelUnits(float fraction)
     return (int)((subpixelScale * fraction + wholes) - wholes);
 }
 
-/** The disparity of a winner from sums of four directions, in units of a disparity map.
-@param bit What a bit of the census costs in one direction.
-@param halving 1 if there are two candidates per pixel of disparity, else 0. */
-CV_ALWAYS_INLINE ushort disparityOfSums(int whole, int rise, int slope, int bit, int halving)
+//! The winners of sums of four directions, and what winnerFraction() is given of each, for many of them together
+struct Winners
 {
-    const float unit = 4.f * bit, blunt = 8 * unit, sharp = 14 * unit;
-    const float fraction = winnerFraction((float)rise, (float)slope, blunt, sharp);
-    return (ushort)((whole * subpixelScale + subpixelUnits(fraction)) >> halving);
-}
+    ushort* whole;
+    short *rise, *slope;
+
+    //! Sets number i, candidate first + k of first .. first + last, from the sums of all. Beyond the first and the last
+    //! candidate: the slope beside them, or that which leaves the tip at the end. Less than three have no fraction.
+    template <typename Sum> CV_ALWAYS_INLINE void set(int i, const Sum* sums, int first, int k, int last) const
+    {
+        whole[i] = (ushort)(first + k);
+        rise[i] = 0;
+        slope[i] = 1;
+        if (last < 2)
+            return;
+        const int sum = sums[k];
+        const int before = k > 0 ? sums[k - 1] : sum + std::max(sums[2] - sums[1], sums[1] - sum);
+        const int after =
+            k < last ? sums[k + 1] : sum + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - sum);
+        rise[i] = (short)(before - after);
+        slope[i] = (short)std::max(std::max(before, after) - sum, 1);
+    }
+
+    //! Disparities of a map. bit: what a bit of the census costs in one direction; halving: 1 if there are two
+    //! candidates per pixel of disparity, else 0
+    CV_ALWAYS_INLINE void takeDisparities(int count, int bit, int halving, ushort* disparity) const
+    {
+        const float unit = 4.f * bit, blunt = 8 * unit, sharp = 14 * unit;
+        const ushort* const candidates = whole;
+        const short *const rises = rise, *const slopes = slope;
+        HDP_VECTORIZED for (int i = 0; i < count; ++i)
+        {
+            const float fraction = winnerFraction((float)rises[i], (float)slopes[i], blunt, sharp);
+            disparity[i] = (ushort)((candidates[i] * subpixelScale + subpixelUnits(fraction)) >> halving);
+        }
+    }
+};
 
 }}} // namespace cv::stereo::hdp
 
