@@ -9,7 +9,6 @@
 #include "forest/repeated_surfaces.hpp"
 #include "forest/tree_planes.hpp"
 #include "pair/disparity_ranges.hpp"
-#include "map/edge_vote.hpp"
 #include "map/left_right_check.hpp"
 #include "map/map_filters.hpp"
 #include "map/occlusion_filling.hpp"

@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/map/edge_vote.hpp"
+#include "../src/map/map_filters.hpp"
 
 namespace opencv_test { namespace {
 

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
-#include "edge_vote.hpp"
+#include "map_filters.hpp"
 
 #include "edge_vote.simd.hpp"
 #include "map/edge_vote.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt

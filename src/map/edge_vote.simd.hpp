@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "../base/vectorized.hpp"
-#include "edge_vote.hpp"
+#include "map_filters.hpp"
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "../base/sixteen_words.simd.hpp"
 #endif

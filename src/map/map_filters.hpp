@@ -8,8 +8,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-// Filters of a disparity map, in the order in which they run, but for voteAtEdges(), which is the last but one. Each is
-// in a file of its own.
+// Filters of a disparity map, in the order in which they run. Each is in a file of its own.
 
 //! Median of size x size pixels, 3, 5 or 7, borders replicated: several times faster than cv::medianBlur, which does
 //! not share the work on a column of the window. disparity: CV_16UC1; filtered: another Mat.
@@ -21,6 +20,24 @@ image, had about the same disparity.
 @param unfiltered The map before the median, CV_16UC1.
 @param disparity The map after the median. */
 CV_EXPORTS void restoreThinStructures(const Mat& unfiltered, Mat& disparity);
+
+/** Moves the outlines of surfaces to the edges of the image: where disparities have a step, the pixels around vote for
+one of its two surfaces. A weighted median @cite Ma2013WM of two surfaces is such a vote.
+
+A step is where disparities of 3 x 3 pixels differ by more than 2 pixels; halfway between the nearest and the farthest
+one is the border of the two surfaces. Each pixel of the window around that is on a surface, or less than a pixel beyond
+its end, votes for it by max(36 - difference, 0), where difference is the largest one of a channel from that of the
+pixel in the middle. The window has 16 columns, of which 7 are on the left of the pixel, all of them inside of the
+image, and every third one of 13 rows, the nearest ones of the image. A pixel whose surface has fewer votes than the
+other one gets the nearest or the farthest disparity of the 3 x 3.
+
+In bars of up to 8 pixels the nearer surface keeps its pixels: these are fewer than those around, whatever they look
+like.
+@param image CV_8UC1 or CV_8UC3.
+@param disparity CV_16UC1, a disparity map of the same size; USHRT_MAX has no vote, and what is voted
+beside it means nothing.
+@param voted Receives the map after the vote; another one. The same map if it has less than 16 columns. */
+CV_EXPORTS void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted);
 
 /** Smooths each surface by itself. The variance of a disparity's fraction is that of the noise over the sum of the
 squared slopes around it @cite Kanade1994Adaptive: a pixel with texture stays as it is, one without takes over what
@@ -40,6 +57,49 @@ map.
 @param smoothed Receives the map; another one. */
 CV_EXPORTS void smoothSurfaces(const Mat& levels, double noise, int mostDifference, const Mat& disparity,
                                Mat& smoothed);
+
+// What the rows of voteAtEdges() and smoothSurfaces() are computed with
+
+//! What is around a row of voteAtEdges(), and how pixels vote
+struct VoteRows
+{
+    enum
+    {
+        columns = 16, // of the window
+        columnsBefore = 7,
+        rows = 5,
+        rowStep = 3,
+        barWidth = 8, // pixels, up to which a surface is a bar
+        maxChannels = 3
+    };
+    const uchar* colour[maxChannels][rows];      // of the window
+    const ushort* disparities[2 * barWidth + 1]; // of the rows up to barWidth away
+    int channels;                                // of the colours: 1 or maxChannels
+    int width;
+    ushort likeness;       // the difference of colours from which on votes count nothing
+    ushort minStep, reach; // of disparities: what is a step, and how far beyond its ends the surfaces go
+
+    CV_ALWAYS_INLINE const ushort* disparity(int dy) const { return disparities[barWidth + dy]; }
+};
+
+const int precisionSide = 7; // pixels, of the window that a precision is a sum of
+
+//! How slopes are counted, in 1 / perNoise of the noise
+struct SlopeScale
+{
+    static const int perNoise = 8;
+    static const int most = 36; // the sum of as many squares as there are in a window is below 2^16
+    ushort mostChange, factor;  // of grey levels: the most that counts; of a slope over that change, in 1 / 256
+};
+
+//! The pairs of a pass
+struct SmoothingPairs
+{
+    static const int count = 3;
+    ptrdiff_t step;       // in memory, from the pixel to those of the first pair; each other pair is twice as far
+    ushort limits[count]; // of their weights
+    ushort like;          // the most that disparities of a surface differ
+};
 
 }}} // namespace cv::stereo::hdp
 

@@ -20,6 +20,7 @@ HDP_TUNABLE(int, mostWeight, 64, "noise^-2",
 constexpr int first[] = { 1, 3 };
 constexpr int timesFarther = 1 << (SmoothingPairs::count - 1);
 constexpr int last[] = { timesFarther * first[0], timesFarther* first[1] };
+constexpr int frame = last[1];
 
 // Rows that are smoothed at once, in memory that stays in the caches: fewer compute those between stripes more often
 const int stripe = 128;
@@ -80,11 +81,6 @@ public:
     }
 
 private:
-    enum
-    {
-        frame = last[1]
-    };
-
     Range grown(const Range& rows, int by) const
     {
         return Range(std::max(rows.start - by, 0), std::min(rows.end + by, disparity_.rows));

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "../base/vectorized.hpp"
-#include "surface_smoothing.hpp"
+#include "map_filters.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN

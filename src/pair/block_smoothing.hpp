@@ -11,10 +11,7 @@ namespace cv { namespace stereo { namespace hdp {
 //! The blocks of 8 columns that JPEG compression leaves in an image
 struct BlockGrid
 {
-    enum
-    {
-        side = 8
-    };
+    static const int side = 8;
     int begin = 0; // the first column that begins a block, less than side
     // Mean step from block to block where both are flat, less if it is not sure that they are blocks, in the units of
     // the levels; 0: none are found

@@ -50,20 +50,13 @@ struct SearchArea
     const float* scales;
     size_t step, sumStep; // from a row to the next
     int columns;          // at least minColumns
-    enum
-    {
-        rows = 2 * CornerMatching::searchRadius + 1,
-        minColumns = 8
-    };
+    static const int rows = 2 * CornerMatching::searchRadius + 1, minColumns = 8;
 };
 
 //! A window of the left image that is tracked, and its gradients over two pixels
 struct TrackedWindow
 {
-    enum
-    {
-        pixels = CornerMatching::trackWidth * CornerMatching::trackHeight
-    };
+    static const int pixels = CornerMatching::trackWidth * CornerMatching::trackHeight;
     struct Sums
     {
         int l, ll, x, y, xx, xy, yy, lx, ly; // of levels, of their squares, of gradients, of products

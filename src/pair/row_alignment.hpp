@@ -13,10 +13,7 @@ namespace cv { namespace stereo { namespace hdp {
 These are the differences that small rotations of a camera and another focal length make. */
 struct RowModel
 {
-    enum
-    {
-        terms = 5
-    };
+    static const int terms = 5;
     typedef Vec<double, terms> Coefficients;
 
     Coefficients coefficients;

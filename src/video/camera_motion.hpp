@@ -15,10 +15,7 @@ Every rigid motion is such a matrix, whatever focal length and baseline are: the
 homography of points at infinity, the column of d is the epipole. */
 struct CameraMotion
 {
-    enum
-    {
-        minPoints = 30 // that tell one, for eleven terms: fewer may agree by chance
-    };
+    static const int minPoints = 30; // that tell one, for eleven terms: fewer may agree by chance
     Matx44d forward = Matx44d::eye();
     bool isStill = true; // forward is the identity
     double error = 0;    // median distance of the points from where it takes them, in pixels

@@ -11,13 +11,10 @@ namespace cv { namespace stereo { namespace hdp {
 //! Where the pixels of this frame were in the last one: square blocks of them moved together.
 struct FrameWarp
 {
-    enum
-    {
-        block = 4,         // pixels; side of a block: larger ones have two surfaces, smaller ones cost time
-        unknown = SHRT_MIN // in place of the x of a shift: the block was not in the last frame
-    };
-    Size size;  // of both frames
-    Mat shifts; // CV_16SC2, per block: from a pixel to where it was
+    static const int block = 4; // pixels; side of a block: larger ones have two surfaces, smaller ones cost time
+    static const int unknown = SHRT_MIN; // in place of the x of a shift: the block was not in the last frame
+    Size size;                           // of both frames
+    Mat shifts;                          // CV_16SC2, per block: from a pixel to where it was
 
     //! The shifts of the blocks that a row of pixels is in
     const Vec2s* ofRow(int y) const { return shifts.ptr<Vec2s>(y / block); }
