@@ -107,7 +107,12 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
 
     const short invalid = (short)((plan.minDisparity - 1) * unit);
     if (!ranges.isEmpty())
-        moveIntoRanges(ranges, invalid, fixedPoint);
+    {
+        max(fixedPoint, ranges.smallest, fixedPoint);
+        min(fixedPoint, ranges.largest, fixedPoint);
+    }
+    if (ranges.hasEmpty)
+        fixedPoint.setTo(Scalar(invalid), ranges.smallest > ranges.largest);
     if (!mask.empty())
         fixedPoint.setTo(Scalar(invalid), mask == 0);
     const auto addRejected = [&](HDPTreeMatcher::Reason reason) {

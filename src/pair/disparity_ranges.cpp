@@ -14,10 +14,8 @@ HDP_DISPATCH(toUnits)
 HDP_DISPATCH(joinLimits)
 HDP_DISPATCH(halveIntervals)
 HDP_DISPATCH(toCandidates)
-HDP_DISPATCH(doubleIntervals)
 HDP_DISPATCH(intersectIntervals)
 HDP_DISPATCH(moveIntoIntervals)
-HDP_DISPATCH(moveIntoRanges)
 
 //! Where the centre of a pixel of length pixels lies in a row of count larger ones
 int nearest(int pixel, int length, int count) { return (int)((2 * (int64)pixel + 1) * count / (2 * length)); }
@@ -61,9 +59,7 @@ void expandRanges(const Mat& smallest, const Mat& largest, Size size, Range disp
     }
     expandLimits(smallest, disparities.start * subpixelScale, isWhole, false, size, ranges.smallest);
     expandLimits(largest, disparities.end * subpixelScale, isWhole, true, size, ranges.largest);
-    Mat isEmpty;
-    compare(ranges.smallest, ranges.largest, isEmpty, CMP_GT);
-    ranges.hasEmpty = countNonZero(isEmpty) > 0;
+    ranges.hasEmpty = countNonZero(ranges.smallest > ranges.largest) > 0;
 }
 
 void halveIntervals(const Mat& intervals, Mat& hulls)
@@ -109,10 +105,8 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
 
 void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled)
 {
-    doubled.create(intervals.size(), CV_16UC2);
-    parallelForRows(intervals.size(), [&](int y) {
-        dispatched::doubleIntervals(intervals.ptr<ushort>(y), intervals.cols, candidates - 1, doubled.ptr<ushort>(y));
-    });
+    add(2 * intervals, Scalar(0, 1), doubled);
+    min(doubled, candidates - 1, doubled);
 }
 
 void intersectIntervals(const Mat& intervals, Mat& others)
@@ -126,14 +120,6 @@ void moveIntoIntervals(const Mat& intervals, Mat& disparity)
 {
     parallelForRows(disparity.size(), [&](int y) {
         dispatched::moveIntoIntervals(intervals.ptr<ushort>(y), disparity.cols, disparity.ptr<ushort>(y));
-    });
-}
-
-void moveIntoRanges(const PixelRanges& ranges, short invalid, Mat& disparity)
-{
-    parallelForRows(disparity.size(), [&](int y) {
-        dispatched::moveIntoRanges(ranges.smallest.ptr<short>(y), ranges.largest.ptr<short>(y), disparity.cols, invalid,
-                                   disparity.ptr<short>(y));
     });
 }
 

@@ -52,9 +52,6 @@ CV_EXPORTS void intersectIntervals(const Mat& intervals, Mat& others);
 //! Moves the disparities of a layer into the intervals of its pixels. disparity: CV_16UC1, a disparity map.
 CV_EXPORTS void moveIntoIntervals(const Mat& intervals, Mat& disparity);
 
-//! Moves the disparities of the image, CV_16SC1, into the ranges of its pixels; to this value where these are empty.
-void moveIntoRanges(const PixelRanges& ranges, short invalid, Mat& disparity);
-
 }}} // namespace cv::stereo::hdp
 
 #endif

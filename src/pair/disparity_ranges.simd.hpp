@@ -26,17 +26,11 @@ void halveIntervals(const ushort* above, const ushort* below, int width, ushort*
 //! From 1 / subpixelScale pixel of the image to candidates of a layer, of which there is none behind the last one
 void toCandidates(const ushort* units, int width, int layer, int last, ushort* intervals);
 
-//! See doubleIntervals(). last: the last candidate
-void doubleIntervals(const ushort* intervals, int width, int last, ushort* doubled);
-
 //! See intersectIntervals().
 void intersectIntervals(const ushort* intervals, int width, ushort* others);
 
 //! See moveIntoIntervals().
 void moveIntoIntervals(const ushort* intervals, int width, ushort* disparity);
-
-//! See moveIntoRanges().
-void moveIntoRanges(const short* smallest, const short* largest, int width, short invalid, short* disparity);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -87,15 +81,6 @@ void toCandidates(const ushort* units, int width, int layer, int last, ushort* i
     }
 }
 
-void doubleIntervals(const ushort* intervals, int width, int last, ushort* doubled)
-{
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
-    {
-        doubled[2 * x] = (ushort)std::min(2 * intervals[2 * x], last);
-        doubled[2 * x + 1] = (ushort)std::min(2 * intervals[2 * x + 1] + 1, last);
-    }
-}
-
 void intersectIntervals(const ushort* intervals, int width, ushort* others)
 {
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
@@ -115,15 +100,6 @@ void moveIntoIntervals(const ushort* intervals, int width, ushort* disparity)
         const ushort first = (ushort)(intervals[2 * x] * subpixelScale),
                      last = (ushort)(intervals[2 * x + 1] * subpixelScale);
         disparity[x] = std::min(std::max(disparity[x], first), last);
-    }
-}
-
-void moveIntoRanges(const short* smallest, const short* largest, int width, short invalid, short* disparity)
-{
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
-    {
-        const int inside = clamped(disparity[x], smallest[x], largest[x]), isNone = (int)(smallest[x] > largest[x]);
-        disparity[x] = (short)choose(isNone, invalid, inside);
     }
 }
 
