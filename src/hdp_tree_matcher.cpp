@@ -293,10 +293,8 @@ private:
                               given.isGiven ? &given.levels : nullptr);
         });
         if (given.isGiven || pairPlan.alignment.looksForAnything())
-            clock_.run("alignment", [&] {
-                alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings,
-                          given.isGiven ? &given.alignment : nullptr);
-            });
+            clock_.run("alignment",
+                       [&] { alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings, given); });
         VideoFindings video = { FIRST, false };
         if (pairPlan.followsVideo)
             clock_.run("temporal prediction", [&] { video = predict(images[finest].left, pairPlan); });

@@ -48,7 +48,7 @@ inline std::string textOf(const hdp::PairPlan& p)
          << "\noutput " << p.output.minDisparity << " " << p.output.extension << " " << p.output.finestLayer << " "
          << p.output.isWhole << " " << p.output.disp12MaxDiff << " " << p.output.speckleWindowSize << " "
          << p.output.speckleRange << "\n";
-    const hdp::ImageFrame& frame = p.given.alignment.frame;
+    const hdp::ImageFrame& frame = p.given.frame;
     text << "given " << p.given.isGiven << " frame " << frame.whole << " " << frame.origin << "\n";
     for (const hdp::LayerPlan& layer : p.layers)
         text << textOf(layer);

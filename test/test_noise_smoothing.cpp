@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "test_precomp.hpp"
 #include "helpers.hpp"
-#include "../src/pair/noise_smoothing.hpp"
+#include "../src/pair/pair_alignment.hpp"
 
 namespace opencv_test { namespace {
 

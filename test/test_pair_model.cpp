@@ -259,7 +259,7 @@ TEST(HDPStereo_PairModel, another_range)
     const auto align = [&](int minDisparity, int extension, Mat& shifted) {
         const hdp::PyramidPlan plan = { minDisparity, extension, 1, true, false };
         hdp::shiftColumns(right, minDisparity, extension, shifted);
-        const hdp::GivenAlignment given = hdp::toGivenPair(model, plan, size).alignment;
+        const hdp::GivenPair given = hdp::toGivenPair(model, plan, size);
         Mat aligned;
         hdp::alignRows(shifted, given.findings.rows, given.frame, aligned);
         hdp::alignLight(aligned, given.findings.light, given.frame);

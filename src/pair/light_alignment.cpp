@@ -32,11 +32,9 @@ typedef FitSample<LightModel::terms> LevelPair; // a match: the basis of the rig
 
 double meanLevel(const Mat& image, Point centre)
 {
-    int sum = 0;
-    for (int y = centre.y - meanRadius; y <= centre.y + meanRadius; ++y)
-        for (int x = centre.x - meanRadius; x <= centre.x + meanRadius; ++x)
-            sum += image.at<ushort>(y, x);
-    return sum / ((2 * meanRadius + 1) * (2 * meanRadius + 1) * white);
+    const int side = 2 * meanRadius + 1;
+    const Rect square(centre.x - meanRadius, centre.y - meanRadius, side, side);
+    return sum(image(square))[0] / (side * side * white);
 }
 
 std::vector<LevelPair> toLevels(const CoarseMatches& coarse)

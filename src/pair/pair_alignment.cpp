@@ -6,7 +6,6 @@
 
 #include "image_levels.hpp"
 #include "image_pyramid.hpp"
-#include "noise_smoothing.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -40,13 +39,14 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
 } // namespace
 
 void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
-               PairFindings& findings, const GivenAlignment* given)
+               PairFindings& findings, const GivenPair& given)
 {
-    findings = given ? given->findings : PairFindings();
-    if (!given)
+    findings = given.findings;
+    if (!given.isGiven)
         findAlignment(plan, buffers, images, findings);
     findings.hasLight &= isGrey(images);
-    const ImageFrame frame = (given ? given->frame : ImageFrame(images[0].guide.size())).ofLayer(plan.finestLayer);
+    const ImageFrame frame =
+        (given.isGiven ? given.frame : ImageFrame(images[0].guide.size())).ofLayer(plan.finestLayer);
 
     Mat &finest = images[plan.finestLayer].right, &mask = images[plan.finestLayer].masks.right;
     if (findings.hasRows)

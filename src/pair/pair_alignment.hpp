@@ -35,11 +35,13 @@ struct PairFindings : RowFindings
     bool hasLight = false;
 };
 
-//! What is known of a pair already, and what the models are about
-struct GivenAlignment
+//! What is known of a pair already, in the coordinates and levels of the pyramids
+struct GivenPair
 {
+    bool isGiven = false;
+    LevelFindings levels;
     PairFindings findings;
-    ImageFrame frame; // in pixels of the image
+    ImageFrame frame; // what the models are about, in pixels of the image
 };
 
 //! Memory of alignPair(), kept from pair to pair
@@ -50,13 +52,20 @@ struct AlignmentBuffers
     std::vector<LayerImages> smoothed;
 };
 
+/** A Gaussian of half a pixel, over 3 x 3 pixels, for the images of a noisy pair. Of what a row or a column is mixed
+of, 27 / 256 are a pixel's neighbour on either side; the sum is rounded once. cv::GaussianBlur() does the same to
+numbers of 16 bits in several times as long.
+@param image CV_16UC1, values up to 1023; its border is repeated.
+@param smoothed Receives another image. */
+CV_EXPORTS void smoothNoise(const Mat& image, Mat& smoothed);
+
 /** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it, and
 smooths the grey levels of noisy pairs. The guides stay.
 @param images Those of buildPairPyramids(); they may change.
 @param findings Receives what was found.
-@param given What is known already: nothing is looked for then. */
+@param given What is known already, if it is given: nothing is looked for then. */
 CV_EXPORTS void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
-                          PairFindings& findings, const GivenAlignment* given = nullptr);
+                          PairFindings& findings, const GivenPair& given = GivenPair());
 
 }}} // namespace cv::stereo::hdp
 

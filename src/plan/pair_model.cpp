@@ -240,7 +240,7 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     GivenPair given;
     const int moved = plan.extension + plan.minDisparity; // columns of the right image
     given.isGiven = !model.empty();
-    given.alignment.frame = ImageFrame(size + Size(plan.extension, 0));
+    given.frame = ImageFrame(size + Size(plan.extension, 0));
     if (!given.isGiven)
         return given;
     LevelFindings& levels = given.levels;
@@ -255,10 +255,10 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     levels.rightBlocks.step = model.rightBlockStep * unit;
 
     // Where the matched image of the model begins: with another range it is moved by other columns.
-    ImageFrame& frame = given.alignment.frame;
+    ImageFrame& frame = given.frame;
     frame.whole = Size(model.width + model.addedColumns, model.height);
     frame.origin = Point(model.x + model.addedColumns + model.minDisparity - moved, model.y);
-    PairFindings& findings = given.alignment.findings;
+    PairFindings& findings = given.findings;
     std::copy(model.rows.begin(), model.rows.end(), findings.rows.coefficients.val);
     findings.hasRows = model.areRowsMoved;
     std::copy(model.light.begin(), model.light.end(), findings.light.coefficients.val);

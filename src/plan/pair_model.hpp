@@ -12,14 +12,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! What a PairModel says, in the coordinates and levels of the pyramids
-struct GivenPair
-{
-    bool isGiven = false;
-    LevelFindings levels;
-    GivenAlignment alignment;
-};
-
 //! Throws if a value is not valid. An empty model is.
 void checkPairModel(const PairModel& model);
 

@@ -333,7 +333,7 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     for (int layer = layers - 1; layer >= finest; --layer)
     {
         plan.layers.push_back(planLayer(p, whole, layer, layers, finest));
-        plan.layers.back().frame = plan.given.alignment.frame.ofLayer(layer);
+        plan.layers.back().frame = plan.given.frame.ofLayer(layer);
     }
     if (plan.hasRanges && plan.top().method != COST_SCANLINES)
         plan.layers.front().trees.beta = rangeBeta;
