@@ -11,11 +11,7 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** A row of voteAtEdges().
-@param rows What is around it.
-@param near Memory of width + 2 elements.
-@param far The same.
-@param voted Receives the row. */
+//! A row of voteAtEdges(). near, far: memory of width + 2 elements
 void voteRow(const VoteRows& rows, ushort* near, ushort* far, ushort* voted);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY

@@ -13,11 +13,8 @@ namespace {
 
 HDP_DISPATCH(visibilityRow)
 
-/** Compares each disparity with the maximum of those that map to the same column of the right image.
-@param disparity CV_16SC1 or CV_16UC1 (T), in 1 / subpixelScale pixel.
-@param maxDiff Maximum difference, in pixels, of a visible pixel.
-@param invalid Disparity of pixels that map to no column, or a value that none has.
-@return A Visibility per pixel, CV_8UC1. */
+//! A Visibility per pixel, CV_8UC1. disparity: CV_16SC1 or CV_16UC1 (T); maxDiff: of a visible pixel, in pixels;
+//! invalid: see visibilityRow()
 template <typename T> Mat checkLeftRight(const Mat& disparity, int maxDiff, int invalid)
 {
     const int maxDifference = (int)std::min<int64>((int64)maxDiff * subpixelScale, INT_MAX);

@@ -18,23 +18,20 @@ enum Visibility
     OUTSIDE   // nothing, it ends before
 };
 
-//! Marks the pixels as invalid whose disparity differs by more than maxDiff pixels from the maximum of those that map
-//! to the same column of the right image. disparity: CV_16SC1, times 16; invalid: its value of an invalid pixel.
+//! Makes pixels invalid whose disparity differs by more than maxDiff pixels from the maximum of those that map to the
+//! same column of the right image. disparity: CV_16SC1, times 16
 CV_EXPORTS void rejectOccluded(Mat& disparity, int maxDiff, short invalid);
 
-/** Left-right check of a layer's disparities. A pixel is stable if the maximum of the disparities that map to its
-column of the right image is larger by a pixel at most: exact equality fails by rounding. One that maps to no column is
-not.
+/** A pixel is stable if the maximum of the disparities that map to its column of the right image is larger by a pixel
+at most: exact equality fails by rounding. One that maps to no column is not.
 @param disparity CV_16UC1, a disparity map; USHRT_MAX maps to none.
 @param stable Receives CV_8UC1, 255 where stable, else 0. */
 CV_EXPORTS void findStable(const Mat& disparity, Mat& stable);
 
 /** The visibility test: compares each disparity of a row with the maximum of those that map to the same column.
-@param disparity In 1 / subpixelScale pixel.
-@param columns Of the right image that each pixel maps to, from 1 on; 0: none.
-@param count Of pixels.
+@param columns Of the right image that each of count pixels maps to, from 1 on; 0: none.
 @param width Of the right image.
-@param maxDifference Of a visible pixel, in 1 / subpixelScale pixel.
+@param maxDifference Of a visible pixel; this and disparities are in 1 / subpixelScale pixel.
 @param nearest Memory for width + 1 columns.
 @param visibility Receives a Visibility per pixel. */
 template <typename T>

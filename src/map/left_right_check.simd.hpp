@@ -8,14 +8,8 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** The left-right check of a row.
-@param disparity In 1 / subpixelScale pixel.
-@param width Of the row.
-@param invalid Disparity of pixels that map to no column, or a value that none has.
-@param maxDifference Of a visible pixel, in the same units.
-@param columns Memory for a row.
-@param nearest Memory for a row and one element.
-@param visibility Receives a Visibility per pixel. */
+//! The left-right check of a row, see testVisibility(), with memory for its columns. invalid: disparity of pixels that
+//! map to no column, or a value that none has.
 template <typename T>
 void visibilityRow(const T* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
                    uchar* visibility);

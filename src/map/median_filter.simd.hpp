@@ -7,12 +7,7 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** A row of the median of size x size pixels.
-@param rows The `size` rows around it.
-@param size 3, 5 or 7.
-@param width Of the rows.
-@param sorted As many rows to work in, with size / 2 more columns on each side.
-@param filtered Receives the row. */
+//! A row of medianDisparity(). rows: those around it; sorted: as many to work in, size / 2 columns longer on each side
 void medianRow(const ushort* const* rows, int size, int width, short* const* sorted, ushort* filtered);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY

@@ -10,8 +10,7 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! fillOccluded() for one row. scratch: of this width; blank: columns of the right image, from its left border on, that
-//! show nothing.
+//! A row of fillOccluded(). blank: columns of the right image, from its left border on, that show nothing
 void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int blank, OcclusionScratch& scratch);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
@@ -106,10 +105,8 @@ inline int findBorder(const ushort* disparity, const OcclusionScratch& scratch, 
     return border;
 }
 
-/** Where the part of the row begins that the right image shows, if matches by chance are the best ones of their
-columns: at the last surface that hides what is on its left, whatever the residuals are.
-@param border What findBorder() has found.
-@param limit RowLimits::hiding. */
+//! The same if matches by chance are the best ones of their columns: at the last surface that hides what is on its
+//! left, whatever the residuals are. border: what findBorder() has found; limit: RowLimits::hiding
 inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int width, int blank, int border,
                              int limit)
 {

@@ -36,7 +36,6 @@ SlopeScale slopeScale(double noise)
     return { saturate_cast<ushort>(cvFloor(SlopeScale::most * change)), saturate_cast<ushort>(cvFloor(256 / change)) };
 }
 
-//! In the rows, or in the columns
 SmoothingPairs pairsAt(int distance, ptrdiff_t step, int mostDifference)
 {
     SmoothingPairs pairs;

@@ -8,22 +8,16 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-/** Squared slopes of a row, borders replicated.
-@param levels Of width pixels.
-@param squares Receives them, in 1 / SlopeScale::perNoise^2 of the squared noise. */
+//! Squared slopes of a row of grey levels, borders replicated, in 1 / SlopeScale::perNoise^2 of the squared noise
 void squareSlopes(const ushort* levels, int width, const SlopeScale& scale, ushort* squares);
 
 /** Precisions of a row. It adds up the windows itself: sumOverWindows() would take 2 % of FAST more.
 @param squares Rows of squareSlopes() one after the other, those of the window around the row in any order.
 @param sums Memory of width + precisionSide elements.
-@param disparity Of the row; USHRT_MAX has a precision of zero.
-@param precision Receives the row. */
+@param disparity Of the row; USHRT_MAX has a precision of zero. */
 void precisionRow(const ushort* squares, int width, ushort* sums, const ushort* disparity, ushort* precision);
 
-/** A row of a pass of smoothSurfaces().
-@param own The row, in a map that goes on as far as the pairs are away.
-@param precision The same of the precisions.
-@param smoothed Receives the row. */
+//! A row of a pass of smoothSurfaces(). own, precision: in maps that go on as far as the pairs are away
 void smoothRow(const ushort* own, const ushort* precision, int width, const SmoothingPairs& pairs, ushort* smoothed);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY

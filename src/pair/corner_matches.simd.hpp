@@ -12,8 +12,7 @@ namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** The structure tensors of the pixels of a row: sums over their windows of tensorSide x tensorSide pixels.
-@param first First pixel of the first of so many windows.
-@param step From a row to the next, in pixels.
+@param first First pixel of the first of count windows, in rows that are step pixels apart.
 @param columns Memory for 3 * (count + tensorSide - 1) numbers.
 @param sums Receives the sums of X * X, where X and Y are gradients over two pixels, then those of X * Y and Y * Y. */
 void structureTensors(const ushort* first, size_t step, int count, int* columns, int* sums);
@@ -24,27 +23,21 @@ void structureTensors(const ushort* first, size_t step, int count, int* columns,
 @param sums,scales Receive theirs, see SearchWindows. */
 void windowSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales);
 
-/** The normalised cross-correlation of a window with those of an area.
+/** The normalised cross-correlation of a window with those of an area: -1 to 1, row by row; 0 without texture.
 @param left First pixel of the window, in an image with the area's step.
-@param sum,scale Of the window, see windowSums().
-@param correlations Receives -1 to 1, row by row; 0 without texture. */
+@param sum,scale Of the window, see windowSums(). */
 void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations);
 
 //! The left window of trackCornerMatches(). left: its first pixel; step: from a row to the next, in pixels
 void cutWindow(const ushort* left, size_t step, TrackedWindow& window);
 
-/** One window of the right image for trackCornerMatches(): its sums with the left one.
-@param right The pixel above and left of the first one's place.
-@param fx,fy Fractions of the place, in 1 / 2^fractionBits of a pixel. */
+//! Sums of a right window with the left one. right: the pixel above and left of the first one's place; fx, fy:
+//! fractions of the place, in 1 / 2^fractionBits of a pixel
 RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const TrackedWindow& window);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-namespace {
-
-const short middle = 512; // of levels up to 1023: windowSums() and correlate() subtract it
-
-} // namespace
+static const short middle = 512; // of levels up to 1023: windowSums() and correlate() subtract it
 
 void structureTensors(const ushort* first, size_t step, int count, int* columns, int* sums)
 {

@@ -74,12 +74,6 @@ double noiseOf(const std::vector<CornerMatch>& matches)
     return std::sqrt(residuals[tenth] / 1.5);
 }
 
-//! Standard deviation of the matches from the model, by the median, as some matches are wrong
-double deviationFrom(const Coefficients& model, const std::vector<RowMove>& moves)
-{
-    return deviationOfMedian * medianOf(moves, [&](const RowMove& move) { return move.distanceFrom(model); });
-}
-
 //! Means over the image
 struct MeanSquares
 {
@@ -205,7 +199,8 @@ void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         const RowFit fit = fitRows(moves, size);
         const MeanSquares ofFit = meanSquares(fit, size);
         const RowModel fitted(fit.coefficients);
-        const double deviation = deviationFrom(fit.coefficients, moves), own = ownDeviation * (1 << layer);
+        const auto distance = [&](const RowMove& move) { return move.distanceFrom(fit.coefficients); };
+        const double deviation = deviationOfMedian * medianOf(moves, distance), own = ownDeviation * (1 << layer);
         findings.rowError = std::sqrt(deviation * deviation + own * own); // not by std::hypot(), either
         findings.noise.deviation = noiseOf(matches) / greyScale;
         findings.noise.layer = layer;

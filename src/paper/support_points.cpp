@@ -62,13 +62,11 @@ void describe(const Mat& grey, SupportPointBuffers& buffers, Mat& descriptors)
 }
 
 //! Matches points of one image with the other one.
-class PointMatcher
+struct PointMatcher
 {
-public:
-    PointMatcher(const Mat (&descriptors)[2], Size size, int numDisparities)
-        : descriptors_(descriptors), size_(size), numDisparities_(numDisparities)
-    {
-    }
+    const Mat (&descriptors)[2];
+    const Size size;
+    const int numDisparities;
 
     //! The disparity of a point of the left image whose match is unique and leads back to it, or -1
     int match(int x, int y) const
@@ -80,15 +78,14 @@ public:
         return back >= 0 && std::abs(back - disparity) <= maxLeftRightDifference ? disparity : -1;
     }
 
-private:
-    const uchar* descriptor(int side, int x, int y) const { return descriptors_[side].ptr(y / 2) + x * descriptorSize; }
+    const uchar* descriptor(int side, int x, int y) const { return descriptors[side].ptr(y / 2) + x * descriptorSize; }
 
     //! The disparity of a point of the left (side 0) or right image, or -1 if it has no unique match
     int bestDisparity(int side, int x, int y) const
     {
-        if (x < margin || x >= size_.width - margin || y < margin || y >= size_.height - margin)
+        if (x < margin || x >= size.width - margin || y < margin || y >= size.height - margin)
             return -1;
-        const int last = std::min(numDisparities_ - 1, side == 0 ? x - margin : size_.width - 1 - margin - x);
+        const int last = std::min(numDisparities - 1, side == 0 ? x - margin : size.width - 1 - margin - x);
         if (last < minRange || !hasTexture(descriptor(side, x, y)))
             return -1;
         const uchar *own[4], *others[4];
@@ -120,10 +117,6 @@ private:
     {
         return (int)v_reduce_sad(v_load(descriptor), v_setall_u8(128)) >= minTexture; // 128: no gradient
     }
-
-    const Mat (&descriptors_)[2];
-    Size size_;
-    int numDisparities_;
 };
 
 //! Whether enough of the points around one, itself among them, have its disparity
@@ -151,7 +144,7 @@ void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, Su
             cvtColor(images[side], buffers.grey, COLOR_BGR2GRAY);
         describe(left.channels() == 3 ? buffers.grey : images[side], buffers, buffers.descriptors[side]);
     }
-    const PointMatcher matcher(buffers.descriptors, left.size(), numDisparities);
+    const PointMatcher matcher = { buffers.descriptors, left.size(), numDisparities };
     Mat& matches = buffers.matches;
     matches.create((left.rows + spacing - 1) / spacing, (left.cols + spacing - 1) / spacing, CV_16S);
     points.create(matches.size(), CV_16S);
