@@ -35,9 +35,7 @@ above.
 
 v is 1 for a pixel that passes the left-right check, see findStable(), and whose match has data, or else 1/2. Pixels
 without data hide none.
-@param maps The maps.
-@param numDisparities Of the layer.
-@param cost Of the layer.
+@param numDisparities,cost Of the layer.
 @param confidence Receives CV_8UC1. */
 CV_EXPORTS void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const MatchingCost& cost,
                                     Mat& confidence);

@@ -39,16 +39,12 @@ struct OutputBuffers
     Mat whole, fixedPoint, speckles;
 };
 
-/** The disparities of a layer from those of the layer above: bilinear inside a surface, its pixel's own at its border.
-@param upper CV_16UC1, a disparity map.
-@param size Of the layer.
-@param disparity Receives CV_16UC1, a disparity map. */
+//! The map of a layer of this size from that of the one above: bilinear inside a surface, its pixel's own at its border
 CV_EXPORTS void upsampleDisparity(const Mat& upper, Size size, Mat& disparity);
 
 /** From the disparities of the finest layer to what cv::StereoMatcher promises: those of every pixel of the image, from
 minDisparity on, less those without data and what the left-right check and the speckle filter reject.
 @param finest CV_16UC1 of the finest layer's size, a disparity map.
-@param plan What to do.
 @param buffers Memory to work in; receives what was rejected.
 @param disparity CV_16SC1 or CV_32FC1 of the image's size; receives the result.
 @param mask Of the image, CV_8UC1, 0 where it has no data; empty: it has everywhere.
@@ -56,12 +52,11 @@ minDisparity on, less those without data and what the left-right check and the s
 CV_EXPORTS void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity,
                                 const Mat& mask = Mat(), const PixelRanges& ranges = PixelRanges());
 
-/** Why the pixels of a layer have their disparities, see HDPTreeMatcher::Reason: MATCHED, OCCLUDED or OUTSIDE.
+/** Why the pixels of a layer have their disparities, see HDPTreeMatcher::Reason: MATCHED, OCCLUDED or OUTSIDE, CV_8UC1.
 @param disparity Of the layer, CV_16UC1, a disparity map.
 @param plan Of the output: where the layer lies in the image.
 @param width Of the image.
-@param limits Of the layer: pixels without data hide none.
-@param reasons Receives CV_8UC1. */
+@param limits Of the layer: pixels without data hide none. */
 CV_EXPORTS void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const CostLimits& limits,
                             Mat& reasons);
 

@@ -62,10 +62,8 @@ void smoothSteps(const BlockGrid& grid, Mat& grey)
     });
 }
 
-/** The one in eight of the steps between columns, or between rows, that are larger than the others, by their mean. The
-lines across them that tell begin in all places of a block: blocks of compression are where they are in all of them, but
-slanted contours are not.
-@param ratio Receives that of the mean to the mean of the others. */
+//! The one in eight of the steps between columns, or rows, that are larger than the others, and the ratio of their mean
+//! to that of these. The lines that tell begin in all places of a block, where slanted contours have no common steps.
 BlockGrid findSteps(const Mat& grey, bool isDown, double& ratio)
 {
     const double leastStep = 1. / 64; // of the others, if they are as good as none

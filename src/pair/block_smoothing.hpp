@@ -12,24 +12,21 @@ namespace cv { namespace stereo { namespace hdp {
 struct BlockGrid
 {
     static const int side = 8;
-    int begin = 0; // the first column that begins a block, less than side
-    // Mean step from block to block where both are flat, less if it is not sure that they are blocks, in the units of
-    // the levels; 0: none are found
-    double step = 0;
+    int begin = 0;   // the first column that begins a block, less than side
+    double step = 0; // mean step from block to block, in the units of the levels, less if it is not sure; 0: none
 };
 
-/** Finds the blocks that strong compression makes visible. Where what remains of a block is flat, levels change between
-blocks alone: the mean of small steps between flat pixels is several times as large at one column in eight as at the
-others, and at one row in eight. The contours of a faint slope are so in one direction at most. The lower ratio tells
-how sure it is: from 6 on, the step of the grid is the mean one, down to 4.5 a part of it, and less is smoothed. Some
-rows and columns tell.
+/** Finds the blocks that strong compression makes visible: the mean of small steps between flat pixels is several times
+as large at one column in eight as at the others, and at one row in eight. The contours of a faint slope are so in one
+direction at most. The lower ratio tells how sure it is: from 6 on, the step of the grid is the mean one, down to 4.5 a
+part of it.
 @param grey See greyLevels(). */
 CV_EXPORTS BlockGrid findBlocks(const Mat& grey);
 
-/** Makes ramps of the steps between blocks in the grey levels of a pair, if both images have some: as they are at the
-same columns of both, they match at disparities that are multiples of 8, whatever the scene is. A step is what levels
-change by between two columns, less the mean change beside them; if it is less than 4 times the mean, the four pixels on
-each side take 7/16, 5/16, 3/16 and 1/16 of it, so that the slope becomes even. Larger steps are edges of the scene. */
+/** Makes ramps of the steps between blocks in the grey levels of a pair, if both images have some: as these are at the
+same columns, they match at multiples of 8, whatever the scene is. A step is what levels change by between two columns,
+less the mean change beside them; if it is less than 4 times the mean, the four pixels on each side take 7/16, 5/16,
+3/16 and 1/16 of it. Larger steps are edges of the scene. */
 CV_EXPORTS void smoothBlocks(Mat& left, Mat& right, const BlockGrid& ofLeft, const BlockGrid& ofRight);
 
 }}} // namespace cv::stereo::hdp

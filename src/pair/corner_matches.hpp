@@ -8,7 +8,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of findCornerMatches() and trackCornerMatches() that the compiler needs, or other stages
 struct CornerMatching
 {
     enum
@@ -73,10 +72,8 @@ struct RightSums
 
 /** Matches the corners of a coarse layer over all disparities and some rows by normalised cross-correlation.
 @param left,right CV_16UC1, values up to 1023, of the same size.
-@param masks Of this layer; what is matched has data.
-@param disparities Of the layer.
+@param masks Of this layer, as disparities are; what is matched has data.
 @param spacing Side of the cells of a grid that have a corner each, at least.
-@param windows Memory to work in.
 @param matches Receives one match per corner, to whole pixels. */
 CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities,
                                   int spacing, SearchWindows& windows, std::vector<CornerMatch>& matches);
@@ -85,9 +82,8 @@ CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, const PairM
 CV_EXPORTS void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows,
                                   std::vector<CornerMatch>& matches);
 
-/** Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.
-@param left,right As of findCornerMatches().
-@param matches Where the points are by what is known so far. What is lost becomes invalid. */
+//! Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.
+//! What is lost becomes invalid.
 CV_EXPORTS void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMatch>& matches);
 
 //! Matches of a pair's corners on a coarse layer, and its pyramids down to it
@@ -101,8 +97,7 @@ struct CoarseMatches
 
 /** The matches that row and light alignment, and the search for the range of disparities, begin with.
 @param left,right Pyramids, CV_16UC1, values up to 1023; their layers may end anywhere.
-@param masks Of the images.
-@param disparities Of the images, that may be. */
+@param masks,disparities Of the images. */
 CV_EXPORTS void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
                               const Range& disparities, CoarseMatches& coarse);
 

@@ -19,11 +19,10 @@ struct PixelRanges
 
 /** Ranges as the caller gives them, for each pixel of the image. Those of a coarser map hold for all pixels that are
 nearest to one of it; what is no number limits nothing.
-@param smallest CV_32FC1, in pixels, of the images' size or coarser.
-@param largest Of the same size and type.
+@param smallest,largest CV_32FC1, in pixels, of the images' size or coarser.
 @param size Of the images.
 @param disparities The first and the last one of the map, in pixels; ranges have no others.
-@param isWhole Whether disparities are whole ones: ranges have only these then.
+@param isWhole Whether ranges have only whole disparities.
 @param ranges Receives them; largest is less than smallest where there is nothing in one. */
 CV_EXPORTS void expandRanges(const Mat& smallest, const Mat& largest, Size size, Range disparities, bool isWhole,
                              PixelRanges& ranges);
@@ -33,9 +32,7 @@ or the nearest one, if these are none.
 @param ranges Of the image.
 @param minDisparity What candidate 0 stands for.
 @param extension Columns added on the left.
-@param numDisparities Of each layer.
-@param units Memory to work in.
-@param intervals Receives a DisparityInterval per pixel of each layer. */
+@param numDisparities,intervals Of each layer; receives a DisparityInterval per pixel. */
 CV_EXPORTS void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension,
                                const std::vector<int>& numDisparities, std::vector<Mat>& units,
                                std::vector<Mat>& intervals);

@@ -28,10 +28,8 @@ inline int layerDisparities(int numDisparities, int layer, bool subpixel)
 //! left out. The authors' program truncates and leaves out, too; the paper rounds sizes up.
 CV_EXPORTS void halveImage(const Mat& image, Mat& half);
 
-/** Halves an image layer by layer.
-@param given Its first layers, at least one.
-@param layers How many there shall be.
-@param pyramid Receives them: the given ones as they are, the others in memory that is used again. */
+//! Halves an image layer by layer. given: its first layers, at least one, which the pyramid has as they are; the others
+//! are in memory that is used again.
 CV_EXPORTS void buildPyramid(const std::vector<Mat>& given, size_t layers, std::vector<Mat>& pyramid);
 
 //! pixelsWithData() of a layer of a mask; none for an empty one

@@ -60,10 +60,8 @@ struct RowLight
     float gain[4], offset, square, cube, largest;
 };
 
-/** Finds how the light of the right image differs from that of the left one, from the mean levels around the matched
-corners of matchCoarsely().
-@param model Receives the model, the identity if the matches do not tell.
-@return Whether the model explains what differs, and this is enough to be applied. */
+//! Finds how the light of the right image differs from that of the left one, from the mean levels around matched
+//! corners: the identity if these do not tell. Returns whether the model explains what differs, and is worth applying.
 CV_EXPORTS bool estimateLight(const CoarseMatches& coarse, LightModel& model);
 
 /** Gives the right image the light of the left one.

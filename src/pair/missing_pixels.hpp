@@ -24,23 +24,17 @@ struct CompletePair
 };
 
 /** Gives the pixels without data levels that depend on the others alone, and images of type CV_32FC1 16 bits.
-@param left,right As checkPair() accepts them.
-@param leftMask,rightMask CV_8UC1 of the same size, 0 where there is no data; empty: there is everywhere.
+@param leftMask,rightMask CV_8UC1, 0 where there is no data; empty: there is everywhere.
 @param given What floats are matched as; none: that of this pair.
 @param complete Receives the pair: the images themselves if nothing is to be done. */
 CV_EXPORTS void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
                              const FloatLevels* given, CompletePair& complete);
 
-/** One scale for both images of a pair: the darkest pixel becomes black and the brightest white, but for one pixel in
-1024 at each end.
-@param left,right CV_32FC1.
-@param masks Which pixels count; those that are not finite must not be among them. */
+//! One scale for both images of a pair of CV_32FC1: the darkest pixel becomes black and the brightest white, but for
+//! one in 1024 at each end. masks: which pixels count, all of them finite
 CV_EXPORTS FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks);
 
-/** Levels in CV_16UC1.
-@param image CV_32FC1.
-@param mask Which pixels have data; the others become 0.
-@param floats What is black and white; all is black if these are the same. */
+//! Levels of CV_32FC1 in CV_16UC1, 0 where there is no data; all are black if floats' black and white are the same.
 CV_EXPORTS void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, Mat& levels);
 
 /** Fills the pixels without data. A run of them in a row gets the levels at its ends, each half of it the nearer one's.

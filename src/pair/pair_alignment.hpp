@@ -62,7 +62,6 @@ CV_EXPORTS void smoothNoise(const Mat& image, Mat& smoothed);
 /** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it, and
 smooths the grey levels of noisy pairs. The guides stay.
 @param images Those of buildPairPyramids(); they may change.
-@param findings Receives what was found.
 @param given What is known already, if it is given: nothing is looked for then. */
 CV_EXPORTS void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
                           PairFindings& findings, const GivenPair& given = GivenPair());

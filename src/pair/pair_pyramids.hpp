@@ -9,9 +9,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! Largest width and height of an image. Two edges per pixel are numbered by int, and what is counted by pixels of a
-//! side or by bytes of the image fits into one, too, in OpenCV's filters as well. cv::filterSpeckles has 16-bit
-//! coordinates.
+//! Largest width and height of an image: cv::filterSpeckles has 16-bit coordinates, and edges are numbered by int.
 const int maxSide = SHRT_MAX;
 
 //! Throws cv::Exception if the images are no pair that can be matched.
@@ -61,12 +59,10 @@ struct PyramidPlan
 };
 
 /** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,
-see findBrightness(): what counts in levels, as edges, noise and thresholds do, is then more as if it were well
-exposed.
+see findBrightness(): what counts in levels, as edges, noise and thresholds do, is then as if it were well exposed.
 @param left,right CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param masks Theirs; what has no data does not count where levels are.
 @param pyramids Memory to work in; receives what was found.
-@param images Receives those of each layer.
 @param given What is known already: nothing is looked for then. */
 CV_EXPORTS void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks, const PyramidPlan& plan,
                                   PairPyramids& pyramids, std::vector<LayerImages>& images,

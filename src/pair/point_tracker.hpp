@@ -23,8 +23,7 @@ struct TrackedPoint
 
 /** The best pixel of each cell of a grid, row by row; the first one of several.
 @param grid Number of cells.
-@param cell Side of a cell, in pixels.
-@param step From a candidate to the next, in pixels.
+@param cell,step Side of a cell, and from a candidate to the next, in pixels.
 @param minScore A cell whose pixels have no more has none.
 @param score Of a pixel; called by several threads. */
 std::vector<Point> bestPixels(Size grid, int cell, int step, double minScore,
@@ -34,14 +33,11 @@ std::vector<Point> bestPixels(Size grid, int cell, int step, double minScore,
 CV_EXPORTS int trackingLevels(Size size);
 
 /** Chooses points to be tracked: on a grid, where the image has texture in both directions.
-@param before Pyramid of the frame before, CV_8UC1, the finest level first, each of half the size of the one before.
-@param points Receives TrackedPoint::before of each, in pixels of the finest level. */
+@param before Pyramid of the frame before, CV_8UC1, the finest level first, which points are in pixels of. */
 CV_EXPORTS void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points);
 
-/** Finds points again, from the coarsest level to the finest: where the sum of absolute differences over a square has
-its minimum, with the fraction of a parabola.
-@param before,now Pyramids of both frames, of the same sizes.
-@param points Receives TrackedPoint::now of each; those that leave the image stay where they were. */
+//! Finds points again, from the coarsest level to the finest: where the sum of absolute differences over a square has
+//! its minimum, with the fraction of a parabola. Those that leave the image stay where they were.
 CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now,
                             std::vector<TrackedPoint>& points);
 

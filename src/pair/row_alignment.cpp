@@ -146,8 +146,7 @@ template <typename T> void mixColumns(const Mat& right, int row, const int weigh
     }
 }
 
-//! aligned(x, y) for all x. A row of the model is a straight line: its columns come in runs from the same place, which
-//! is that of the whole image's columns in a tile, too.
+//! A row of the model is a straight line: columns come in runs from the same place, in a tile those of the whole image.
 template <typename T>
 void alignRow(const Mat& right, const RowModel& model, const ImageFrame& frame, int y, const int weights[][4],
               T* aligned)

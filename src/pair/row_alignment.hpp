@@ -9,8 +9,8 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-/** How far the rows of the right image are below those of the left one, in pixels, at a place from the image's centre.
-These are the differences that small rotations of a camera and another focal length make. */
+//! How far the rows of the right image are below those of the left one, in pixels, at a place from the image's centre:
+//! what small rotations of a camera and another focal length make
 struct RowModel
 {
     static const int terms = 5;
@@ -69,8 +69,7 @@ are followed to the finest layer.
 @param maxOffset Maximum difference of a pixel's rows that is believed, in pixels of the image. */
 CV_EXPORTS void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowFindings& findings);
 
-/** Moves the rows of the right image to those of the left one: aligned(x, y) = right(x, y + model(x, y)), by cubic
-interpolation. Beyond the image are its first and last rows.
+/** aligned(x, y) = right(x, y + model(x, y)), by cubic interpolation. Beyond the image are its first and last rows.
 @param right CV_8U or CV_16U, any number of channels.
 @param frame What the model is about: the image, or a larger one that it is a tile of. */
 CV_EXPORTS void alignRows(const Mat& right, const RowModel& model, const ImageFrame& frame, Mat& aligned);

@@ -47,12 +47,7 @@ paper leaves open, are as in the authors' program, but for the 4. */
 class CV_EXPORTS ColorGradientCost CV_FINAL : public MatchingCost
 {
 public:
-    /** Takes a pair.
-    @param left CV_8UC1 or CV_8UC3.
-    @param right Of the same size and type.
-    @param numDisparities The number of candidates a pixel may be asked for.
-    @param params What the cost depends on.
-    @param masks What pixels without data may cost is limited, see CostLimits. */
+    //! Takes a pair of CV_8UC1 or CV_8UC3, of which a pixel may be asked for so many candidates. masks: see CostLimits
     void prepare(const Mat& left, const Mat& right, int numDisparities, const ColorGradientParams& params,
                  const PairMasks& masks = PairMasks());
 

@@ -23,10 +23,8 @@ one, the match of its match is at most 2 pixels away, and at least 4 of the poin
 among them) differ from it by at most 4.
 
 The authors' program has them instead of the paper's grid of 5 x 5 pixels; it counts those of the right image, too.
-@param left CV_8UC1 or CV_8UC3.
-@param right Of the same size and type.
+@param left,right CV_8UC1 or CV_8UC3.
 @param numDisparities Disparities 0 .. numDisparities - 1 are compared.
-@param buffers Memory to work in.
 @param points Receives CV_16SC1 of ceil(rows / 4) x ceil(cols / 4), the disparity at (4 y, 4 x) or -1. */
 CV_EXPORTS void findSupportPoints(const Mat& left, const Mat& right, int numDisparities, SupportPointBuffers& buffers,
                                   Mat& points);

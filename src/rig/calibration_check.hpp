@@ -33,8 +33,8 @@ inline bool isPossible(Size size)
 //! But for the few digits of files
 bool isRotation(const Matx33d& R);
 
-/** Brings a calibration into the form that StereoCalibration documents, with a rotation that is one.
-@throws cv::Exception if a matrix has another size, or what it has is not finite or impossible. */
+//! Brings a calibration into the form that StereoCalibration documents, with a rotation that is one. Throws if a matrix
+//! has another size, or what it has is not finite or impossible.
 void checkCalibration(const CalibrationNames& names, StereoCalibration& calibration);
 
 }}} // namespace cv::stereo::hdp

@@ -12,8 +12,8 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-/** The fields of a file by their paths, such as "cam0/intrinsics"; the value of one is a list of words, those of lists
-in a list in one row. It is what calibrations are made of, and what is common to YAML and INI files. */
+//! The fields of a file by their paths, such as "cam0/intrinsics": each is a list of words, those of lists in a list in
+//! one row. It is what is common to YAML and INI files.
 class CV_EXPORTS CalibrationText
 {
 public:
@@ -47,8 +47,7 @@ private:
     Fields fields_;
 };
 
-/** Reads a file.
-@throws cv::Exception if it cannot be read, or is too large for a calibration. */
+//! Throws if the file cannot be read, or is too large for a calibration.
 CalibrationText readCalibrationText(const std::string& file);
 
 //! readStereoCalibration() of one or two texts; size: of the raw images

@@ -24,10 +24,8 @@ struct CameraMotion
 //! Moves points to where a motion in their pixels takes them; those that leave the image are nowhere.
 CV_EXPORTS void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>& points);
 
-/** Fits a motion to most of the points. Those that do not fit, as on things that move by themselves, lose their weight.
-@param size That of the image that their positions are in.
-@param tolerance How far from a first guess they may be, in pixels.
-@return None if most of the points are where they were, or if there are less than minPoints. */
+//! Fits a motion to most of the points, at most tolerance pixels from a first guess; others, as on things that move by
+//! themselves, lose their weight. None if most are where they were, or if there are less than minPoints.
 CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance);
 
 //! The motion in pixels of an image that is scale times as large
@@ -53,10 +51,7 @@ struct DisparityChange
 };
 
 /** A change as it was measured: cameras shake against each other, and the motion is an estimate. The disparities become
-factor d + offset, both fitted robustly.
-@param change By the motion; its offset is 0.
-@param predicted Disparities that its now() gave for pixels.
-@param measured Those of the same pixels now. */
+factor d + offset, both fitted robustly to those that the change, whose offset is 0, predicted and those measured. */
 CV_EXPORTS DisparityChange correctedChange(const DisparityChange& change, const std::vector<float>& predicted,
                                            const std::vector<float>& measured);
 

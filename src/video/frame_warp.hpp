@@ -47,9 +47,8 @@ struct FrameWarp
 };
 
 /** Follows blocks back. Where one was depends on its disparity, and that on where it was: from the disparity that the
-last frame has at the same place, some steps lead to both.
-@param disparity The map of the last frame.
-@param warp Receives where all blocks were: known are those whose centre stays in the image and comes to rest. */
+last frame has at the same place, some steps lead to both. Known are those whose centre stays in the image and comes to
+rest. disparity: the map of the last frame */
 CV_EXPORTS void findWarp(const BackwardMotion& motion, const Mat& disparity, FrameWarp& warp);
 
 }}} // namespace cv::stereo::hdp

@@ -45,11 +45,10 @@ another scene.
 CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
                              FramePrediction& prediction);
 
-/** Finds what each cell may take from the last frame: what looks different where the motion leads, by more than noise
-and by about the contrast, is something else. Changes and contrasts are means over the squares around a cell.
+/** Finds what each cell may take from the last frame, a TemporalSource (CV_8UC1): what looks different where the motion
+leads, by more than noise and by about the contrast, is something else. Both are means over the squares around a cell.
 @param before,now FrameMemory::grey[0] of the last frame and of this one.
-@param warp Where its pixels were; none if the camera stands still: what looks the same is at the same place then.
-@param sources CV_8UC1, receives TemporalSource of each cell. */
+@param warp Where its pixels were; none if the camera stands still: what looks the same is at the same place then. */
 CV_EXPORTS void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch,
                             Mat& sources);
 

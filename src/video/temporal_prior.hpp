@@ -16,17 +16,14 @@ CV_EXPORTS bool predictsDisparities(const FrameMemory& last, const FramePredicti
 /** The disparities that the last frame predicts for the pixels of a volume: those that more than one pair has had, as a
 single pair is wrong as often as this one. Where the image stands still and looks moved as well, with different
 disparities, it predicts none.
-@param prediction What predictFrame() found; the frame continues.
 @param side That of the volume's pixels, in pixels of the layer that the prediction is of.
 @param size That of the volume.
 @param predicted CV_32FC1, receives them, in pixels of the volume; negative where there is none. */
 CV_EXPORTS void predictDisparities(const FrameMemory& last, const FramePrediction& prediction, int side,
                                    const Size& size, Mat& predicted);
 
-/** Whether this frame's own costs refuse the last frame: at many of the pixels that it predicts a disparity for,
-another one is much better.
-@param volume Means of costs over trees, as a single frame has them.
-@param predicted The disparities; those of such pixels are taken away. */
+//! Whether this frame's own costs, means over trees, refuse the last frame: at many of the pixels that it predicts a
+//! disparity for, another one is much better. Their predicted disparities are taken away.
 CV_EXPORTS bool refusesLastFrame(const CostVolume& volume, Mat& predicted);
 
 //! P(D_t | D_(t-1)): raises the costs of disparities other than the predicted one, see preferDisparity().
