@@ -6,7 +6,6 @@
 #include "layer_matching.hpp"
 #include "map/disparity_confidence.hpp"
 #include "map/disparity_output.hpp"
-#include "map/disparity_sigma.hpp"
 #include "pair/image_levels.hpp"
 #include "pair/missing_pixels.hpp"
 #include "range_search.hpp"

@@ -7,7 +7,7 @@
 #include "../src/base/units.hpp"
 #include "../src/cost/census_cost.hpp"
 #include "../src/map/disparity_output.hpp"
-#include "../src/map/disparity_sigma.hpp"
+#include "../src/map/disparity_confidence.hpp"
 #include "../src/pair/image_levels.hpp"
 
 namespace opencv_test { namespace {

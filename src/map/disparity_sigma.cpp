@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
-#include "disparity_sigma.hpp"
+#include "disparity_confidence.hpp"
 
 #include "../base/units.hpp"
 #include "../base/vectorized.hpp"

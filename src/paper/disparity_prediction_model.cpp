@@ -14,8 +14,16 @@ namespace {
 
 const int fileVersion = 1, maxLayers = 64, maxGaussians = 1024; // of a mixture
 
-const GaussianMixture& checked(const GaussianMixture& mixture)
+void requireRoom(const std::vector<GaussianMixture>& layers)
 {
+    if (layers.size() >= (size_t)maxLayers)
+        CV_Error(Error::StsOutOfRange, format("a model must have at most %d layers", maxLayers));
+}
+
+//! Throws if the mixture is none, or one too many.
+void append(const GaussianMixture& mixture, std::vector<GaussianMixture>& layers)
+{
+    requireRoom(layers);
     const std::vector<double>&means = mixture.means, &sigmas = mixture.sigmas, &weights = mixture.weights;
     if (means.empty() || means.size() > (size_t)maxGaussians)
         CV_Error(Error::StsBadArg, format("means must have from 1 to %d elements", maxGaussians));
@@ -34,19 +42,7 @@ const GaussianMixture& checked(const GaussianMixture& mixture)
     }
     if (std::abs(sum - 1) > 0.001)
         CV_Error(Error::StsOutOfRange, "the sum of weights must be 1");
-    return mixture;
-}
-
-void requireRoom(const std::vector<GaussianMixture>& layers)
-{
-    if (layers.size() >= (size_t)maxLayers)
-        CV_Error(Error::StsOutOfRange, format("a model must have at most %d layers", maxLayers));
-}
-
-void append(const GaussianMixture& mixture, std::vector<GaussianMixture>& layers)
-{
-    requireRoom(layers);
-    layers.push_back(checked(mixture));
+    layers.push_back(mixture);
 }
 
 class DisparityPredictionModelImpl CV_FINAL : public DisparityPredictionModel
@@ -155,34 +151,27 @@ Ptr<DisparityPredictionModel> DisparityPredictionModel::create() { return makePt
 
 Ptr<DisparityPredictionModel> DisparityPredictionModel::createPublished(int which)
 {
+    if (which != PUBLISHED_LARGE && which != PUBLISHED_SMALL)
+        CV_Error(Error::StsBadArg, "which must be PUBLISHED_LARGE or PUBLISHED_SMALL");
     // The mixtures of each model from layer 0 on: means, sigmas, weights
-    const struct
-    {
-        int which;
-        GaussianMixture mixture;
-    } layers[] = {
-        { PUBLISHED_LARGE,
-          { { -38.335031, 0.383928, 22.106222, 0.383928 },
-            { 19.879390, 0.629609, 26.036771, 0.629609 },
-            { 0.131236, 0.310989, 0.133314, 0.424460 } } },
-        { PUBLISHED_LARGE,
-          { { 0.452982, -21.247403, 11.133451, 10.101522 },
-            { 0.617757, 9.580585, 14.423702, 0.604170 },
-            { 0.747561, 0.100479, 0.126690, 0.025270 } } },
-        { PUBLISHED_LARGE,
-          { { 4.580204, 10.864041, -8.720563, 0.476397 },
-            { 1.036329, 4.002217, 4.461282, 0.637942 },
-            { 0.076437, 0.048733, 0.060785, 0.814045 } } },
-        { PUBLISHED_SMALL,
-          { { 1.049875, 0.176738, -5.205266 }, { 2.700242, 0.594091, 10.932382 }, { 0.123876, 0.705882, 0.170241 } } },
-        { PUBLISHED_SMALL, { { -0.838225, 0.174887 }, { 5.652754, 0.543740 }, { 0.218403, 0.781597 } } },
+    const std::vector<GaussianMixture> largeModel = {
+        { { -38.335031, 0.383928, 22.106222, 0.383928 },
+          { 19.879390, 0.629609, 26.036771, 0.629609 },
+          { 0.131236, 0.310989, 0.133314, 0.424460 } },
+        { { 0.452982, -21.247403, 11.133451, 10.101522 },
+          { 0.617757, 9.580585, 14.423702, 0.604170 },
+          { 0.747561, 0.100479, 0.126690, 0.025270 } },
+        { { 4.580204, 10.864041, -8.720563, 0.476397 },
+          { 1.036329, 4.002217, 4.461282, 0.637942 },
+          { 0.076437, 0.048733, 0.060785, 0.814045 } },
+    };
+    const std::vector<GaussianMixture> smallModel = {
+        { { 1.049875, 0.176738, -5.205266 }, { 2.700242, 0.594091, 10.932382 }, { 0.123876, 0.705882, 0.170241 } },
+        { { -0.838225, 0.174887 }, { 5.652754, 0.543740 }, { 0.218403, 0.781597 } },
     };
     const Ptr<DisparityPredictionModel> model = create();
-    for (const auto& layer : layers)
-        if (layer.which == which)
-            model->addLayer(layer.mixture.means, layer.mixture.sigmas, layer.mixture.weights);
-    if (model->empty())
-        CV_Error(Error::StsBadArg, "which must be PUBLISHED_LARGE or PUBLISHED_SMALL");
+    for (const GaussianMixture& mixture : which == PUBLISHED_LARGE ? largeModel : smallModel)
+        model->addLayer(mixture.means, mixture.sigmas, mixture.weights);
     return model;
 }
 

@@ -4,8 +4,6 @@
 #include "../precomp.hpp"
 #include "support_points.hpp"
 
-#include "../base/units.hpp"
-
 #include "opencv2/core/hal/intrin.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
-#include "opencv2/hdpstereo/stereo_rig.hpp"
 #include "calibration_check.hpp"
 
 #include <algorithm>
