@@ -19,19 +19,15 @@ HDP_TUNABLE(int, maxStep, 24, "1 / subpixelScale pixel",
             "between neighbours of one surface: less takes slopes for steps, more leaves steps out");
 HDP_TUNABLE(int, farFromSteps, 64, "pixels", "from the nearest step: wrong patches are smaller");
 HDP_TUNABLE(int, patchWindow, 21, "pixels of costs, cells of P",
-            "side of the squares that they are averaged over: a smaller one has noise or misses the middle of wrong "
-            "patches, a larger one sees beyond them");
+            "side of the squares of means: a smaller one misses the middle of wrong patches, a larger one sees beyond");
 HDP_TUNABLE(int, alternative, 2, "pixels",
-            "from the winner to the candidates it is compared with: nearer ones cost the same by slopes, farther ones "
-            "may be other matches");
+            "from the winner to its alternatives: nearer ones cost the same by slopes, others may be other matches");
 HDP_TUNABLE(float, hiddenShare, 0.5f, "share",
             "of the confidence that a pixel keeps which fails the left-right check: some of them are right");
 HDP_TUNABLE(int, medianWindow, 7, "cells",
-            "side of the squares that M is averaged over; a smaller one than those of costs, as the median changes "
-            "single pixels");
+            "side of the squares that M is a mean of; smaller than those of costs: the median changes single pixels");
 HDP_TUNABLE(int, maxDifference, 8, "pixels",
-            "that one from the layer above or the map before the median counts as: few pixels do not decide for a "
-            "window");
+            "that one from the layer above or from before the median counts as: few pixels do not decide for a window");
 HDP_TUNABLE(float, halvingDifference, 0.25f, "pixels", "a mean difference by which the confidence is halved");
 
 // Pixels
@@ -100,11 +96,8 @@ void squareDistances(const uchar* inColumns, int width, short* padded, short* sq
     }
 }
 
-/** Sums of the differences between two maps over windows of cells of 2 x 2 pixels, CV_32SC1, one per cell.
-@param map A disparity map.
-@param other Another one of its size, or that of the layer above.
-@param isUpper Whether it is that.
-@param side Of the windows, in cells. */
+//! Sums of the differences between two maps over windows of cells of 2 x 2 pixels, CV_32SC1, one per cell. isUpper:
+//! whether the other one is that of the layer above; side: of the windows, in cells
 Mat sumDifferences(const Mat& map, const Mat& other, bool isUpper, int side)
 {
     Mat cells((map.rows + 1) / 2, (map.cols + 1) / 2, CV_16U);

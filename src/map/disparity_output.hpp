@@ -48,15 +48,14 @@ minDisparity on, less those without data and what the left-right check and the s
 @param buffers Memory to work in; receives what was rejected.
 @param disparity CV_16SC1 or CV_32FC1 of the image's size; receives the result.
 @param mask Of the image, CV_8UC1, 0 where it has no data; empty: it has everywhere.
-@param ranges What each pixel may have: the nearest of that, or nothing if it may have none of the candidates. */
+@param ranges What each pixel may have: the nearest of that, or nothing. */
 CV_EXPORTS void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity,
                                 const Mat& mask = Mat(), const PixelRanges& ranges = PixelRanges());
 
 /** Why the pixels of a layer have their disparities, see HDPTreeMatcher::Reason: MATCHED, OCCLUDED or OUTSIDE, CV_8UC1.
-@param disparity Of the layer, CV_16UC1, a disparity map.
-@param plan Of the output: where the layer lies in the image.
-@param width Of the image.
-@param limits Of the layer: pixels without data hide none. */
+@param disparity,limits Of the layer: pixels without data hide none.
+@param plan Where the layer lies in the image.
+@param width Of the image. */
 CV_EXPORTS void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const CostLimits& limits,
                             Mat& reasons);
 

@@ -55,9 +55,7 @@ struct Place
 
 Place placeOf(float value, const float* ascending, int count)
 {
-    int first = 0;
-    while (first < count - 2 && value >= ascending[first + 1])
-        ++first;
+    const int first = (int)(std::upper_bound(ascending + 1, ascending + count - 1, value) - ascending) - 1;
     const float share = (value - ascending[first]) / (ascending[first + 1] - ascending[first]);
     return { first, std::min(std::max(share, 0.f), 1.f) };
 }

@@ -19,11 +19,10 @@ template <typename T> Mat checkLeftRight(const Mat& disparity, int maxDiff, int 
 {
     const int maxDifference = (int)std::min<int64>((int64)maxDiff * subpixelScale, INT_MAX);
     Mat visibility(disparity.size(), CV_8U);
-    parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
-        std::vector<int> columns(disparity.cols), nearest(disparity.cols + 1);
-        for (int y = rows.start; y < rows.end; ++y)
-            dispatched::visibilityRow(disparity.ptr<T>(y), disparity.cols, invalid, maxDifference, columns.data(),
-                                      nearest.data(), visibility.ptr(y));
+    const int width = disparity.cols;
+    parallelForRows(disparity.size(), std::vector<int>(2 * width + 1), [&](int y, std::vector<int>& memory) {
+        dispatched::visibilityRow(disparity.ptr<T>(y), width, invalid, maxDifference, memory.data(), &memory[width],
+                                  visibility.ptr(y));
     });
     return visibility;
 }

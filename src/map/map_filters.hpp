@@ -15,10 +15,8 @@ namespace cv { namespace stereo { namespace hdp {
 CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& filtered);
 
 /** Gives back what the median removed although it is more than noise: a pixel takes its disparity from before the
-median if this is clearly nearer, and if many of the pixels in the window around it, as far as that is inside the
-image, had about the same disparity.
-@param unfiltered The map before the median, CV_16UC1.
-@param disparity The map after the median. */
+median if this is clearly nearer, and if many of the pixels in the window around it had about the same disparity.
+@param unfiltered,disparity The maps before and after the median, CV_16UC1. */
 CV_EXPORTS void restoreThinStructures(const Mat& unfiltered, Mat& disparity);
 
 /** Moves the outlines of surfaces to the edges of the image: where disparities have a step, the pixels around vote for
@@ -31,19 +29,16 @@ pixel in the middle. The window has 16 columns, of which 7 are on the left of th
 image, and every third one of 13 rows, the nearest ones of the image. A pixel whose surface has fewer votes than the
 other one gets the nearest or the farthest disparity of the 3 x 3.
 
-In bars of up to 8 pixels the nearer surface keeps its pixels: these are fewer than those around, whatever they look
-like.
+In bars of up to 8 pixels the nearer surface keeps its pixels: these are fewer than those around.
 @param image CV_8UC1 or CV_8UC3.
-@param disparity CV_16UC1, a disparity map of the same size; USHRT_MAX has no vote, and what is voted
-beside it means nothing.
-@param voted Receives the map after the vote; another one. The same map if it has less than 16 columns. */
+@param disparity CV_16UC1, a disparity map; USHRT_MAX has no vote, and what is voted beside it means nothing.
+@param voted Receives another map, the same one if it has less than 16 columns. */
 CV_EXPORTS void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted);
 
 /** Smooths each surface by itself. The variance of a disparity's fraction is that of the noise over the sum of the
 squared slopes around it @cite Kanade1994Adaptive: a pixel with texture stays as it is, one without takes over what
-is on both sides of it. The precision of a pixel is the sum over 7 x 7 pixels of (slope / noise)^2 - 1/2, the slope
-being half the difference of the grey levels to the left and to the right, and the half what noise alone has; 1 at
-least.
+is on both sides of it. The precision of a pixel is the sum over 7 x 7 pixels of (slope / noise)^2 - 1/2, at least 1,
+the slope being half the difference of the grey levels on both sides, and the half what noise alone has.
 
 Each pixel becomes a mean of itself and pairs of opposite pixels, as in a sigma filter @cite Lee1983Sigma: those 1, 2
 and 4 pixels away in the row, if neither differs from it by more than a surface's do, so that slopes and outlines stay

@@ -16,9 +16,8 @@ const int side = BlockGrid::side;
 HDP_TUNABLE(int, linesThatTell, 32, "rows or columns", "that are looked at: more cost time and find the same blocks");
 HDP_TUNABLE(double, flatChange, 0.5, "grey levels", "maximum from pixel to pixel beside a step: more is texture");
 HDP_TUNABLE(int, maxStep, 20, "grey levels", "larger ones are edges of the scene, however strong the compression is");
-HDP_TUNABLE(
-    double, minRatio, 4.5, "mean of the steps inside blocks",
-    "of the mean step between them, up to which there are none: smoothing of weak ones costs more than it saves");
+HDP_TUNABLE(double, minRatio, 4.5, "mean of the steps inside blocks",
+            "of that between them, up to which there are none: smoothing weak ones costs more than it saves");
 HDP_TUNABLE(double, sureRatio, 6, "mean of the steps inside blocks", "of that from which they are surely blocks");
 HDP_TUNABLE(int, minSteps, 64, "steps", "between blocks, for a mean: fewer find blocks by chance");
 HDP_TUNABLE(int, smoothedSteps, 4, "mean steps between blocks",

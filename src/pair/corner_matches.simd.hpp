@@ -70,8 +70,7 @@ void structureTensors(const ushort* first, size_t step, int count, int* columns,
     }
 }
 
-// Levels count from the middle, so that all numbers below have 32 bits: |level| <= 512, and n^2 512^2 < 2^31 for n
-// pixels.
+// Levels count from the middle, so that all numbers have 32 bits: |level| <= 512, and n^2 512^2 < 2^31 for n pixels.
 void windowSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales)
 {
     const int side = CornerMatching::searchSide, pixels = side * side, width = count + side - 1;

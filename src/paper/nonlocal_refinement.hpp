@@ -10,8 +10,7 @@ namespace cv { namespace stereo { namespace hdp {
 
 /** The tree-based refinement of MST and ST @cite Yang2012MST: each disparity is replaced by the weighted median of the
 stable ones in its tree. A pixel whose own disparity is stable and, rounded, the winner keeps it.
-@param disparity CV_16UC1, a disparity map.
-@param stable CV_8UC1, not 0 where the disparity is stable.
+@param disparity,stable A disparity map, CV_16UC1, and where it is stable, CV_8UC1, not 0.
 @param gamma Of the similarity.
 @param subpixel Whether other winners get a fraction: that of the tip of a V through the costs of the winner and of the
 candidates beside it, which is exact where all stable disparities that matter are equal.

@@ -14,9 +14,8 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_TUNABLE(double, maxError, 1, "cells", "of the points near a motion: more follows what moves by itself");
-HDP_TUNABLE(
-    double, noMotion, 1.25, "cells",
-    "median distance of the points from a motion that is none: more warps by wrong ones, less loses fast cameras");
+HDP_TUNABLE(double, noMotion, 1.25, "cells",
+            "median distance of the points from one that is none: more warps by wrong ones, less loses fast cameras");
 
 // Exposure, on the coarsest level
 HDP_TUNABLE(double, sameGain, 0.15, "difference from 1", "that frames are compared without: scenes change by as much");
@@ -39,14 +38,6 @@ const int changeSide = 3, changeCells = changeSide * changeSide, contrastSide = 
           contrastCells = contrastSide * contrastSide;
 
 const int cell = FrameMemory::cell;
-
-void buildGrey(const Mat& left, Mat& halved, std::vector<Mat>& grey)
-{
-    halveImage(left, halved);
-    grey.resize(std::max<size_t>(grey.size(), 1));
-    halved.convertTo(grey[0], CV_8U, 1. / greyScale);
-    buildPyramid({ grey[0] }, trackingLevels(halved.size()), grey);
-}
 
 /** The pyramid of this frame as the exposure of the last one would show it: levels of the same mean and deviation, if
 they are not about the same. They are only compared, so it need not be exact. */
@@ -172,7 +163,10 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
     p.motion = CameraMotion();
     if (std::min(left.cols, left.rows) < cell)
         return;
-    buildGrey(left, scratch.halved, p.grey);
+    halveImage(left, scratch.halved);
+    p.grey.resize(std::max<size_t>(p.grey.size(), 1));
+    scratch.halved.convertTo(p.grey[0], CV_8U, 1. / greyScale);
+    buildPyramid({ p.grey[0] }, trackingLevels(scratch.halved.size()), p.grey);
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
     const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, scratch.exposed);

@@ -40,8 +40,7 @@ struct FramePrediction
 frame is the first one if nothing is remembered, at another size, with disparities of another key, and if it shows
 another scene.
 @param left The left image of the finest layer that is matched, see greyLevels().
-@param key What this layer's disparities will stand for.
-@param last What the last frame left. */
+@param key What this layer's disparities will stand for. */
 CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
                              FramePrediction& prediction);
 
