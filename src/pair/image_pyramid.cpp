@@ -13,13 +13,6 @@ namespace {
 
 HDP_DISPATCH(halveRow)
 
-template <typename T> void halve(const Mat& image, Mat& half)
-{
-    parallelForRows(half.size(), [&](int y) {
-        dispatched::halveRow(image.ptr<T>(2 * y), image.ptr<T>(2 * y + 1), half.cols, half.channels(), half.ptr<T>(y));
-    });
-}
-
 } // namespace
 
 int countLayers(Size size, int numLayers)
@@ -33,10 +26,14 @@ int countLayers(Size size, int numLayers)
 void halveImage(const Mat& image, Mat& half)
 {
     half.create(image.rows / 2, image.cols / 2, image.type());
-    if (image.depth() == CV_16U)
-        halve<ushort>(image, half);
-    else
-        halve<uchar>(image, half);
+    const int width = half.cols, channels = half.channels();
+    parallelForRows(half.size(), [&](int y) {
+        if (image.depth() == CV_16U)
+            dispatched::halveRow(image.ptr<ushort>(2 * y), image.ptr<ushort>(2 * y + 1), width, channels,
+                                 half.ptr<ushort>(y));
+        else
+            dispatched::halveRow(image.ptr(2 * y), image.ptr(2 * y + 1), width, channels, half.ptr(y));
+    });
 }
 
 void buildPyramid(const std::vector<Mat>& given, size_t layers, std::vector<Mat>& pyramid)

@@ -80,7 +80,7 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
 }
 
 //! Whether this frame shows another scene: on the coarsest level, about as much changed as there is contrast.
-bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const FramePrediction& p)
+bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const FrameWarp* warp)
 {
     const int level = (int)greyNow.size() - 1, side = cell << level;
     const Mat &before = last.grey[level], &now = greyNow[level];
@@ -90,12 +90,12 @@ bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const Frame
         for (int x = 0; x < now.cols; ++x)
         {
             Point at(x, y);
-            if (!p.motion.isStill)
+            if (warp)
             {
                 const Point centre(x * side + side / 2, y * side + side / 2);
-                if (!p.warp.isKnown(centre.x, centre.y))
+                if (!warp->isKnown(centre.x, centre.y))
                     continue;
-                at = p.warp(centre.x, centre.y) / side;
+                at = (*warp)(centre.x, centre.y) / side;
                 at = Point(std::min(at.x, before.cols - 1), std::min(at.y, before.rows - 1));
             }
             change += std::abs(now.ptr(y)[x] - before.ptr(at.y)[at.x]);
@@ -170,24 +170,20 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
     const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, scratch.exposed);
-    p.motion = findMotion(last, exposed, scratch.points);
+    const CameraMotion motion = findMotion(last, exposed, scratch.points);
     // Without common points, another exposure cannot be told from another scene: isCut() sees the levels as they are.
     const bool hasPoints = (int)scratch.points.size() >= CameraMotion::minPoints;
     const std::vector<Mat>& grey = hasPoints ? exposed : p.grey;
-    if (p.motion.error > noMotion * cell)
-    {
-        p.motion = CameraMotion();
+    if (motion.error > noMotion * cell)
         return;
-    }
-    p.backward = BackwardMotion(p.motion, key.minDisparity, (double)key.maxDisparity / subpixelScale);
-    if (!p.motion.isStill)
+    p.backward = BackwardMotion(motion, key.minDisparity, (double)key.maxDisparity / subpixelScale);
+    const FrameWarp* const warp = motion.isStill ? nullptr : &p.warp;
+    if (warp)
         findWarp(p.backward, last.disparity, p.warp);
-    if (isCut(last, grey, p))
-    {
-        p.motion = CameraMotion();
+    if (isCut(last, grey, warp))
         return;
-    }
-    findSources(last.grey[0], grey[0], p.motion.isStill ? nullptr : &p.warp, scratch, p.sources);
+    findSources(last.grey[0], grey[0], warp, scratch, p.sources);
+    p.motion = motion;
     p.verdict = CONTINUED;
 }
 
