@@ -5,7 +5,6 @@
 #include "disparity_output.hpp"
 
 #include "left_right_check.hpp"
-#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -58,15 +58,10 @@ CV_EXPORTS void smoothSurfaces(const Mat& levels, double noise, int mostDifferen
 //! What is around a row of voteAtEdges(), and how pixels vote
 struct VoteRows
 {
-    enum
-    {
-        columns = 16, // of the window
-        columnsBefore = 7,
-        rows = 5,
-        rowStep = 3,
-        barWidth = 8, // pixels, up to which a surface is a bar
-        maxChannels = 3
-    };
+    static const int columns = 16, columnsBefore = 7, rows = 5, rowStep = 3; // of the window
+    static const int barWidth = 8;                                           // pixels, up to which a surface is a bar
+    static const int maxChannels = 3;
+
     const uchar* colour[maxChannels][rows];      // of the window
     const ushort* disparities[2 * barWidth + 1]; // of the rows up to barWidth away
     int channels;                                // of the colours: 1 or maxChannels

@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
-#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 #include "disparity_ranges.hpp"
 

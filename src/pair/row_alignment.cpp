@@ -4,7 +4,6 @@
 #include "../precomp.hpp"
 #include "row_alignment.hpp"
 
-#include "corner_matches.hpp"
 #include "image_levels.hpp"
 #include "../base/robust_fit.hpp"
 #include "../base/vectorized.hpp"

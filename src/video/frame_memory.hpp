@@ -50,13 +50,10 @@ struct FrameMemory
     bool isEmpty() const { return frames == 0; }
     void clear() { frames = 0; } // keeps the memory
 
-    enum
-    {
-        cell = 2, // side of the pixels of grey's finest level, in pixels of the layer
-        detailBits = 4,
-        countMask = (1 << detailBits) - 1,
-        scale = subpixelScale << detailBits // of disparities with all their bits: means over frames need them
-    };
+    static const int cell = 2; // side of the pixels of grey's finest level, in pixels of the layer
+    static const int detailBits = 4, countMask = (1 << detailBits) - 1;
+    static const int scale = subpixelScale << detailBits; // of disparities with all their bits, for means over frames
+
     //! detail of a disparity in 1 / scale pixel, rounded for the map by adding half a unit of that
     static CV_ALWAYS_INLINE int detailOf(int rounded, int count)
     {

@@ -4,7 +4,6 @@
 #include "../precomp.hpp"
 #include "temporal_prediction.hpp"
 
-#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 #include "../base/window_sums.hpp"
 #include "../pair/image_pyramid.hpp"
