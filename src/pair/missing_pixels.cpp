@@ -19,11 +19,7 @@ HDP_TUNABLE(int, pixelsPerOutlier, 1024, "pixels",
 //! A mask of 0 and 255 from that of the caller, and where the image has numbers
 Mat maskOf(const Mat& image, const Mat& given)
 {
-    Mat mask;
-    if (given.empty())
-        mask = Mat(image.size(), CV_8U, Scalar(255));
-    else
-        compare(given, Scalar(0), mask, CMP_NE);
+    Mat mask = given.empty() ? Mat(image.size(), CV_8U, Scalar(255)) : Mat(given != 0);
     if (image.depth() == CV_32F)
         mask &= (image - image) == 0; // neither infinite nor NaN
     return mask;

@@ -21,18 +21,17 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
                    PairFindings& findings)
 {
     std::vector<Mat> left, right;
-    if (isGrey(images))
-        for (const LayerImages& layer : images)
-        {
-            left.push_back(layer.left);
-            right.push_back(layer.right);
-        }
-    else
+    for (const LayerImages& layer : images)
+    {
+        left.push_back(layer.left);
+        right.push_back(layer.right);
+    }
+    if (!isGrey(images))
     {
         greyLevels(images[0].left, 8, buffers.leftLevels);
         greyLevels(images[0].right, 8, buffers.rightLevels);
-        left.push_back(buffers.leftLevels);
-        right.push_back(buffers.rightLevels);
+        left.assign(1, buffers.leftLevels);
+        right.assign(1, buffers.rightLevels);
     }
     matchCoarsely(left, right, images[0].masks, Range(0, plan.numDisparities), buffers.coarse);
     estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings);
