@@ -105,7 +105,8 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
 
 void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled)
 {
-    add(2 * intervals, Scalar(0, 1), doubled);
+    add(intervals, intervals, doubled);
+    add(doubled, Scalar(0, 1), doubled);
     min(doubled, candidates - 1, doubled);
 }
 
