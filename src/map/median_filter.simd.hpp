@@ -94,7 +94,6 @@ inline short medianOfSorted(const short (&w)[7][7])
     return Forgetful<12>::median(kept, rest);
 }
 
-//! Sorts each column of the rows.
 template <int size> void sortColumns(const ushort* const* rows, const Range& columns, short* const* sorted)
 {
     HDP_VECTORIZED for (int x = columns.start; x < columns.end; ++x)

@@ -20,7 +20,6 @@ struct PixelRanges
 /** Ranges as the caller gives them, for each pixel of the image. Those of a coarser map hold for all pixels that are
 nearest to one of it; what is no number limits nothing.
 @param smallest,largest CV_32FC1, in pixels, of the images' size or coarser.
-@param size Of the images.
 @param disparities The first and the last one of the map, in pixels; ranges have no others.
 @param isWhole Whether ranges have only whole disparities.
 @param ranges Receives them; largest is less than smallest where there is nothing in one. */
@@ -29,7 +28,6 @@ CV_EXPORTS void expandRanges(const Mat& smallest, const Mat& largest, Size size,
 
 /** The candidates of each pixel of each layer: those that one of the pixels of the image that it stands for may have,
 or the nearest one, if these are none.
-@param ranges Of the image.
 @param minDisparity What candidate 0 stands for.
 @param extension Columns added on the left.
 @param numDisparities,intervals Of each layer; receives a DisparityInterval per pixel. */

@@ -25,10 +25,8 @@ void halveIntervals(const ushort* above, const ushort* below, int width, ushort*
 //! From 1 / subpixelScale pixel of the image to candidates of a layer, of which there is none behind the last one
 void toCandidates(const ushort* units, int width, int layer, int last, ushort* intervals);
 
-//! See intersectIntervals().
 void intersectIntervals(const ushort* intervals, int width, ushort* others);
 
-//! See moveIntoIntervals().
 void moveIntoIntervals(const ushort* intervals, int width, ushort* disparity);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY

@@ -32,8 +32,7 @@ A brightness is 1 to 4: 2 or 4 doubles levels once or twice; what is brighter th
 last time, levels below a knee alone, the share b - 1 of white for b < 2 and b / 2 - 1 for b > 2; those above it are on
 the line from there to white. So the levels depend on the brightness without a jump.
 @param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
-@param bits See bitsInUse().
-@param grey Receives CV_16UC1. */
+@param bits See bitsInUse(). The levels are CV_16UC1. */
 CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey, double brightness = 1);
 
 /** What a dark pair is brightened by, see greyLevels(). Its levels are doubled, once or twice, if not more than one

@@ -9,7 +9,6 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! Gives a row of grey levels the light of a model.
 void relightRow(const RowLight& light, int width, ushort* levels);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY

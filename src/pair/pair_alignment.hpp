@@ -55,8 +55,7 @@ struct AlignmentBuffers
 /** A Gaussian of half a pixel, over 3 x 3 pixels, for the images of a noisy pair. Of what a row or a column is mixed
 of, 27 / 256 are a pixel's neighbour on either side; the sum is rounded once. cv::GaussianBlur() does the same to
 numbers of 16 bits in several times as long.
-@param image CV_16UC1, values up to 1023; its border is repeated.
-@param smoothed Receives another image. */
+@param image CV_16UC1, values up to 1023; its border is repeated. */
 CV_EXPORTS void smoothNoise(const Mat& image, Mat& smoothed);
 
 /** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it, and

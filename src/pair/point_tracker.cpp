@@ -58,7 +58,6 @@ int texture(const Mat& image, Point at)
     return std::min(sumX, sumY);
 }
 
-//! The place on a level of the pyramid
 Point onLevel(Point place, int level) { return Point(place.x >> level, place.y >> level); }
 
 //! The pixel of a level with the minimum of the difference, among those up to radius pixels away from a guess

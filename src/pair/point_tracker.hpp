@@ -22,7 +22,6 @@ struct TrackedPoint
 };
 
 /** The best pixel of each cell of a grid, row by row; the first one of several.
-@param grid Number of cells.
 @param cell,step Side of a cell, and from a candidate to the next, in pixels.
 @param minScore A cell whose pixels have no more has none.
 @param score Of a pixel; called by several threads. */

@@ -95,7 +95,6 @@ MeanSquares meanSquares(const RowFit& fit, Size size)
     return means;
 }
 
-//! The maximum move at a corner of the image
 double maxMoveAtCorners(const RowModel& model, Size size)
 {
     double max = 0;

@@ -48,7 +48,6 @@ struct LayerNoise
     double deviation; // standard deviation, in levels of 255
     int layer;        // that it was measured in
 
-    //! The deviation in another layer
     CV_EXPORTS double ofLayer(int other) const;
 };
 

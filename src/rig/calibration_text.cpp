@@ -54,7 +54,6 @@ std::string inUpperCase(std::string text)
     return text;
 }
 
-//! Reads fields line by line.
 class FieldReader
 {
 public:

@@ -32,9 +32,7 @@ public:
 
     // These throw an exception with the file and the path if that is not there, or something else.
 
-    //! One word
     std::string word(const std::string& path) const;
-    //! One finite number
     double number(const std::string& path) const { return numbers(path, 1)[0]; }
     //! Finite numbers, of this count unless it is 0
     std::vector<double> numbers(const std::string& path, size_t count) const;
