@@ -6,6 +6,7 @@
 #include "calibration_text.hpp"
 
 #include <cmath>
+#include <fstream>
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -311,6 +312,20 @@ StereoCalibration readKind(const Texts& texts, Size imageSize, double unit)
              "'" + texts[0].file() + "' is no calibration of OpenCV, ROS, Kalibr, EuRoC or the ZED that is known");
 }
 
+CalibrationText readText(const std::string& file)
+{
+    const size_t maxBytes = 1 << 20; // calibrations have a few thousand
+    std::ifstream stream(file.c_str(), std::ios::binary);
+    std::string text(maxBytes + 1, '\0');
+    stream.read(&text[0], (std::streamsize)text.size());
+    text.resize((size_t)std::max<std::streamsize>(stream.gcount(), 0));
+    if (text.empty())
+        CV_Error(Error::StsObjectNotFound, "cannot read the calibration '" + file + "'");
+    if (text.size() > maxBytes)
+        CV_Error(Error::StsParseError, "'" + file + "' is too large for a calibration");
+    return CalibrationText(file, text);
+}
+
 } // namespace
 
 StereoCalibration toCalibration(const Texts& texts, Size size, double unit)
@@ -340,8 +355,8 @@ cv::stereo::StereoCalibration cv::stereo::readStereoCalibration(const String& fi
         CV_Error(Error::StsOutOfRange, "imageSize must be from 1 x 1 to 32766 x 32766, or not given");
     if (!(unit > 0 && unit <= 1e6))
         CV_Error(Error::StsOutOfRange, "unit must be above 0, and not above 1000000");
-    std::vector<hdp::CalibrationText> texts(1, hdp::readCalibrationText(first));
+    std::vector<hdp::CalibrationText> texts(1, hdp::readText(first));
     if (!second.empty())
-        texts.push_back(hdp::readCalibrationText(second));
+        texts.push_back(hdp::readText(second));
     return hdp::toCalibration(texts, imageSize, unit);
 }

@@ -7,15 +7,12 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <locale>
 #include <sstream>
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
-
-const size_t maxBytes = 1 << 20; // calibrations have a few thousand
 
 std::string trimmed(const std::string& text)
 {
@@ -112,7 +109,7 @@ private:
     {
         if (line.find('\0') != std::string::npos)
             fail("has a byte 0: this is no text");
-        const std::string content = trimmed(withoutComment(line, "#"));
+        std::string content = trimmed(withoutComment(line, "#"));
         if (content.empty() || content == "---" || content == "..." || line[0] == '%')
             return;
         if (depth_ > 0)
@@ -120,14 +117,22 @@ private:
         const size_t indentation = line.find_first_not_of(' ');
         if (line[indentation] == '\t')
             fail("is indented by a tab: YAML wants blanks");
+        // An item may be indented as its key is.
+        const size_t outside = indentation + (isItem(content) ? 1 : 0);
+        while (!parents_.empty() && parents_.back().indentation >= outside)
+            parents_.pop_back();
         if (isItem(content))
-            return readItem(indentation, content);
-
+        {
+            if (parents_.empty())
+                fail("is an item of a list without a name");
+            path_ = parents_.back().path;
+            while (isItem(content))
+                content = trimmed(content.substr(1));
+            return readValue(content);
+        }
         const size_t colon = std::min((content + " ").find(": "), content.find(":\t"));
         if (colon == std::string::npos || colon == 0)
             fail("is neither 'key: value' nor an item of a list");
-        while (!parents_.empty() && parents_.back().indentation >= indentation)
-            parents_.pop_back();
         path_ = (parents_.empty() ? "" : parents_.back().path + "/") + withoutQuotes(trimmed(content.substr(0, colon)));
         addField(path_, {});
         parents_.push_back({ indentation, path_ });
@@ -135,19 +140,6 @@ private:
     }
 
     static bool isItem(const std::string& content) { return content == "-" || content.compare(0, 2, "- ") == 0; }
-
-    //! It may be indented as its key is.
-    void readItem(size_t indentation, std::string content)
-    {
-        while (!parents_.empty() && parents_.back().indentation > indentation)
-            parents_.pop_back();
-        if (parents_.empty())
-            fail("is an item of a list without a name");
-        path_ = parents_.back().path;
-        while (isItem(content))
-            content = trimmed(content.substr(1));
-        readValue(content);
-    }
 
     //! Adds a value to the field of path_.
     void readValue(std::string value)
@@ -250,19 +242,6 @@ std::vector<double> CalibrationText::numbers(const std::string& path, size_t cou
         values.push_back(value);
     }
     return values;
-}
-
-CalibrationText readCalibrationText(const std::string& file)
-{
-    std::ifstream stream(file.c_str(), std::ios::binary);
-    std::string text(maxBytes + 1, '\0');
-    stream.read(&text[0], (std::streamsize)text.size());
-    text.resize((size_t)std::max<std::streamsize>(stream.gcount(), 0));
-    if (text.empty())
-        CV_Error(Error::StsObjectNotFound, "cannot read the calibration '" + file + "'");
-    if (text.size() > maxBytes)
-        CV_Error(Error::StsParseError, "'" + file + "' is too large for a calibration");
-    return CalibrationText(file, text);
 }
 
 }}} // namespace cv::stereo::hdp

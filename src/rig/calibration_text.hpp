@@ -45,9 +45,6 @@ private:
     Fields fields_;
 };
 
-//! Throws if the file cannot be read, or is too large for a calibration.
-CalibrationText readCalibrationText(const std::string& file);
-
 //! readStereoCalibration() of one or two texts; size: of the raw images
 CV_EXPORTS StereoCalibration toCalibration(const std::vector<CalibrationText>& texts, Size size, double unit);
 
