@@ -16,24 +16,16 @@ void visibilityRow(const T* disparity, int width, int invalid, int maxDifference
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-namespace {
-
-//! As cvRound(disparity / 16.), for vectors: of two that are equally near the even one
-inline int roundedDisparity(int disparity)
-{
-    static_assert(subpixelScale == 1 << 4, "divided by a shift, so that negative ones are rounded as others");
-    return (disparity + subpixelScale / 2 - 1 + ((disparity >> 4) & 1)) >> 4;
-}
-
-} // namespace
-
 template <typename T>
 void visibilityRow(const T* disparity, int width, int invalid, int maxDifference, int* columns, int* nearest,
                    uchar* visibility)
 {
+    static_assert(subpixelScale == 1 << 4, "divided by a shift, so that negative ones are rounded as others");
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        const int column = x + 1 - roundedDisparity(disparity[x]);
+        // As cvRound(disparity / 16.), for vectors: of two that are equally near the even one
+        const int own = disparity[x], rounded = (own + subpixelScale / 2 - 1 + ((own >> 4) & 1)) >> 4;
+        const int column = x + 1 - rounded;
         columns[x] = ((column > 0) & (column <= width) & (disparity[x] != invalid)) ? column : 0;
     }
     testVisibility(disparity, columns, width, width, maxDifference, nearest, visibility);

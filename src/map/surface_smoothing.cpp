@@ -29,26 +29,6 @@ HDP_DISPATCH(squareSlopes)
 HDP_DISPATCH(precisionRow)
 HDP_DISPATCH(smoothRow)
 
-SlopeScale slopeScale(double noise)
-{
-    // The difference of the pixels beside one is twice the slope.
-    const double change = 2. * greyScale * noise / SlopeScale::perNoise; // that is counted as one
-    return { saturate_cast<ushort>(cvFloor(SlopeScale::most * change)), saturate_cast<ushort>(cvFloor(256 / change)) };
-}
-
-SmoothingPairs pairsAt(int distance, ptrdiff_t step, int mostDifference)
-{
-    SmoothingPairs pairs;
-    pairs.step = step * distance;
-    for (ushort& limit : pairs.limits)
-    {
-        limit = (ushort)std::max(cvRound((double)mostWeight / (distance * distance)), 1);
-        distance *= 2;
-    }
-    pairs.like = (ushort)mostDifference;
-    return pairs;
-}
-
 //! A stripe of a map, and what its rows depend on: memory of a thread
 class SmoothingStripe
 {
@@ -101,7 +81,14 @@ private:
 
     void pass(int distance, ptrdiff_t step, const Range& rows, const Mat& from, Mat& to) const
     {
-        const SmoothingPairs pairs = pairsAt(distance, step, mostDifference_);
+        SmoothingPairs pairs;
+        pairs.step = step * distance;
+        pairs.like = (ushort)mostDifference_;
+        for (ushort& limit : pairs.limits)
+        {
+            limit = (ushort)std::max(cvRound((double)mostWeight / (distance * distance)), 1);
+            distance *= 2;
+        }
         for (int y = rows.start; y < rows.end; ++y)
             dispatched::smoothRow(from.ptr<ushort>(y), precisions_.ptr<ushort>(y), from.cols, pairs, to.ptr<ushort>(y));
     }
@@ -119,7 +106,10 @@ private:
 void smoothSurfaces(const Mat& levels, double noise, int mostDifference, const Mat& disparity, Mat& smoothed)
 {
     const int rows = disparity.rows;
-    const SlopeScale scale = slopeScale(std::max(noise, +leastNoise));
+    // The difference of the pixels beside one is twice the slope: so much of it is counted as one.
+    const double change = 2. * greyScale * std::max(noise, +leastNoise) / SlopeScale::perNoise;
+    const SlopeScale scale = { saturate_cast<ushort>(cvFloor(SlopeScale::most * change)),
+                               saturate_cast<ushort>(cvFloor(256 / change)) };
     smoothed.create(disparity.size(), CV_16U);
     parallel_for_(Range(0, (rows + stripe - 1) / stripe), [&](const Range& range) {
         SmoothingStripe own(levels, scale, mostDifference, disparity);

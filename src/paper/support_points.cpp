@@ -25,12 +25,6 @@ const int maxLeftRightDifference = 2;
 const int maxNeighbourDifference = 4;
 const int minSupporters = 4;
 
-//! The L1 distance of two descriptors
-inline int distanceOf(const uchar* a, const uchar* b)
-{
-    return (int)v_reduce_sad(v_load(a), v_load(b)); // of 16 bytes
-}
-
 //! The descriptors of the pixels of an image that are far enough from its border, in even rows: those of points and
 //! their corners.
 void describe(const Mat& grey, SupportPointBuffers& buffers, Mat& descriptors)
@@ -99,7 +93,7 @@ struct PointMatcher
         {
             int sum = 0;
             for (int i = 0; i < 4; ++i)
-                sum += distanceOf(own[i], others[i] + d * next);
+                sum += (int)v_reduce_sad(v_load(own[i]), v_load(others[i] + d * next)); // of 16 bytes
             if (sum < lowest)
             {
                 lowest = sum;
