@@ -154,16 +154,6 @@ void compareAlternatives(const Mat& disparity, int numDisparities, const Matchin
     sumOverWindows(costs[0] + costs[1], patchWindow, CV_32S, others);
 }
 
-//! What the left-right check does not hide, and matches what has data: not 0
-Mat visiblePixels(const Mat& disparity, const CostLimits& limits)
-{
-    Mat visible;
-    findStable(limits.dropMissing(disparity), visible);
-    for (int y = 0; y < visible.rows && !limits.isEmpty(); ++y)
-        limits.hideUnmatched(y, disparity.ptr<ushort>(y), visible.ptr(y));
-    return visible;
-}
-
 void takeSquareRoots(std::vector<float>& values)
 {
     for (size_t i = 0; i < values.size(); i += 4)
@@ -175,8 +165,12 @@ void takeSquareRoots(std::vector<float>& values)
 void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const MatchingCost& cost, Mat& confidence)
 {
     const Mat& disparity = maps.disparity;
-    const Mat inColumns = distancesInColumns(disparity), visible = visiblePixels(disparity, cost.limits());
-    Mat own, others;
+    const CostLimits& limits = cost.limits();
+    const Mat inColumns = distancesInColumns(disparity);
+    Mat own, others, visible; // which the left-right check does not hide, and whose matches have data
+    findStable(limits.dropMissing(disparity), visible);
+    for (int y = 0; y < visible.rows && !limits.isEmpty(); ++y)
+        limits.hideUnmatched(y, disparity.ptr<ushort>(y), visible.ptr(y));
     compareAlternatives(disparity, numDisparities, cost, own, others);
     const Mat byMedian = sumDifferences(disparity, maps.unfiltered, false, medianWindow);
     const Mat fromUpper = maps.upper.empty() ? Mat(Mat::zeros(byMedian.size(), CV_32S))

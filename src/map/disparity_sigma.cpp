@@ -60,33 +60,27 @@ Place placeOf(float value, const float* ascending, int count)
     return { first, std::min(std::max(share, 0.f), 1.f) };
 }
 
-//! The difference of a row's levels from those matched, times unit, its square, and that of the difference of the
-//! levels beside
-void compareRow(const CensusCost& cost, const ushort* disparity, int y, int width, int* difference, int* square,
-                int* gradient)
-{
-    const uchar* const left = cost.leftPixels(y) + CensusCost::greyByte;
-    const uchar* const right = cost.rightPlane(cost.planes(), y) + width - 1;
-    for (int x = 0; x < width; ++x)
-    {
-        const int whole = disparity[x] / unit, fraction = disparity[x] % unit;
-        const uchar* const matched = right - x + whole;
-        difference[x] = unit * left[4 * x] - (unit - fraction) * matched[0] - fraction * matched[1];
-        square[x] = difference[x] * difference[x];
-        const int beside = left[4 * std::min(x + 1, width - 1)] - left[4 * std::max(x - 1, 0)];
-        gradient[x] = beside * beside;
-    }
-}
-
 } // namespace
 
 void levelMismatch(const Mat& disparity, const CensusCost& cost, Mat& mismatch)
 {
     const Size size = disparity.size();
     Mat differences(size, CV_32S), squares(size, CV_32S), gradients(size, CV_32S);
+    const int width = size.width;
     parallelForRows(size, [&](int y) {
-        compareRow(cost, disparity.ptr<ushort>(y), y, size.width, differences.ptr<int>(y), squares.ptr<int>(y),
-                   gradients.ptr<int>(y));
+        const uchar* const left = cost.leftPixels(y) + CensusCost::greyByte;
+        const uchar* const right = cost.rightPlane(cost.planes(), y) + width - 1;
+        const ushort* const row = disparity.ptr<ushort>(y);
+        int* const difference = differences.ptr<int>(y); // times unit
+        for (int x = 0; x < width; ++x)
+        {
+            const int whole = row[x] / unit, fraction = row[x] % unit;
+            const uchar* const matched = right - x + whole;
+            difference[x] = unit * left[4 * x] - (unit - fraction) * matched[0] - fraction * matched[1];
+            squares.ptr<int>(y)[x] = difference[x] * difference[x];
+            const int beside = left[4 * std::min(x + 1, width - 1)] - left[4 * std::max(x - 1, 0)];
+            gradients.ptr<int>(y)[x] = beside * beside;
+        }
     });
     for (Mat* values : { &differences, &squares, &gradients })
         sumOverWindows(values->clone(), window, CV_32S, *values);

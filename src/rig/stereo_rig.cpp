@@ -41,20 +41,6 @@ double maxUnfoldedAngle(const Mat& distortion, bool isFisheye)
     return 899 * step;
 }
 
-//! Of each disparity in pixels, CV_32FC1; 0 if there is none
-Mat depthOf(const Mat& disparity, double focalTimesBaseline, double smallest)
-{
-    Mat depth(disparity.size(), CV_32F);
-    for (int y = 0; y < disparity.rows; ++y)
-        for (int x = 0; x < disparity.cols; ++x)
-        {
-            const double pixels = disparity.at<float>(y, x);
-            const bool isKnown = pixels > 0 && pixels >= smallest && pixels <= std::numeric_limits<float>::max();
-            depth.at<float>(y, x) = isKnown ? (float)(focalTimesBaseline / pixels) : 0;
-        }
-    return depth;
-}
-
 class StereoRigImpl CV_FINAL : public StereoRig
 {
 public:
@@ -98,9 +84,14 @@ public:
             CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1");
         if (depthType != CV_32F && depthType != CV_16U)
             CV_Error(Error::StsBadArg, "depthType must be CV_32F or CV_16U");
-        Mat pixels;
-        disparity.convertTo(pixels, CV_32F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
-        const Mat metres = depthOf(pixels, focalLength_ * baseline_, minDisparity);
+        Mat metres; // from disparities in pixels; 0 where there is none
+        disparity.convertTo(metres, CV_32F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
+        for (float& value : Mat_<float>(metres))
+        {
+            const double pixels = value;
+            const bool isKnown = pixels > 0 && pixels >= minDisparity && pixels <= std::numeric_limits<float>::max();
+            value = isKnown ? (float)(focalLength_ * baseline_ / pixels) : 0;
+        }
         metres.convertTo(depth, depthType, depthType == CV_16U ? 1000 : 1);
         if (depthType == CV_16U)
             depth.setTo(Scalar(0), metres > 65.535);
