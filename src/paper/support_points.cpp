@@ -78,7 +78,8 @@ struct PointMatcher
         if (x < margin || x >= size.width - margin || y < margin || y >= size.height - margin)
             return -1;
         const int last = std::min(numDisparities - 1, side == 0 ? x - margin : size.width - 1 - margin - x);
-        if (last < minRange || !hasTexture(descriptor(side, x, y)))
+        const int texture = (int)v_reduce_sad(v_load(descriptor(side, x, y)), v_setall_u8(128)); // 128: no gradient
+        if (last < minRange || texture < minTexture)
             return -1;
         const uchar *own[4], *others[4];
         for (int i = 0; i < 4; ++i)
@@ -103,11 +104,6 @@ struct PointMatcher
                 second = std::min(second, sum);
         }
         return second < INT_MAX && (float)lowest < uniqueness * (float)second ? best : -1;
-    }
-
-    static bool hasTexture(const uchar* descriptor)
-    {
-        return (int)v_reduce_sad(v_load(descriptor), v_setall_u8(128)) >= minTexture; // 128: no gradient
     }
 };
 
