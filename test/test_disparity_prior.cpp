@@ -57,6 +57,86 @@ TEST(HDPStereo_SlowDisparityPrior, is_believed_as_far_as_the_images_do_not_contr
     }
 }
 
+//! Textured boxes before a wall at 6, with texture or without
+SyntheticPair boxesBeforeWall(int seed, bool isBare)
+{
+    const Size size(320, 200);
+    RNG rng(seed);
+    const auto texture = [&](double contrast) {
+        Mat image(size, CV_32F);
+        rng.fill(image, RNG::NORMAL, 0, 1);
+        cv::GaussianBlur(image, image, Size(), 1.5);
+        return Mat(image * contrast + 120);
+    };
+    SyntheticPair pair;
+    pair.left = texture(isBare ? 0 : 200);
+    pair.right.create(size, CV_32F);
+    pair.left.copyTo(pair.right);
+    Mat shifted = pair.right.colRange(0, size.width - 6);
+    pair.left.colRange(6, size.width).copyTo(shifted);
+    pair.truth = Mat(size, CV_32F, Scalar(6));
+    for (int i = 0; i < 3; ++i)
+    {
+        const Rect box(70 + 80 * i, rng.uniform(20, 100), rng.uniform(25, 50), rng.uniform(40, 80));
+        const int disparity = rng.uniform(15, 35);
+        const Mat front = texture(200)(box);
+        front.copyTo(pair.left(box));
+        front.copyTo(pair.right(box - Point(disparity, 0)));
+        pair.truth(box).setTo(disparity);
+    }
+    for (Mat* image : { &pair.left, &pair.right })
+    {
+        Mat noise(size, CV_32F);
+        rng.fill(noise, RNG::NORMAL, 0, 1.5);
+        *image += noise;
+        image->convertTo(*image, CV_8U);
+    }
+    return pair;
+}
+
+TEST(HDPStereo_DisparityPrior, a_bare_wall)
+{
+    const Mat all(Size(320, 200), CV_8U, Scalar(255));
+    for (const System& preset : presetsWithPrior)
+    {
+        double none = 0, sparse = 0, dense = 0;
+        for (int seed = 1; seed <= 3; ++seed)
+        {
+            const SyntheticPair pair = boxesBeforeWall(seed, true);
+            const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 48);
+            const auto errors = [&] { return badPixels(match(*matcher, pair.left, pair.right), pair.truth, all, 1); };
+            RNG rng(seed);
+            none += errors();
+            matcher->setPriorDisparity(makePrior(rng, pair.truth, 300, 0, 0), 0.1);
+            sparse += errors();
+            matcher->setPriorDisparity(pair.truth, 0.1);
+            dense += errors();
+        }
+        EXPECT_LT(sparse, 0.3 * none) << preset.name;
+        EXPECT_LT(dense, 0.3 * none) << preset.name;
+    }
+}
+
+TEST(HDPStereo_DisparityPrior, of_a_scene_to_which_boxes_were_added)
+{
+    const Mat all(Size(320, 200), CV_8U, Scalar(255));
+    for (const System& preset : presetsWithPrior)
+        for (const int points : { 500, 64000 })
+        {
+            double none = 0, old = 0;
+            for (int seed = 1; seed <= 3; ++seed)
+            {
+                const SyntheticPair pair = boxesBeforeWall(seed, false);
+                const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 48);
+                RNG rng(seed);
+                none += badPixels(match(*matcher, pair.left, pair.right), pair.truth, all, 1);
+                matcher->setPriorDisparity(makePrior(rng, Mat(all.size(), CV_32F, Scalar(6)), points, 0, 0), 0.5);
+                old += badPixels(match(*matcher, pair.left, pair.right), pair.truth, all, 1);
+            }
+            EXPECT_LE(old, 1.5 * none) << preset.name << ", " << points << " points";
+        }
+}
+
 TEST(HDPStereo_DisparityPrior, nothing_known_changes_nothing)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(200, 120), 40, 3);

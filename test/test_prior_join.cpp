@@ -21,7 +21,8 @@ public:
         : points_(points), guide_(guide), cost_(cost), winners_(winners), unit_(8. / (1 << layer))
     {
         const int enough = (int)std::ceil(std::sqrt(6. * winners.total() / points.size()));
-        reach_ = std::max(std::min(48 >> layer, enough), std::min(4, std::max(enough, 2)));
+        farthest_ = std::max(48 >> layer, 4);
+        reach_ = std::min(farthest_, std::max(enough, 2));
         for (const PriorPoint& point : points)
             agrees_.push_back(areAlike(winnerAt(point.place), point.disparity, point.sigma, 0));
         for (size_t i = 0; i < points.size(); ++i)
@@ -30,7 +31,10 @@ public:
             excess_.push_back(excessOf(points[i]));
         }
         for (size_t i = 0; i < points.size(); ++i)
-            counts_.push_back(isOfTheScene(i) && (agrees_[i] || (claims_[i] && excess_[i] <= 25 * 7 && isBelieved(i))));
+        {
+            isContradicted_.push_back(isOfTheScene(i) && claims_[i] && (excess_[i] > 25 * 7 || meanExcess(i) > 3.5));
+            speaks_.push_back(isOfTheScene(i) && (agrees_[i] || claims_[i]));
+        }
     }
 
     Mat join(int maxDisparity) const
@@ -102,7 +106,7 @@ private:
         return costAround(flat, point.place.x, point.place.y) - costAround(winners_, point.place.x, point.place.y);
     }
 
-    //! The points in 7 x 7 squares of the reach
+    //! The points in squares of the reach, of which there are as many as lie within three times the farthest one
     std::vector<size_t> squaresAround(size_t index) const
     {
         std::vector<size_t> found;
@@ -110,14 +114,14 @@ private:
         for (size_t i = 0; i < points_.size(); ++i)
         {
             const Point other = points_[i].place / reach_;
-            if (std::max(std::abs(other.x - own.x), std::abs(other.y - own.y)) <= 3)
+            if (std::max(std::abs(other.x - own.x), std::abs(other.y - own.y)) <= 3 * farthest_ / reach_)
                 found.push_back(i);
         }
         return found;
     }
 
-    //! In the mean of all claims around
-    bool isBelieved(size_t index) const
+    //! Per pixel, of all claims around; none: infinite
+    double meanExcess(size_t index) const
     {
         double excess = 0;
         int claims = 0;
@@ -126,14 +130,25 @@ private:
             excess += claims_[i] ? excess_[i] : 0;
             claims += claims_[i];
         }
-        return excess <= 25 * 3.5 * claims;
+        return claims == 0 ? DBL_MAX : excess / (25 * claims);
     }
 
     bool isOfTheScene(size_t index) const
     {
         const std::vector<size_t> all = squaresAround(index);
         const auto agreeing = std::count_if(all.begin(), all.end(), [&](size_t i) { return agrees_[i]; });
-        return 5 * agreeing >= 2 * (int)all.size();
+        return 5 * agreeing >= 2 * (int)all.size() || (isRightInTheMain() && meanExcess(index) < 2);
+    }
+
+    bool isRightInTheMain() const
+    {
+        int agreeing = 0, contradicted = 0;
+        for (size_t i = 0; i < points_.size(); ++i)
+        {
+            agreeing += agrees_[i];
+            contradicted += claims_[i] && excess_[i] > 25 * 7;
+        }
+        return 4 * contradicted <= agreeing;
     }
 
     //! By a third of the points around, which may be wrong themselves
@@ -152,22 +167,28 @@ private:
 
     void propose(Point place, int maxDisparity, ushort& proposed, float& limit) const
     {
-        const std::vector<Voice> voices = around(place, counts_);
+        std::vector<Voice> voices = around(place, speaks_);
         const float winner = winnerAt(place);
-        double speaksFor = 0, against = 0, all = 0;
+        double speaksFor = 0, against = 0, confirming = 0, all = 0;
         for (const Voice& voice : voices)
         {
             const PriorPoint& point = points_[voice.index];
+            const bool isOfWinner = areAlike(winner, winnerAt(point.place), point.sigma, voice.distance);
             all += voice.weight;
-            if (areAlike(winner, point.disparity, point.sigma, voice.distance))
+            if (isContradicted_[voice.index])
+                confirming += isOfWinner ? voice.weight : 0;
+            else if (areAlike(winner, point.disparity, point.sigma, voice.distance))
                 speaksFor += voice.weight;
-            else if (!agrees_[voice.index] && areAlike(winner, winnerAt(point.place), point.sigma, voice.distance))
+            else if (!agrees_[voice.index] && isOfWinner)
                 against += voice.weight;
         }
-        if (voices.size() < 2 || (speaksFor > 0 && speaksFor >= against))
+        voices.erase(std::remove_if(voices.begin(), voices.end(),
+                                    [&](const Voice& voice) { return isContradicted_[voice.index]; }),
+                     voices.end());
+        if (voices.size() < 2 || (speaksFor > 0 && speaksFor >= against) || 2 * confirming >= all)
             return;
         proposed = (ushort)std::max(0, std::min(cvRound(planeAt(place, voices) * 16), maxDisparity));
-        limit = against > 0 ? 7.f : (float)(7 * std::min(all / 0.25, 1.));
+        limit = against > 0 ? 7.f : (float)(3.5 * std::min(all / 0.25, 1.));
     }
 
     bool areOfOneSurface(size_t a, size_t b) const
@@ -217,8 +238,8 @@ private:
     const oracle::CensusCost& cost_;
     const Mat& winners_;
     const double unit_;
-    int reach_;
-    std::vector<bool> agrees_, claims_, counts_;
+    int farthest_, reach_;
+    std::vector<bool> agrees_, claims_, isContradicted_, speaks_; // by point
     std::vector<int> excess_;
 };
 

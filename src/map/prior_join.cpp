@@ -28,9 +28,17 @@ HDP_TUNABLE(int, windowSide, 5, "pixels", "of the costs that are compared: singl
 HDP_TUNABLE(double, contradiction, 7, "bits", "that a cost is higher by: more follows errors of the prior");
 HDP_TUNABLE(double, contradictionAround, 3.5, "bits",
             "the same in the mean of the points around: more follows errors that many of them have in common");
-HDP_TUNABLE(int, around, 3, "cells", "on each side, that points are around: fewer have too few points");
+HDP_TUNABLE(double, contradictionUnopposed, 3.5, "bits",
+            "the same where no point opposes the winner: more loses things that are too small for points of their own");
 HDP_TUNABLE(double, enoughWeight, 0.25, "weight of points",
-            "of other disparities, at which they are believed although none opposes a winner: less loses small things");
+            "from which that is so; it falls with less, as points that are far away know less of small things");
+HDP_TUNABLE(
+    double, indifference, 2, "bits",
+    "the same on bare walls, where no point agrees with the winners, which are noise: more follows errors there");
+HDP_TUNABLE(double, mostContradicted, 0.25, "times the points that agree",
+            "of a prior that is believed on such walls: more believes that of another scene, less misses bare scenes");
+HDP_TUNABLE(int, around, 3, "times the reach",
+            "on each side, that points are around: in less, all of a large wrong patch are opposed to the winners");
 
 //! A point near a pixel
 struct Neighbour
@@ -43,8 +51,9 @@ struct Neighbour
 enum PointState
 {
     AGREES,
-    COUNTS, // against the winner
-    CLAIMS, // it will count, or fail
+    COUNTS,       // against the winner
+    CLAIMS,       // it will count, or be contradicted
+    CONTRADICTED, // by the costs, which speak for the winner
     FAILS
 };
 
@@ -54,9 +63,9 @@ class PriorJoin
 public:
     PriorJoin(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer, Mat& winners)
         : points_(points), guide_(guide), cost_(cost), winners_(winners), width_(winners.cols),
-          reach_(reachOf(winners.size(), points.size(), layer)), scale_(1. / (1 << layer)),
-          grid_((width_ + reach_ - 1) / reach_, (winners.rows + reach_ - 1) / reach_), cells_(grid_.area()),
-          states_(points.size(), AGREES), before_(points.size()), excess_(points.size())
+          farthest_(std::max(reach >> layer, 4)), reach_(reachOf(winners.size(), points.size(), farthest_)),
+          scale_(1. / (1 << layer)), grid_((width_ + reach_ - 1) / reach_, (winners.rows + reach_ - 1) / reach_),
+          cells_(grid_.area()), states_(points.size(), AGREES), before_(points.size()), excess_(points.size())
     {
         for (size_t i = 0; i < points.size(); ++i)
         {
@@ -69,31 +78,30 @@ public:
     void join(int maxDisparity)
     {
         judgePoints();
-        Mat hypotheses(winners_.size(), CV_16U), beliefs(winners_.size(), CV_32F), ofWinners, ofHypotheses;
+        Mat hypotheses(winners_.size(), CV_16U), limits(winners_.size(), CV_32F), ofWinners, ofHypotheses;
         parallelForRows(winners_.size(), std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
             for (int x = 0; x < width_; ++x)
-                beliefs.ptr<float>(y)[x] = propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
+                limits.ptr<float>(y)[x] = propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
         });
         sumCosts(winners_, ofWinners);
         sumCosts(hypotheses, ofHypotheses);
-        const double limit = contradiction * windowSide * windowSide;
+        const int area = windowSide * windowSide;
         parallelForRows(winners_.size(), [&](int y) {
             for (int x = 0; x < width_; ++x)
             {
                 const int more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners.ptr<ushort>(y)[x];
-                if (more <= limit * beliefs.ptr<float>(y)[x])
+                if (more <= area * limits.ptr<float>(y)[x])
                     winners_.ptr<ushort>(y)[x] = hypotheses.ptr<ushort>(y)[x];
             }
         });
     }
 
 private:
-    //! How far a pixel sees, in pixels of the layer: so far that there are enough points in a dense prior, but no
-    //! farther than reach; on coarse layers, where that is a pixel or two, 4, or 2 if these have enough.
-    static int reachOf(Size size, size_t points, int layer)
+    //! How far a pixel sees, in pixels of the layer: so far that there are enough points in a dense prior
+    static int reachOf(Size size, size_t points, int farthest)
     {
-        const int ofDensity = cvCeil(std::sqrt(pointsOfCell * size.area() / std::max<double>((double)points, 1)));
-        return std::max(std::min(reach >> layer, ofDensity), std::min(4, std::max(ofDensity, 2)));
+        const int ofDensity = cvCeil(std::sqrt(pointsOfCell * size.area() / (double)points));
+        return std::min(farthest, std::max(ofDensity, 2));
     }
 
     bool areAlike(float a, float b, float sigma, double distance) const
@@ -114,7 +122,7 @@ private:
         return (float)std::exp(-distance / (distanceScale * scale_) - color / colorScale);
     }
 
-    //! The points around a pixel that weigh most, but for those that fail if they are not asked for
+    //! The points around a pixel that weigh most; those that fail only if they are asked for
     void find(Point place, bool alsoFailing, std::vector<Neighbour>& found) const
     {
         found.clear();
@@ -174,26 +182,42 @@ private:
     }
 
     //! A claim counts unless the costs contradict it, or those around: what many have in common may be wrong as well,
-    //! and their mean tells that better. Where few points agree, the prior is of something else, and all of them fail.
+    //! and their mean tells that better. Where few points agree, the prior is of something else, and all of them fail,
+    //! but for bare surfaces of a scene that it is of. How many are around does not depend on how dense they are.
     void judgeByThoseAround()
     {
         Mat sums(grid_, CV_64FC4, Scalar::all(0)); // by cell: the claims' excess; claims, points that agree, and all
         for (size_t i = 0; i < points_.size(); ++i)
             sums.ptr<Vec4d>()[cellOf(points_[i].place)] +=
                 Vec4d(excess_[i], states_[i] == CLAIMS, states_[i] == AGREES, 1);
-        boxFilter(sums, sums, -1, Size(2 * around + 1, 2 * around + 1), Point(-1, -1), false, BORDER_CONSTANT);
+        const int side = 2 * (around * farthest_ / reach_) + 1;
+        boxFilter(sums, sums, -1, Size(side, side), Point(-1, -1), false, BORDER_CONSTANT);
         const int area = windowSide * windowSide;
+        const bool isRight = isRightInTheMain();
         for (size_t i = 0; i < points_.size(); ++i)
         {
             const Vec4d own = sums.ptr<Vec4d>()[cellOf(points_[i].place)];
             const double excess = own[0], claims = own[1], agreeing = own[2], all = own[3];
             const bool isContradicted =
                 excess_[i] > contradiction * area || excess > contradictionAround * area * claims;
-            if (agreeing < minAgreement * all)
+            const bool isUnseen = isRight && excess < indifference * area * claims;
+            if (agreeing < minAgreement * all && !isUnseen)
                 states_[i] = FAILS;
             else if (states_[i] == CLAIMS)
-                states_[i] = isContradicted ? FAILS : COUNTS;
+                states_[i] = isContradicted ? CONTRADICTED : COUNTS;
         }
+    }
+
+    //! Whether the costs contradict few claims in terms of the points that agree
+    bool isRightInTheMain() const
+    {
+        double agreeing = 0, contradicted = 0;
+        for (size_t i = 0; i < points_.size(); ++i)
+        {
+            agreeing += states_[i] == AGREES;
+            contradicted += excess_[i] > contradiction * windowSide * windowSide;
+        }
+        return contradicted <= mostContradicted * agreeing;
     }
 
     //! Whether a third of the points around, by weight, agrees with a point
@@ -212,28 +236,33 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    //! The disparity that the points around a pixel propose: its winner, if they speak for it. Returns how far they are
-    //! to be believed, 0 to 1: that none is on the winner's surface tells little if they are far away.
+    //! The disparity that the points around a pixel propose: its winner, if they speak for it or half of them, by weight,
+    //! were contradicted where they differ from it. Returns by how many bits its cost may be higher.
     float propose(Point place, int maxDisparity, std::vector<Neighbour>& found, ushort& proposed) const
     {
         const ushort own = winners_.ptr<ushort>(place.y)[place.x];
         const float winner = own * (1.f / subpixelScale);
         proposed = own;
         find(place, false, found);
-        double speaksFor = 0, against = 0, all = 0;
+        double speaksFor = 0, against = 0, confirming = 0, all = 0;
         for (const Neighbour& n : found)
         {
             const PriorPoint& point = points_[n.index];
+            const bool isOfWinner = areAlike(winner, before_[n.index], point.sigma, n.distance);
             all += n.weight;
-            if (areAlike(winner, point.disparity, point.sigma, n.distance))
+            if (states_[n.index] == CONTRADICTED)
+                confirming += isOfWinner ? n.weight : 0;
+            else if (areAlike(winner, point.disparity, point.sigma, n.distance))
                 speaksFor += n.weight;
-            else if (states_[n.index] == COUNTS && areAlike(winner, before_[n.index], point.sigma, n.distance))
+            else if (states_[n.index] == COUNTS && isOfWinner)
                 against += n.weight;
         }
-        if (found.size() < 2 || (speaksFor > 0 && speaksFor >= against))
+        const auto isContradicted = [&](const Neighbour& n) { return states_[n.index] == CONTRADICTED; };
+        found.erase(std::remove_if(found.begin(), found.end(), isContradicted), found.end());
+        if (found.size() < 2 || (speaksFor > 0 && speaksFor >= against) || 2 * confirming >= all)
             return 0;
         proposed = (ushort)clamped(cvRound(planeAt(place, found) * subpixelScale), 0, maxDisparity);
-        return against > 0 ? 1 : (float)std::min(all / enoughWeight, 1.);
+        return (float)(against > 0 ? contradiction : contradictionUnopposed * std::min(all / enoughWeight, 1.));
     }
 
     //! The disparity of the plane through the points that are alike
@@ -285,8 +314,8 @@ private:
     const Mat& guide_;
     const CensusCost& cost_;
     Mat& winners_;
-    const int width_, reach_;
-    const double scale_; // of the layer
+    const int width_, farthest_, reach_; // how far a pixel sees at most, and how far with so many points
+    const double scale_;                 // of the layer
     const Size grid_;
     std::vector<std::vector<int>> cells_;
     std::vector<PointState> states_;
