@@ -22,6 +22,8 @@ HDP_TUNABLE(int, minSupport, 10, "corners", "fewer are no evidence of a range");
 // All pixels
 HDP_TUNABLE(double, reach, 1.5, "share of the corners' range",
             "that is searched before it and behind it: more costs time and errors");
+HDP_TUNABLE(double, leastReach, 0.1, "share of the image's width",
+            "the same at least: a near thing before a wall has few corners; more costs time and errors");
 HDP_TUNABLE(double, endShare, 0.05, "share of what is searched",
             "at its ends: what is found there goes on beyond; more searches twice more often");
 HDP_TUNABLE(double, minConfidence, 15, "confidence",
@@ -81,7 +83,7 @@ int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks
     greyLevels(left, bits, leftLevels_);
     greyLevels(right, bits, rightLevels_);
     const int width = left.cols;
-    matchCoarsely({ leftLevels_ }, { rightLevels_ }, masks, Range(-width, width), coarse_);
+    matchCoarsely({ leftLevels_ }, { rightLevels_ }, masks, Range(-width, width), 0, coarse_);
     if (!coarse_.matches.empty())
         keepMutualMatches(coarse_.left[coarse_.layer], coarse_.right[coarse_.layer], coarse_.windows, coarse_.matches);
     int support;
@@ -130,8 +132,9 @@ bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, 
 //! there. What is at the ends then, too, is errors. found: in pixels of the image
 bool RangeSearch::searchAround(const PairMasks& masks, const Range& corners, Range& found)
 {
-    const auto around = [](const Range& range) {
-        const double beside = reach * range.size();
+    const double least = leastReach * coarse_.left[0].cols;
+    const auto around = [least](const Range& range) {
+        const double beside = std::max(reach * range.size(), least);
         return Range(cvFloor(range.start - beside), cvCeil(range.end + beside));
     };
     const auto withoutEnds = [](const Range& range) {

@@ -166,6 +166,27 @@ TEST(HDPStereo_RangeSearch, a_video_keeps_its_range)
     expectRejected([&] { match(*matcher, blank, blank); }, "numDisparities");
 }
 
+TEST(HDPStereo_RangeSearch, a_single_pair_ends_a_video)
+{
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+    const Mat &left = scene().left, &right = scene().right;
+    match(*matcher, left, right);
+    const Range alone = foundRange(*matcher);
+
+    matcher->setUseTemporalPrediction(true);
+    Mat moved; // by 12: a range that has the other one, too, and would be kept
+    cv::copyMakeBorder(right.colRange(12, right.cols), moved, 0, 0, 0, 12, BORDER_REPLICATE);
+    match(*matcher, left, moved);
+    ASSERT_NE(alone, foundRange(*matcher));
+    matcher->setUseTemporalPrediction(false);
+    matcher->setNumDisparities(truthEnd);
+    match(*matcher, left, right);
+    matcher->setUseTemporalPrediction(true);
+    matcher->setNumDisparities(0);
+    match(*matcher, left, right);
+    EXPECT_EQ(alone, foundRange(*matcher));
+}
+
 TEST(HDPStereo_RangeSearch, belongs_to_the_pair_model)
 {
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
@@ -221,6 +242,32 @@ TEST(HDPStereo_RangeSearch, goes_on_where_disparities_end_with_what_was_searched
         EXPECT_GT(foundRange(*matcher).end, nearest);
         EXPECT_LT(foundRange(*matcher).end, 2 * nearest);
     }
+}
+
+//! Its corners are few, and none of those of the wall is near its disparity.
+TEST(HDPStereo_RangeSearch, finds_a_bar_before_a_wall)
+{
+    const Size size(640, 480);
+    for (const int width : { 8, 16, 32 })
+        for (int seed = 1; seed <= 3; ++seed)
+        {
+            RNG rng(seed);
+            Mat canvas(size + Size(100, 0), CV_32F), bar(canvas.size(), CV_32F);
+            for (Mat* image : { &canvas, &bar })
+            {
+                rng.fill(*image, RNG::UNIFORM, -1, 1);
+                cv::GaussianBlur(*image, *image, Size(), 1.5);
+                image->convertTo(*image, CV_8U, 400, 128);
+            }
+            Mat left = canvas.colRange(0, size.width).clone(), right = canvas.colRange(10, 10 + size.width).clone();
+            bar.colRange(0, width).rowRange(0, size.height).copyTo(left.colRange(330, 330 + width));
+            bar.colRange(0, width).rowRange(0, size.height).copyTo(right.colRange(280, 280 + width));
+            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+            match(*matcher, left, right);
+            EXPECT_LE(foundRange(*matcher).start, 10) << width;
+            EXPECT_GT(foundRange(*matcher).end, 50) << width;
+            EXPECT_LT(foundRange(*matcher).end, 100) << width;
+        }
 }
 
 TEST(HDPStereo_RangeSearch, single_corners_do_not_count)

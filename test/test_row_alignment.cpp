@@ -410,6 +410,26 @@ TEST(HDPStereo_RowAlignment, limit)
 }
 
 //! The model is about the right image's centre, whatever columns are added.
+//! By more than the search for corners sees at once
+TEST(HDPStereo_RowAlignment, rows_far_away)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 48, 4);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 48);
+    const Mat all(pair.truth.size(), CV_8U, Scalar(255));
+    const double expected = badPixels(match(*matcher, pair.left, pair.right), pair.truth, all, 1);
+    for (const int offset : { 13, -20, 33, -60 })
+    {
+        const Mat right = misalign(pair.right, makeModel(offset));
+        matcher->setMaxRowOffset(64);
+        EXPECT_LT(badPixels(match(*matcher, pair.left, right), pair.truth, all, 1), expected + 0.5 * std::abs(offset));
+        EXPECT_TRUE(matcher->getFindings().areRowsMoved);
+        EXPECT_NEAR(offset, matcher->getFindings().rows[0], 0.2);
+        matcher->setMaxRowOffset(std::abs(offset) - 4);
+        match(*matcher, pair.left, right);
+        EXPECT_FALSE(matcher->getFindings().areRowsMoved) << "beyond the limit";
+    }
+}
+
 TEST(HDPStereo_RowAlignment, other_smallest_disparities)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(480, 360), 48, 11);

@@ -26,6 +26,8 @@ HDP_TUNABLE(double, rivalCorrelation, 0.1, "share of the best one's distance fro
             "by which a rival has to be farther from it: more loses repeated texture, less lets wrong ones in");
 HDP_TUNABLE(double, rivalDistance, 0.01, "correlation", "beside that share: near 1, noise decides");
 HDP_TUNABLE(int, rivalReach, 2, "pixels", "around the best match, in which there are no rivals: its own peak is there");
+HDP_TUNABLE(double, moreMatches, 2, "times those of other rows",
+            "that rows far away have to have: less believes a pattern that repeats itself");
 HDP_TUNABLE(double, minContrast, 6, "levels of 1023", "standard deviation of a left window: in less, noise is matched");
 
 // Tracking on a layer
@@ -244,8 +246,47 @@ void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMat
     });
 }
 
+namespace {
+
+//! Finds and tracks matches where rows may be off by more than findCornerMatches() sees: if there are too few for a model,
+//! those of rows farther away are believed if they are far more.
+void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities, int spacing,
+                       int maxRowOffset, SearchWindows& windows, std::vector<CornerMatch>& matches)
+{
+    const auto isValid = [](const CornerMatch& match) { return match.isValid; };
+    const auto count = [&](const std::vector<CornerMatch>& all) {
+        return std::count_if(all.begin(), all.end(), isValid);
+    };
+    const auto moveRows = [](const Mat& image, int rows, int border, Mat& moved) {
+        const Mat part = image.rowRange(std::max(rows, 0), image.rows + std::min(rows, 0));
+        copyMakeBorder(part, moved, std::max(-rows, 0), std::max(rows, 0), 0, 0, border);
+    };
+    findCornerMatches(left, right, masks, disparities, spacing, windows, matches);
+    trackCornerMatches(left, right, matches);
+    if (count(matches) >= CornerMatching::minMatches)
+        return;
+    const int step = SearchArea::rows, farthest = std::min(maxRowOffset, left.rows / 4) + CornerMatching::searchRadius;
+    PairMasks moved = masks;
+    Mat movedRight;
+    std::vector<CornerMatch> others;
+    for (int offset = step; offset <= farthest; offset = offset > 0 ? -offset : step - offset)
+    {
+        moveRows(right, offset, BORDER_REPLICATE, movedRight);
+        if (!masks.right.empty())
+            moveRows(masks.right, offset, BORDER_CONSTANT, moved.right);
+        findCornerMatches(left, movedRight, moved, disparities, spacing, windows, others);
+        for (CornerMatch& match : others)
+            match.y += offset;
+        trackCornerMatches(left, right, others);
+        if (count(others) >= std::max<double>(CornerMatching::minMatches, moreMatches * count(matches)))
+            matches.swap(others);
+    }
+}
+
+} // namespace
+
 void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
-                   const Range& disparities, CoarseMatches& coarse)
+                   const Range& disparities, int maxRowOffset, CoarseMatches& coarse)
 {
     const Size size = left[0].size();
     int layer = 0;
@@ -260,9 +301,8 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
         return;
     const Range ofLayer(disparities.start >> layer, layerDisparities(disparities.end, layer, true));
     const PairMasks coarseMasks = { dataOfLayer(masks.left, layer), dataOfLayer(masks.right, layer) };
-    findCornerMatches(coarseLeft, coarseRight, coarseMasks, ofLayer, std::max(minSpacing >> layer, 1), coarse.windows,
-                      coarse.matches);
-    trackCornerMatches(coarseLeft, coarseRight, coarse.matches);
+    findMatchesOfRows(coarseLeft, coarseRight, coarseMasks, ofLayer, std::max(minSpacing >> layer, 1),
+                      maxRowOffset >> layer, coarse.windows, coarse.matches);
 }
 
 }}} // namespace cv::stereo::hdp
