@@ -53,6 +53,11 @@ public:
         };
         PairPlan pairPlan = makePlan(p_);
         clock_.restart();
+        if (!pairPlan.followsVideo)
+        {
+            lastFrame_ = FrameMemory();
+            rangeSearch_.forgetFrames();
+        }
 
         const bool mayMiss = inputs_.hasMasks() || left.depth() == CV_32F;
         const FloatLevels given = { pairModel_.black, pairModel_.white };
@@ -187,6 +192,8 @@ public:
         if (!result_.isMatched)
             return confidenceArray.release();
         enlargeToImage(confidenceOfLayer(), INTER_LINEAR_EXACT, confidenceArray);
+        if (!known_.ranges.isEmpty())
+            confidenceArray.setTo(Scalar(0), movedIntoRanges() > 1);
         if (!output_.rejected.empty())
             confidenceArray.setTo(Scalar(0), output_.rejected.back().pixels);
     }
@@ -206,6 +213,8 @@ public:
         for (int layer = 0; layer < plan.layer; ++layer)
             scale *= sigmaPerLayer;
         enlargeToImage(ofLayer * scale, INTER_NEAREST, sigmaArray); // means of floats differ between machines
+        if (!known_.ranges.isEmpty())
+            add(sigmaArray, movedIntoRanges(), sigmaArray);
         if (!output_.rejected.empty())
             sigmaArray.setTo(Scalar(std::numeric_limits<float>::infinity()), output_.rejected.back().pixels);
     }
@@ -220,6 +229,8 @@ public:
         findReasons(layers_[layer.layer].disparity, pairPlan.output, pairPlan.size.width,
                     scratch_[layer.layer].cost(layer.cost).limits(), ofLayer);
         enlargeToImage(ofLayer, INTER_NEAREST, reasonsArray);
+        if (!known_.ranges.isEmpty())
+            reasonsArray.setTo(Scalar(REASON_RANGE), movedIntoRanges() > 1);
         // From the last filter to the first: what rejected a pixel first is the reason.
         for (auto rejected = output_.rejected.rbegin(); rejected != output_.rejected.rend(); ++rejected)
             reasonsArray.setTo(Scalar(rejected->reason), rejected->pixels);
@@ -284,8 +295,6 @@ private:
     {
         const int finest = pairPlan.finest().layer;
         const GivenPair& given = pairPlan.given;
-        if (!pairPlan.followsVideo)
-            lastFrame_ = FrameMemory();
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
             buildPairPyramids(pair_.left, pair_.right, pair_.masks, pairPlan.pyramids, pyramids_, images,
@@ -363,6 +372,19 @@ private:
         }
         array.create(size, ofLayer.type());
         enlarged.colRange(extension, enlarged.cols).copyTo(array);
+    }
+
+    //! By how much disparities were moved into the ranges of their pixels, in pixels, CV_32FC1
+    Mat movedIntoRanges() const
+    {
+        OutputPlan plan = result_.plan.output;
+        plan.disp12MaxDiff = plan.speckleWindowSize = 0;
+        const Mat& finest = layers_[result_.plan.finest().layer].disparity;
+        Mat found(result_.plan.size, CV_32F), moved(found.size(), CV_32F);
+        OutputBuffers buffers;
+        outputDisparity(finest, plan, buffers, found);
+        outputDisparity(finest, plan, buffers, moved, Mat(), known_.ranges);
+        return abs(moved - found);
     }
 
     //! Without the columns that are added to the images

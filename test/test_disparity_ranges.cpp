@@ -183,6 +183,37 @@ TEST(HDPStereo_DisparityRanges, improve_maps)
     }
 }
 
+//! Where the range of a pixel contradicts the images, the reports say so.
+TEST(HDPStereo_DisparityRanges, what_is_moved_into_them_is_not_certain)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(200, 120), 40, 3);
+    Mat smallest(pair.truth.size(), CV_32F, Scalar(unlimited)), isAlone(smallest.size(), CV_8U, Scalar(0));
+    for (int y = 5; y < smallest.rows; y += 10)
+        for (int x = 45; x < smallest.cols; x += 10)
+        {
+            smallest.at<float>(y, x) = 36;
+            isAlone.at<uchar>(y, x) = 255;
+        }
+    for (const System& preset : presets)
+        for (const int minDisparity : { 0, -5 })
+        {
+            SCOPED_TRACE(testing::Message() << preset.name << " " << minDisparity);
+            const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 48, minDisparity);
+            Mat confidence, sigma, reasons, disparity;
+            matcher->setDisparityRange(smallest, noArray());
+            match(*matcher, pair.left, pair.right).convertTo(disparity, CV_32F, 1 / 16.);
+            matcher->getConfidence(confidence);
+            matcher->getDisparitySigma(sigma);
+            matcher->getReasons(reasons);
+            const Mat isMoved = reasons == HDPTreeMatcher::REASON_RANGE;
+            EXPECT_EQ(0, countNonZero(isMoved & ~isAlone));
+            EXPECT_GT(countNonZero(isMoved), 20);
+            EXPECT_EQ(0, countNonZero(isMoved & (confidence > 0)));
+            EXPECT_EQ(0, countNonZero(isMoved & (sigma < 1)));
+            EXPECT_EQ(0, countNonZero(isMoved & (disparity != 36)));
+        }
+}
+
 TEST(HDPStereo_DisparityRanges, bad_ranges_change_nothing)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(200, 120), 40, 3);

@@ -145,7 +145,8 @@ public:
         REASON_OUTSIDE = 2,  //!< the right image ends before; likewise
         REASON_MASKED = 3,   //!< it is masked, or its range has nothing in common with the matcher's
         REASON_UNSTABLE = 4, //!< rejected by the left-right check, see setDisp12MaxDiff()
-        REASON_SPECKLE = 5   //!< rejected by the filter for speckles, see setSpeckleWindowSize()
+        REASON_SPECKLE = 5,  //!< rejected by the filter for speckles, see setSpeckleWindowSize()
+        REASON_RANGE = 6     //!< its range, see setDisparityRange(), is more than a pixel away from what was found
     };
 
     //! Value of Params::delta0, Params::beta and Params::disparityMedianSize: the matcher chooses
@@ -595,9 +596,9 @@ public:
     /** @brief Returns the standard deviation of each disparity's error in the last compute().
 
     50 to 80 % of the errors of a map are not larger, depending on the scenes: it is calibrated on pairs of known truth,
-    some of which is not more exact itself. It comes
-    from getConfidence(), from how much matched levels differ for the texture there is, from Findings::rowError, and
-    from Findings::noise.
+    some of which is not more exact itself. It comes from getConfidence(), from how much matched levels differ for the
+    texture there is, from Findings::rowError, and from Findings::noise. A disparity that was moved into the range of
+    its pixel, see setDisparityRange(), has as much more as it was moved by.
     Of the disparities that are wrong by more than 3 pixels, 40 to 90 % have one above 1, which does not say by how much
     they are wrong. It is computed by this call.
     @param sigma Receives CV_32FC1 of the left image's size, in pixels; infinite where a pixel has no data or a filter
