@@ -125,7 +125,7 @@ py::array toImage(const py::object& image, const char* name)
 //! An array that may be left out: None; or a number
 cv::Mat toInput(const py::object& array, const char* name, std::vector<py::array>& kept)
 {
-    if (py::isinstance<py::float_>(array) || py::isinstance<py::int_>(array))
+    if (!py::isinstance<py::array>(array) && PyNumber_Check(array.ptr())) // of Python or numpy
         return cv::Mat(1, 1, CV_64F, cv::Scalar(array.cast<double>()));
     if (array.is_none())
         return cv::Mat();
@@ -296,7 +296,7 @@ Raises ValueError if a value is out of range; the matcher is unchanged then.)doc
 Sets what is known of the next pairs: nothing is estimated from them then, see PairModel.
 
 What the model says is done, whatever maxRowOffset and useLightAlignment are; noiseThreshold is compared with its noise.
-The disparity range is not taken from it. save() does not store it, and clear() does not forget it.
+The disparity range is taken from it if numDisparities is 0. save() does not store it, and clear() does not forget it.
 model: that of an earlier pair, or of a tile of it. An empty one, PairModel(): pairs are estimated again.
 
 Raises ValueError if a value is not valid; the matcher is unchanged then.)doc");

@@ -497,7 +497,12 @@ class Matching(Test):
         matcher.setPriorDisparity(TRUTH.astype(np.float32), 0.5)
         self.assertLessEqual(wrong(matcher.compute(LEFT, RIGHT)), wrong(without))
         matcher.setPriorDisparity(TRUTH.astype(np.float32), np.full(TRUTH.shape, 0.5, np.float32))
+        ofArray = matcher.compute(LEFT, RIGHT)
+        for sigma in np.float32(0.5), np.float64(0.5):
+            matcher.setPriorDisparity(TRUTH.astype(np.float32), sigma)
+            self.assertSame(ofArray, matcher.compute(LEFT, RIGHT))
         self.assertRaises(ValueError, lambda: matcher.setPriorDisparity(TRUTH.astype(np.float32), -1.0))
+        self.assertRaises(ValueError, lambda: matcher.setPriorDisparity(TRUTH.astype(np.float32), np.int64(-1)))
         matcher.setPriorDisparity(None, None)
         self.assertSame(without, matcher.compute(LEFT, RIGHT))
 
