@@ -25,13 +25,13 @@ HDP_TUNABLE(double, colorScale, 30, "grey levels", "that weigh as much as distan
 HDP_TUNABLE(double, distanceScale, 8, "pixels of the image", "by which the weight of a point falls to 1 / e");
 HDP_TUNABLE(double, flatness, 0.1, "squared distanceScale", "by which planes resist being tilted: points in a row");
 HDP_TUNABLE(int, windowSide, 5, "pixels", "of the costs that are compared: single ones are noise");
-HDP_TUNABLE(double, contradiction, 7, "bits", "that a cost is higher by: more follows errors of the prior");
-HDP_TUNABLE(double, contradictionAround, 3.5, "bits",
-            "the same in the mean of the points around: more follows errors that many of them have in common");
-HDP_TUNABLE(double, contradictionUnopposed, 3.5, "bits",
-            "the same where no point opposes the winner: more loses things that are too small for points of their own");
-HDP_TUNABLE(double, enoughWeight, 0.25, "weight of points",
-            "from which that is so; it falls with less, as points that are far away know less of small things");
+HDP_TUNABLE(
+    double, contradiction, 7, "bits",
+    "that a cost is higher by, half of it in the mean of the points around, which may have an error in common, or "
+    "where no point opposes the winner, which may be of a small thing: more follows errors, and loses small things");
+HDP_TUNABLE(
+    double, enoughWeight, 0.25, "weight of points",
+    "from which half of it is enough: with less, less is, as points that are far away know less of small things");
 HDP_TUNABLE(
     double, indifference, 2, "bits",
     "the same on bare walls, where no point agrees with the winners, which are noise: more follows errors there");
@@ -198,8 +198,7 @@ private:
         {
             const Vec4d own = sums.ptr<Vec4d>()[cellOf(points_[i].place)];
             const double excess = own[0], claims = own[1], agreeing = own[2], all = own[3];
-            const bool isContradicted =
-                excess_[i] > contradiction * area || excess > contradictionAround * area * claims;
+            const bool isContradicted = excess_[i] > contradiction * area || excess > contradiction / 2 * area * claims;
             const bool isUnseen = isRight && excess < indifference * area * claims;
             if (agreeing < minAgreement * all && !isUnseen)
                 states_[i] = FAILS;
@@ -262,7 +261,7 @@ private:
         if (found.size() < 2 || (speaksFor > 0 && speaksFor >= against) || 2 * confirming >= all)
             return 0;
         proposed = (ushort)clamped(cvRound(planeAt(place, found) * subpixelScale), 0, maxDisparity);
-        return (float)(against > 0 ? contradiction : contradictionUnopposed * std::min(all / enoughWeight, 1.));
+        return (float)(against > 0 ? contradiction : contradiction / 2 * std::min(all / enoughWeight, 1.));
     }
 
     //! The disparity of the plane through the points that are alike
