@@ -265,7 +265,7 @@ void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks
     trackCornerMatches(left, right, matches);
     if (count(matches) >= CornerMatching::minMatches)
         return;
-    const int step = SearchArea::rows, farthest = std::min(maxRowOffset, left.rows / 4) + CornerMatching::searchRadius;
+    const int step = SearchArea::rows, farthest = std::min(maxRowOffset, left.rows / 8) + CornerMatching::searchRadius;
     PairMasks moved = masks;
     Mat movedRight;
     std::vector<CornerMatch> others;
