@@ -127,6 +127,13 @@ TEST(HDPStereo_RigDrift, refuses_what_is_no_rig_and_no_rows)
     const Ptr<RigDrift> drift = RigDrift::create(K, size);
     expectRejected([&] { drift->add(std::vector<double>(4)); }, "rows");
     expectRejected([&] { drift->add(std::vector<double>(5, std::nan(""))); }, "rows");
+    for (int term = 0; term < 5; ++term) // of which each would be a rig that folds
+    {
+        std::vector<double> rows(5);
+        rows[term] = 200;
+        expectRejected([&] { drift->add(rows); }, "a quarter of the image's height");
+    }
+    EXPECT_EQ(0, drift->getFrames());
     for (const Mat& bad : { Mat(), Mat(Mat::zeros(3, 3, CV_64F)), Mat(Mat::eye(4, 3, CV_64F)) })
         expectRejected([&] { drift->correct(makeCalibration(), bad); }, "R2 must be a rotation");
     expectRejected([&] { drift->correct(StereoCalibration(), Mat::eye(3, 3, CV_64F)); }, "calibration");

@@ -245,6 +245,16 @@ TEST(HDPStereo_StereoRig, refuses_what_is_impossible)
     for (const Size& size : { Size(0, 5), Size(32767, 1), Size(1, 32767) })
         expectRejected([&] { StereoRig::create(good, 0, size); }, "size");
     expectBad([](StereoCalibration& c) { c.imageSize.width = 32767; }, "imageSize");
+    const auto turn = [](int axis, double degrees, StereoCalibration& c) {
+        Vec3d angles;
+        angles[axis] = degrees * CV_PI / 180;
+        Rodrigues(angles, c.R);
+        c.T = -c.R * (Mat_<double>(3, 1) << 0.1, 0, 0);
+    };
+    for (const double degrees : { 95., 180. })
+        expectBad([&](StereoCalibration& c) { turn(2, degrees, c); }, "side by side");
+    for (const double degrees : { 120., 179. })
+        expectBad([&](StereoCalibration& c) { turn(1, degrees, c); }, "same direction");
 
     const Ptr<StereoRig> rig = StereoRig::create(good);
     const Mat image(good.imageSize, CV_8U, Scalar(1)), other(10, 10, CV_8U), deep(good.imageSize, CV_64F);
@@ -257,6 +267,8 @@ TEST(HDPStereo_StereoRig, refuses_what_is_impossible)
     expectRejected([&] { rig->computeDepth(image, a); }, "disparity");
     expectRejected([&] { rig->computeDepth(Mat(5, 5, CV_32F), a, CV_8U); }, "depthType");
     expectRejected([&] { rig->computeDepth(Mat(), a); }, "disparity");
+    expectRejected([&] { rig->computeDepth(Mat(good.imageSize + Size(1, 0), CV_32F), a); }, "disparity must be of");
+    expectRejected([&] { rig->computeDepth(Mat(0, 0, CV_32F), a); }, "disparity");
 }
 
 //! The pairs of a drone in HDPSTEREO_DATA/raw_euroc: two cameras that were calibrated once

@@ -6,6 +6,7 @@
 // Pipeline and s2p. Their sign of disparities is the opposite of OpenCV's: a left pixel (x, y) is (x + d, y) in the
 // right image.
 
+#include "hdpstereo/files.hpp"
 #include "paths.hpp"
 
 #include <algorithm>
@@ -180,8 +181,8 @@ static void requireWritable(const String& name, const String& path)
 
 static void writeImage(const String& path, const Mat& image)
 {
-    if (!path.empty() && !imwrite(path, image))
-        CV_Error(Error::StsError, "cannot write '" + path + "'");
+    if (!path.empty())
+        writeWholeFile(path, encode(extensionOf(path), image));
 }
 
 static Mat extended(const Mat& image, Size size, double value)

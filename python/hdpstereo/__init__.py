@@ -35,6 +35,13 @@ def _in_camel_case(name):
     return first + ''.join(word[:1].upper() + word[1:] for word in others)
 
 
+def _with_names_in_camel_case(parameters):
+    renamed = {_in_camel_case(name): value for name, value in parameters.items()}
+    if len(renamed) < len(parameters):
+        raise TypeError('a parameter is given twice, in camel case and in snake case: ' + ', '.join(parameters))
+    return renamed
+
+
 def _preset(preset):
     if not isinstance(preset, str):
         return preset
@@ -53,11 +60,11 @@ def _integer(name, value):
 
 
 def _init_params(self, preset=HDPTreeMatcher.PRESET_FAST, **fields):
-    _construct_params(self, _preset(preset), **{_in_camel_case(name): value for name, value in fields.items()})
+    _construct_params(self, _preset(preset), **_with_names_in_camel_case(fields))
 
 
 def _init(self, minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_FAST, **parameters):
-    parameters = {_in_camel_case(name): value for name, value in parameters.items()}
+    parameters = _with_names_in_camel_case(parameters)
     _construct(self, _integer('minDisparity', parameters.pop('minDisparity', minDisparity)),
                _integer('numDisparities', parameters.pop('numDisparities', numDisparities)), _preset(preset))
     params = self.getParams()

@@ -71,8 +71,11 @@ public:
 
     bool add(const std::vector<double>& rows) CV_OVERRIDE
     {
-        if (rows.size() != rowTerms || !checkRange(rows, true, 0, -1e6, 1e6))
+        if (rows.size() != rowTerms || !checkRange(rows))
             CV_Error(Error::StsBadArg, "rows must be five finite numbers");
+        for (const Point2d& place : places_)
+            if (!(std::abs(rowOf(rows, place)) < size_.height / 4))
+                CV_Error(Error::StsOutOfRange, "rows must be off by less than a quarter of the image's height");
         if (std::count(rows.begin(), rows.end(), 0.) == rowTerms)
             return false;
         const Terms found = fit(rows);
@@ -151,6 +154,13 @@ private:
         return rows;
     }
 
+    //! By how much a point is below its row, of Findings::rows
+    static double rowOf(const std::vector<double>& rows, const Point2d& place)
+    {
+        const double u = place.x, v = place.y;
+        return rows[0] + rows[1] * u + rows[2] * v + rows[3] * u * v + rows[4] * v * v;
+    }
+
     //! Least squares over the image
     Terms fit(const std::vector<double>& rows) const
     {
@@ -160,11 +170,7 @@ private:
             const std::vector<double> explained = rowsAt(turn);
             Terms sum;
             for (size_t i = 0; i < places_.size(); ++i)
-            {
-                const double u = places_[i].x, v = places_[i].y;
-                const double row = rows[0] + rows[1] * u + rows[2] * v + rows[3] * u * v + rows[4] * v * v;
-                sum += slopes_[i] * (row - explained[i]);
-            }
+                sum += slopes_[i] * (rowOf(rows, places_[i]) - explained[i]);
             turn += inverse_ * sum;
         }
         return turn;

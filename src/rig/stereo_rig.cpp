@@ -50,7 +50,11 @@ public:
     {
         chooseCameras(fieldOfView);
         for (int camera = 0; camera < 2; ++camera)
+        {
             makeMaps(camera);
+            if (countNonZero(masks_[camera]) == 0)
+                CV_Error(Error::StsBadArg, "calibration: R must be of cameras that look in about the same direction");
+        }
     }
 
     void rectify(InputArray left, InputArray right, OutputArray rectifiedLeft,
@@ -82,6 +86,10 @@ public:
         const Mat disparity = disparityArray.getMat();
         if (disparity.type() != CV_16SC1 && disparity.type() != CV_32FC1)
             CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1");
+        if (disparity.empty() || disparity.cols > size_.width || disparity.rows > size_.height)
+            CV_Error(Error::StsUnmatchedSizes,
+                     format("disparity must be of %d x %d pixels, or of a part of these, not of %d x %d", size_.width,
+                            size_.height, disparity.cols, disparity.rows));
         if (depthType != CV_32F && depthType != CV_16U)
             CV_Error(Error::StsBadArg, "depthType must be CV_32F or CV_16U");
         Mat metres; // from disparities in pixels; 0 where there is none
@@ -136,6 +144,8 @@ private:
         stereoRectify(c.cameraMatrix1, fills ? c.distCoeffs1 : straight, c.cameraMatrix2,
                       fills ? c.distCoeffs2 : straight, c.imageSize, c.R, c.T, R1, R2, P1, P2, Q, zeroDisparity,
                       fills ? 0 : -1, size_);
+        if (P2.at<double>(0, 3) == 0)
+            CV_Error(Error::StsBadArg, "calibration: R and T must be of cameras side by side, not one above the other");
         R_[0] = R1;
         R_[1] = R2;
         center_ = Point2d(0.5 * (size_.width - 1), 0.5 * (size_.height - 1));

@@ -83,7 +83,9 @@ bool isSameFile(const String& path, const String& other)
 std::vector<uchar> encode(const String& extension, const Mat& image)
 {
     std::vector<uchar> bytes;
-    imencode(extension, image, bytes);
+    // PFM goes by a temporary file, of which there is less than the pixels if it does not fit.
+    if (!imencode(extension, image, bytes) || (extension == ".pfm" && bytes.size() < image.total() * image.elemSize()))
+        CV_Error(Error::StsError, "cannot encode " + extension + ": is the folder of temporary files full?");
     return bytes;
 }
 
@@ -130,6 +132,17 @@ void PartFile::finish()
     if (std::rename(name_.c_str(), path_.c_str()) != 0)
         failToWrite(path_);
     isOpen_ = false;
+}
+
+void writeFindings(const String& path, const cv::stereo::PairModel& model)
+{
+    FileStorage fs(extensionOf(path), FileStorage::WRITE | FileStorage::MEMORY);
+    fs << "pairModel"
+       << "{";
+    model.write(fs);
+    fs << "}";
+    const String text = fs.releaseAndGetString();
+    writeWholeFile(path, std::vector<uchar>(text.begin(), text.end()));
 }
 
 void writeWholeFile(const String& path, const std::vector<uchar>& bytes)

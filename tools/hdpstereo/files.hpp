@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_TOOLS_HDPSTEREO_FILES_HPP
 
 #include "opencv2/core.hpp"
+#include "opencv2/hdpstereo.hpp"
 
 // Images and maps in files. All throw cv::Exception.
 
@@ -57,6 +58,9 @@ private:
 
 //! By a PartFile
 void writeWholeFile(const cv::String& path, const std::vector<uchar>& bytes);
+
+//! As PairModel::save(), by a PartFile
+void writeFindings(const cv::String& path, const cv::stereo::PairModel& model);
 
 cv::Mat readImage(const cv::String& path, int flags);
 

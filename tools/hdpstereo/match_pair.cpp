@@ -121,6 +121,8 @@ static Mat readTruth(const String& path, Size size)
                                                   size.width, size.height, image.cols, image.rows));
     Mat truth;
     image.convertTo(truth, CV_32F, image.depth() == CV_16U ? 1. / 256 : 1);
+    if (countNonZero(visiblePixels(truth)) == 0)
+        CV_Error(Error::StsBadArg, "--truth must have disparities that both images show");
     return truth;
 }
 
@@ -150,7 +152,9 @@ static std::vector<uchar> pointCloud(const Mat& disparity, const Mat& known, con
 {
     Mat points;
     reprojectImageTo3D(disparity, points, Q);
-    const Mat finite = known & (disparity != 0);
+    Mat z;
+    extractChannel(points, z, 2);
+    const Mat finite = known & (z > 0) & (z < std::numeric_limits<float>::infinity()); // else it is behind the cameras
     const String header = format("ply\nformat binary_little_endian 1.0\nelement vertex %d\n"
                                  "property float x\nproperty float y\nproperty float z\n"
                                  "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
@@ -305,7 +309,7 @@ void matchPair(const CommandLineParser& parser)
     if (parser.has("save-findings"))
     {
         const String path = parser.get<String>("save-findings");
-        matcher->getPairModel().save(path);
+        writeFindings(path, matcher->getPairModel());
         std::cout << "written    " << path << std::endl;
     }
     if (parser.has("picture"))

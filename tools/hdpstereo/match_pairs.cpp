@@ -42,14 +42,19 @@ static std::vector<NamedPair> pairsOfFolders(const String& lefts, const String& 
     return pairs;
 }
 
-//! Whether a name is not that of a file below a folder
-static bool leavesFolder(const String& name)
+//! A name without parts that say nothing, as a/./b; empty if it is not that of a file below a folder
+static String nameBelow(const String& name)
 {
     std::istringstream parts(name);
-    bool leaves = name[0] == '/';
+    String below;
     for (std::string part; std::getline(parts, part, '/');)
-        leaves |= part == "..";
-    return leaves;
+    {
+        if (part == ".." || name[0] == '/')
+            return String();
+        if (!part.empty() && part != ".")
+            below = below.empty() ? part : below + "/" + part;
+    }
+    return below;
 }
 
 static std::vector<NamedPair> pairsOfList(const String& list)
@@ -72,10 +77,11 @@ static std::vector<NamedPair> pairsOfList(const String& list)
         if (parts.size() != 3)
             CV_Error(Error::StsBadArg,
                      format("'%s': line %d is not a left image, a right one and a name", list.c_str(), number));
-        if (leavesFolder(parts[2]))
+        const String name = nameBelow(parts[2]);
+        if (name.empty())
             CV_Error(Error::StsBadArg,
                      format("'%s': line %d: the name '%s' is not in OUT", list.c_str(), number, parts[2].c_str()));
-        pairs.push_back({ parts[0], parts[1], parts[2] });
+        pairs.push_back({ parts[0], parts[1], name });
     }
     return pairs;
 }
@@ -166,10 +172,19 @@ size_t matchPairs(const CommandLineParser& parser)
         areFolders ? pairsOfFolders(lefts, parser.get<String>("@right")) : pairsOfList(lefts);
     if (pairs.empty())
         CV_Error(Error::StsBadArg, "there is no pair in '" + lefts + "'");
-    std::set<String> names;
+    const auto mapOf = [&](const NamedPair& pair) { return utils::fs::join(out, pair.name + "." + format); };
+    std::set<String> names, images;
     for (const NamedPair& pair : pairs)
+    {
         if (!names.insert(pair.name).second)
             CV_Error(Error::StsBadArg, "two pairs have the name '" + pair.name + "'");
+        for (const String& image : { pair.left, pair.right })
+            if (utils::fs::exists(image))
+                images.insert(hdp_tools::placeOf(image));
+    }
+    for (const NamedPair& pair : pairs)
+        if (utils::fs::exists(mapOf(pair)) && images.count(hdp_tools::placeOf(mapOf(pair))) > 0)
+            CV_Error(Error::StsBadArg, "the map '" + mapOf(pair) + "' must not be one of the images");
 
     // One for all pairs: it keeps its memory.
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, 0);
@@ -179,7 +194,7 @@ size_t matchPairs(const CommandLineParser& parser)
     size_t done = 0, old = 0, bad = 0;
     for (const NamedPair& pair : pairs)
     {
-        const String path = utils::fs::join(out, pair.name + "." + format);
+        const String path = mapOf(pair);
         done++;
         if (utils::fs::exists(path))
         {

@@ -224,7 +224,10 @@ void matchTiles(const CommandLineParser& parser)
     int layers = 0;
     const PairModel model = findModel(parser, pair, *matcher, pixels, layers);
     if (parser.has("save-findings"))
-        model.save(parser.get<String>("save-findings"));
+    {
+        writeFindings(parser.get<String>("save-findings"), model);
+        std::cout << "written    " << parser.get<String>("save-findings") << std::endl;
+    }
     const Tiling tiling(size, *matcher, layers, pixels);
     const Ptr<MapTiles> map = createMap(output, size, tiling.side());
     for (int i = 0; i < tiling.count(); ++i)

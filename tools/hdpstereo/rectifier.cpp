@@ -2,6 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "files.hpp"
+
+#include <fstream>
+#include <iterator>
 #include "rectifier.hpp"
 
 using namespace cv;
@@ -62,5 +65,10 @@ void Rectifier::write(FileStorage& fs) const
 {
     if (first_.empty())
         return;
-    fs << "calibration" << first_ << "calibration2" << second_ << "unit" << unit_ << "fieldOfView" << fieldOfView_;
+    const auto textOf = [](const String& path) {
+        std::ifstream file(path.c_str());
+        return String((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    };
+    fs << "calibration" << textOf(first_) << "calibration2" << textOf(second_) << "unit" << unit_ << "fieldOfView"
+       << fieldOfView_;
 }

@@ -254,6 +254,22 @@ TEST(HDPStereo_Mgm, wrong_calls)
     EXPECT_EQ("", test.call("-r -31 -R 0 -O 8").errors);
 }
 
+#ifdef __linux__
+//! The file that was there before stays.
+TEST(HDPStereo_Mgm, full_disk)
+{
+    MgmTest test;
+    const String out = test.folder.path("out.tif");
+    test.folder.writeText("out.tif", "kept");
+    ASSERT_EQ(0, symlink("/dev/full", (out + ".part").c_str()));
+    const Execution full = run(test.folder, "hdpstereo-mgm -r -31 -R 0 " + test.folder.path("left.tif") + " " +
+                                                test.folder.path("right.tif") + " " + out);
+    EXPECT_EQ(1, full.status);
+    EXPECT_EQ("error: cannot write '" + out + ".part'\n", full.errors);
+    EXPECT_EQ("kept", readText(out));
+}
+#endif
+
 TEST(HDPStereo_Mgm, outputs_that_cannot_be)
 {
     MgmTest test;

@@ -102,7 +102,7 @@ public:
     @param depthType CV_32F or CV_16U.
     @param minDisparity In pixels. Disparities below it, at or below 0, or not finite are invalid. Rejected pixels of a
     matcher with minDisparity > 1 are above 0, so it is to be given then.
-    @throws cv::Exception if an argument is of another type.
+    @throws cv::Exception if an argument is of another type, or disparity is empty or larger than getSize().
      */
     CV_WRAP virtual void computeDepth(InputArray disparity, OutputArray depth, int depthType = CV_32F,
                                       int minDisparity = 0) const = 0;
@@ -134,8 +134,9 @@ public:
     @param fieldOfView Horizontal field of view of the rectified images in degrees, 1 to 170. 0: without fisheye as much
     as has no empty pixels; with fisheye what keeps the focal length.
     @param size Size of the rectified images; by default that of the raw ones.
-    @throws cv::Exception if a matrix of the calibration is of another size, not finite or impossible, or an argument is
-    out of range.
+    @throws cv::Exception if a matrix of the calibration is of another size, not finite or impossible, if
+    cv::stereoRectify() would put one camera above the other, if one sees nothing of the other's image, or if an
+    argument is out of range.
      */
     CV_WRAP static Ptr<StereoRig> create(const StereoCalibration& calibration, double fieldOfView = 0,
                                          Size size = Size());
@@ -169,7 +170,7 @@ public:
     @param rows HDPTreeMatcher::Findings::rows of a pair that is rectified by the calibration.
     @return Whether it was: false if all are 0, as too few corners were matched, or it contradicts those before. After
     five contradictions in a row those are forgotten: something has hit the rig.
-    @throws cv::Exception if there are not five finite numbers.
+    @throws cv::Exception if there are not five finite numbers, or they move a row by a quarter of the image's height.
      */
     CV_WRAP virtual bool add(const std::vector<double>& rows) = 0;
 
