@@ -303,8 +303,9 @@ class Parameters(Test):
         self.assertRaisesText(
             ValueError, "preset must be one of 'paper', 'fast', 'ultrafast', 'quality', 'tree', not 'best'",
             lambda: HDPTreeMatcher.create(preset='best'))
+        twice = 'a parameter is given twice, in camel case and in snake case: fillOcclusions, fill_occlusions'
         for create in HDPTreeMatcher.create, HDPTreeMatcher.Params:
-            self.assertRaisesText(TypeError, 'given twice',
+            self.assertRaisesText(TypeError, twice,
                                   lambda create=create: create(fillOcclusions=1, fill_occlusions=0))
         for name in ('side', 'params', '__class__', '_x', ''):
             self.assertRaises(TypeError, lambda name=name: HDPTreeMatcher.create(**{name: 3}))
