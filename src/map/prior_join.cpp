@@ -235,8 +235,8 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    //! The disparity that the points around a pixel propose: its winner, if they speak for it or half of them, by weight,
-    //! were contradicted where they differ from it. Returns by how many bits its cost may be higher.
+    //! The disparity that the points around a pixel propose: its winner, if they speak for it or half of them, by
+    //! weight, were contradicted where they differ from it. Returns by how many bits its cost may be higher.
     float propose(Point place, int maxDisparity, std::vector<Neighbour>& found, ushort& proposed) const
     {
         const ushort own = winners_.ptr<ushort>(place.y)[place.x];

@@ -30,11 +30,11 @@ CV_EXPORTS void pointsOfLayer(const Mat& disparity, const Mat& sigma, int minDis
 /** Joins the winners of a layer with what is known beforehand. A point that the winners agree with speaks for those
 around it which go on from it. Another one counts if points around agree with it, and the costs contradict neither it
 nor, in the mean, the points around that differ from the winners as well; it speaks against winners that go on from
-the one at its place. If they do contradict it, it speaks for these, too. Where less than two fifths of the points around
-agree with the winners, the prior is of something else, and none counts; but where the costs of those that differ are
-hardly higher, the winners are noise, and the points count if few are contradicted in the whole layer. Where more speaks
-against a winner than for it, or nothing for it, it becomes the disparity of a plane through the points around, unless
-the costs contradict; if nothing speaks against it either, less is enough for that.
+the one at its place. If the costs do contradict it, it speaks for these winners. Where less than two fifths of the
+points around agree with the winners, the prior is of something else, and none counts; but where the costs of those that
+differ are hardly higher, the winners are noise, and the points count if few are contradicted in the whole layer. Where
+more speaks against a winner than for it, or nothing for it, it becomes the disparity of a plane through the points
+around, unless the costs contradict; if nothing speaks against it either, less is enough for that.
 @param points Of the layer, at most one per pixel.
 @param guide Its image, CV_8UC1 or CV_8UC3: what has the colour of a point is more likely of its surface.
 @param cost Its census.

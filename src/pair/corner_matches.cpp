@@ -248,8 +248,8 @@ void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMat
 
 namespace {
 
-//! Finds and tracks matches where rows may be off by more than findCornerMatches() sees: if there are too few for a model,
-//! those of rows farther away are believed if they are far more.
+//! Finds and tracks matches where rows may be off by more than findCornerMatches() sees: if there are too few for a
+//! model, those of rows farther away are believed if they are far more.
 void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities, int spacing,
                        int maxRowOffset, SearchWindows& windows, std::vector<CornerMatch>& matches)
 {
