@@ -54,10 +54,7 @@ public:
         PairPlan pairPlan = makePlan(p_);
         clock_.restart();
         if (!pairPlan.followsVideo)
-        {
-            lastFrame_ = FrameMemory();
             rangeSearch_.forgetFrames();
-        }
 
         const bool mayMiss = inputs_.hasMasks() || left.depth() == CV_32F;
         const FloatLevels given = { pairModel_.black, pairModel_.white };
@@ -193,7 +190,7 @@ public:
             return confidenceArray.release();
         enlargeToImage(confidenceOfLayer(), INTER_LINEAR_EXACT, confidenceArray);
         if (!known_.ranges.isEmpty())
-            confidenceArray.setTo(Scalar(0), movedIntoRanges() > 1);
+            confidenceArray.setTo(Scalar(0), moves() > 1);
         if (!output_.rejected.empty())
             confidenceArray.setTo(Scalar(0), output_.rejected.back().pixels);
     }
@@ -214,7 +211,7 @@ public:
             scale *= sigmaPerLayer;
         enlargeToImage(ofLayer * scale, INTER_NEAREST, sigmaArray); // means of floats differ between machines
         if (!known_.ranges.isEmpty())
-            add(sigmaArray, movedIntoRanges(), sigmaArray);
+            add(sigmaArray, moves(), sigmaArray);
         if (!output_.rejected.empty())
             sigmaArray.setTo(Scalar(std::numeric_limits<float>::infinity()), output_.rejected.back().pixels);
     }
@@ -230,7 +227,7 @@ public:
                     scratch_[layer.layer].cost(layer.cost).limits(), ofLayer);
         enlargeToImage(ofLayer, INTER_NEAREST, reasonsArray);
         if (!known_.ranges.isEmpty())
-            reasonsArray.setTo(Scalar(REASON_RANGE), movedIntoRanges() > 1);
+            reasonsArray.setTo(Scalar(REASON_RANGE), moves() > 1);
         // From the last filter to the first: what rejected a pixel first is the reason.
         for (auto rejected = output_.rejected.rbegin(); rejected != output_.rejected.rend(); ++rejected)
             reasonsArray.setTo(Scalar(rejected->reason), rejected->pixels);
@@ -295,6 +292,8 @@ private:
     {
         const int finest = pairPlan.finest().layer;
         const GivenPair& given = pairPlan.given;
+        if (!pairPlan.followsVideo)
+            lastFrame_ = FrameMemory();
         std::vector<LayerImages> images;
         clock_.run("image pyramid", [&] {
             buildPairPyramids(pair_.left, pair_.right, pair_.masks, pairPlan.pyramids, pyramids_, images,
@@ -357,8 +356,7 @@ private:
         return confidence;
     }
 
-    //! A map of the finest layer in the size of the image, without added columns. Throws if the array's type is another
-    //! one.
+    //! A map of the finest layer in the size of the image, without added columns. Throws if the array has another type.
     void enlargeToImage(const Mat& ofLayer, int interpolation, OutputArray array) const
     {
         const int extension = result_.plan.output.extension, scale = 1 << result_.plan.finest().layer;
@@ -374,17 +372,10 @@ private:
         enlarged.colRange(extension, enlarged.cols).copyTo(array);
     }
 
-    //! By how much disparities were moved into the ranges of their pixels, in pixels, CV_32FC1
-    Mat movedIntoRanges() const
+    Mat moves() const
     {
-        OutputPlan plan = result_.plan.output;
-        plan.disp12MaxDiff = plan.speckleWindowSize = 0;
-        const Mat& finest = layers_[result_.plan.finest().layer].disparity;
-        Mat found(result_.plan.size, CV_32F), moved(found.size(), CV_32F);
-        OutputBuffers buffers;
-        outputDisparity(finest, plan, buffers, found);
-        outputDisparity(finest, plan, buffers, moved, Mat(), known_.ranges);
-        return abs(moved - found);
+        const PairPlan& plan = result_.plan;
+        return movedIntoRanges(layers_[plan.finest().layer].disparity, plan.output, plan.size, known_.ranges);
     }
 
     //! Without the columns that are added to the images

@@ -4,6 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 #define OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 
+#include "base/stage_clock.hpp"
 #include "forest/forest_aggregation.hpp"
 #include "paper/support_points.hpp"
 #include "plan/pair_plan.hpp"
@@ -12,35 +13,6 @@
 #include "video/temporal_join.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
-
-//! Adds up the wall time of each stage.
-class StageClock
-{
-public:
-    void restart()
-    {
-        stages.clear();
-        milliseconds.clear();
-    }
-
-    //! Runs a stage and adds its time to that of its name.
-    template <typename Stage> void run(const char* name, Stage stage)
-    {
-        const int64 start = getTickCount();
-        stage();
-        const double time = (double)(getTickCount() - start) * 1000 / getTickFrequency();
-        const size_t i = (size_t)(std::find(stages.begin(), stages.end(), name) - stages.begin());
-        if (i == stages.size())
-        {
-            stages.push_back(name);
-            milliseconds.push_back(0);
-        }
-        milliseconds[i] += time;
-    }
-
-    std::vector<String> stages; // in the order in which they first ran
-    std::vector<double> milliseconds;
-};
 
 //! What is known of a matched layer
 struct LayerResult

@@ -141,9 +141,7 @@ private:
 
 static Mat readImage(const String& path)
 {
-    Mat image = imread(path, IMREAD_UNCHANGED);
-    if (image.empty())
-        CV_Error(Error::StsError, "cannot read the image '" + path + "'");
+    Mat image = readImage(path, IMREAD_UNCHANGED);
     if (image.channels() > 1)
         cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);
     if (image.depth() != CV_8U && image.depth() != CV_16U)
@@ -156,9 +154,7 @@ static bool keepsFloats(const String& path)
 {
     try
     {
-        std::vector<uchar> bytes;
-        imencode(path.substr(std::min(path.rfind('.'), path.size())), Mat(1, 1, CV_32F, Scalar(-0.5)), bytes);
-        const Mat read = imdecode(bytes, IMREAD_UNCHANGED);
+        const Mat read = imdecode(encode(extensionOf(path), Mat(1, 1, CV_32F, Scalar(-0.5))), IMREAD_UNCHANGED);
         return read.type() == CV_32FC1 && read.at<float>(0, 0) == -0.5f;
     }
     catch (const cv::Exception&)

@@ -134,6 +134,17 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
         convert(fixedPoint, CV_32F, 1. / unit, 0, disparity);
 }
 
+Mat movedIntoRanges(const Mat& finest, const OutputPlan& plan, Size size, const PixelRanges& ranges)
+{
+    OutputPlan unfiltered = plan;
+    unfiltered.disp12MaxDiff = unfiltered.speckleWindowSize = 0;
+    OutputBuffers buffers;
+    Mat found(size, CV_32F), moved(size, CV_32F);
+    outputDisparity(finest, unfiltered, buffers, found);
+    outputDisparity(finest, unfiltered, buffers, moved, Mat(), ranges);
+    return abs(moved - found);
+}
+
 void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const CostLimits& limits, Mat& reasons)
 {
     Mat stable;

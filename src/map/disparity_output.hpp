@@ -52,6 +52,10 @@ minDisparity on, less those without data and what the left-right check and the s
 CV_EXPORTS void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& buffers, Mat& disparity,
                                 const Mat& mask = Mat(), const PixelRanges& ranges = PixelRanges());
 
+//! By how much outputDisparity() moves disparities into the ranges of their pixels, in pixels: CV_32FC1 of the image's
+//! size
+CV_EXPORTS Mat movedIntoRanges(const Mat& finest, const OutputPlan& plan, Size size, const PixelRanges& ranges);
+
 /** Why the pixels of a layer have their disparities, see HDPTreeMatcher::Reason: MATCHED, OCCLUDED or OUTSIDE, CV_8UC1.
 @param disparity,limits Of the layer: pixels without data hide none.
 @param plan Where the layer lies in the image.

@@ -198,14 +198,17 @@ private:
         {
             const Vec4d own = sums.ptr<Vec4d>()[cellOf(points_[i].place)];
             const double excess = own[0], claims = own[1], agreeing = own[2], all = own[3];
-            const bool isContradicted = excess_[i] > contradiction * area || excess > contradiction / 2 * area * claims;
+            const bool isContradictedHere = isContradicted(i) || excess > contradiction / 2 * area * claims;
             const bool isUnseen = isRight && excess < indifference * area * claims;
             if (agreeing < minAgreement * all && !isUnseen)
                 states_[i] = FAILS;
             else if (states_[i] == CLAIMS)
-                states_[i] = isContradicted ? CONTRADICTED : COUNTS;
+                states_[i] = isContradictedHere ? CONTRADICTED : COUNTS;
         }
     }
+
+    //! By the costs at the point alone
+    bool isContradicted(size_t index) const { return excess_[index] > contradiction * windowSide * windowSide; }
 
     //! Whether the costs contradict few claims in terms of the points that agree
     bool isRightInTheMain() const
@@ -214,7 +217,7 @@ private:
         for (size_t i = 0; i < points_.size(); ++i)
         {
             agreeing += states_[i] == AGREES;
-            contradicted += excess_[i] > contradiction * windowSide * windowSide;
+            contradicted += isContradicted(i);
         }
         return contradicted <= mostContradicted * agreeing;
     }
@@ -256,8 +259,8 @@ private:
             else if (states_[n.index] == COUNTS && isOfWinner)
                 against += n.weight;
         }
-        const auto isContradicted = [&](const Neighbour& n) { return states_[n.index] == CONTRADICTED; };
-        found.erase(std::remove_if(found.begin(), found.end(), isContradicted), found.end());
+        const auto isNone = [&](const Neighbour& n) { return states_[n.index] == CONTRADICTED; };
+        found.erase(std::remove_if(found.begin(), found.end(), isNone), found.end());
         if (found.size() < 2 || (speaksFor > 0 && speaksFor >= against) || 2 * confirming >= all)
             return 0;
         proposed = (ushort)clamped(cvRound(planeAt(place, found) * subpixelScale), 0, maxDisparity);

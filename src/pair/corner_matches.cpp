@@ -203,13 +203,11 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     match.isValid = true;
 }
 
-} // namespace
-
-void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities, int spacing,
-                       SearchWindows& windows, std::vector<CornerMatch>& matches)
+//! Matches corners that have been found. mask: of the right image
+void matchCorners(const Mat& left, const Mat& right, const Mat& mask, const Range& disparities, SearchWindows& windows,
+                  std::vector<CornerMatch>& matches)
 {
-    const Mat rightHas = windowsWithData(masks.right);
-    findCorners(left, windowsWithData(masks.left), spacing, windows, matches);
+    const Mat rightHas = windowsWithData(mask);
     measureWindows(right, windows);
     parallelFor((int)matches.size(), std::vector<float>(), [&](int i, std::vector<float>& correlations) {
         CornerMatch& match = matches[i];
@@ -217,6 +215,15 @@ void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks
         if (match.isValid && !rightHas.empty())
             match.isValid = rightHas.ptr((int)match.y)[(int)match.x] != 0;
     });
+}
+
+} // namespace
+
+void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities, int spacing,
+                       SearchWindows& windows, std::vector<CornerMatch>& matches)
+{
+    findCorners(left, windowsWithData(masks.left), spacing, windows, matches);
+    matchCorners(left, right, masks.right, disparities, windows, matches);
 }
 
 void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows, std::vector<CornerMatch>& matches)
@@ -266,15 +273,14 @@ void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks
     if (count(matches) >= CornerMatching::minMatches)
         return;
     const int step = SearchArea::rows, farthest = std::min(maxRowOffset, left.rows / 8) + CornerMatching::searchRadius;
-    PairMasks moved = masks;
-    Mat movedRight;
-    std::vector<CornerMatch> others;
+    Mat movedRight, movedMask;
+    std::vector<CornerMatch> others = matches; // of the same corners
     for (int offset = step; offset <= farthest; offset = offset > 0 ? -offset : step - offset)
     {
         moveRows(right, offset, BORDER_REPLICATE, movedRight);
         if (!masks.right.empty())
-            moveRows(masks.right, offset, BORDER_CONSTANT, moved.right);
-        findCornerMatches(left, movedRight, moved, disparities, spacing, windows, others);
+            moveRows(masks.right, offset, BORDER_CONSTANT, movedMask);
+        matchCorners(left, movedRight, movedMask, disparities, windows, others);
         for (CornerMatch& match : others)
             match.y += offset;
         trackCornerMatches(left, right, others);
