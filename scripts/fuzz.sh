@@ -20,7 +20,8 @@ cd "$checkout"
 cmake --preset fuzz -B "$directory"
 cmake --build "$directory" --parallel "$jobs"
 
-export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1:detect_leaks=1${ASAN_OPTIONS:+:$ASAN_OPTIONS}
+asan_options=detect_stack_use_after_return=1:strict_string_checks=1:detect_leaks=1:intercept_tls_get_addr=0
+export ASAN_OPTIONS=$asan_options${ASAN_OPTIONS:+:$ASAN_OPTIONS}
 export UBSAN_OPTIONS=print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}
 fuzzer=$directory/bin/hdpstereo_fuzz
 if [ "$seconds" -eq 0 ]; then
