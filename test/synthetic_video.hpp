@@ -30,8 +30,9 @@ the centre of the image, with disparity d at s (u - x d, v - y d) with disparity
 class SyntheticVideo
 {
 public:
-    SyntheticVideo(Size size, double backDisparity, double noise)
-        : size_(size), backDisparity_(backDisparity), noise_(noise)
+    //! boardContrast: of the boards, in times that of what is behind them
+    SyntheticVideo(Size size, double backDisparity, double noise, double boardContrast = 1)
+        : size_(size), backDisparity_(backDisparity), noise_(noise), boardContrast_(boardContrast)
     {
     }
 
@@ -115,8 +116,9 @@ private:
     {
         const int seed = hit.board->seed;
         const double base = 90 + 60 * (seed % 2);
-        const double value = base + 0.25 * (texture(2 * seed, hit.u / 2, hit.v / 2) - 127.5) +
-                             0.4 * (texture(2 * seed + 1, hit.u / 12, hit.v / 12) - 127.5);
+        const double contrast = seed == 1 ? 1 : boardContrast_;
+        const double value = base + contrast * (0.25 * (texture(2 * seed, hit.u / 2, hit.v / 2) - 127.5) +
+                                                0.4 * (texture(2 * seed + 1, hit.u / 12, hit.v / 12) - 127.5));
         double sum = 0; // of uniform numbers, about normal
         for (int i = 0; noise_ > 0 && i < 12; ++i)
             sum += rng.uniform(-1000, 1001) / 2000.;
@@ -124,7 +126,7 @@ private:
     }
 
     Size size_;
-    double backDisparity_, noise_;
+    double backDisparity_, noise_, boardContrast_;
 };
 
 } // namespace opencv_test

@@ -134,6 +134,9 @@ TEST(HDPStereo_TemporalSources, oracle)
                 const Size cells(size.width / 2, size.height / 2);
                 const Mat before = patchyImage(rng, cells, CV_8UC1, 7);
                 Mat now = isStill ? before.clone() : oracle::warpedGrey(before, warp);
+                const Rect atRest(cells.width / 2, 0, cells.width / 4, cells.height);
+                if (!atRest.empty())
+                    before(atRest).copyTo(now(atRest));
                 Mat change = randomImage(rng, cells, CV_8UC1, noise);
                 change(Rect(0, 0, cells.width / 3, cells.height)).setTo(0);
                 now += change;

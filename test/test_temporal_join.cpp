@@ -44,7 +44,7 @@ struct RandomFrames
                 const int surface = base + (x / 9 + y / 7) % 3 * 40;
                 measured.at<ushort>(y, x) = disparity(surface, 0.05, maxDisparity, rng);
                 last.disparity.at<ushort>(y, x) = disparity(surface, wrong, maxDisparity, rng);
-                const int count = rng.uniform(0, 8);
+                const int count = rng.uniform(0, 16); // of frames, and GUESS
                 last.detail.at<uchar>(y, x) =
                     (uchar)(rng.uniform(last.disparity.at<ushort>(y, x) ? 0 : 8, 16) * 16 + count);
                 if (x >= surface / subpixelScale)
@@ -149,6 +149,7 @@ TEST(HDPStereo_TemporalJoin, first)
                 const int measured = random.measured.at<ushort>(y, x), detail = next.detail.at<uchar>(y, x);
                 EXPECT_EQ(measured * FrameMemory::scale / subpixelScale, FrameMemory::finer(measured, detail));
                 EXPECT_EQ(1, detail & FrameMemory::countMask);
+                EXPECT_EQ((measured + 8) / 16 > x, (detail & FrameMemory::GUESS) != 0);
             }
     }
 }

@@ -209,6 +209,52 @@ TEST(HDPStereo_SlowTemporalPrediction, moving_camera)
     }
 }
 
+//! Texture as faint as the noise looks the same where it was and where it is. It must not lag behind a camera that moves
+//! forward; up to a quarter more errors are left.
+TEST(HDPStereo_SlowTemporalPrediction, faint_texture)
+{
+    const Board near = { Rect2d(20, 80, 110, 90), 26, 3 }, far = { Rect2d(170, 20, 110, 120), 21, 4 };
+    for (int preset : squarePresets)
+    {
+        double ofSingle = 0, ofTemporal = 0;
+        for (double back : { 6.3, 8.8, 10.3 })
+        {
+            SyntheticVideo video(frameSize, back, 2.5, 0.08);
+            const Ptr<HDPTreeMatcher> single = createSingle(preset), temporal = createTemporal(preset);
+            for (int i = 0; i < 11; ++i)
+            {
+                const SyntheticFrame frame = video.render(i, { near, far }, Point3d(0, 0, 0.0015 * i));
+                const Mat a = matchFrame(*single, frame), b = matchFrame(*temporal, frame);
+                ofSingle += i < 5 ? 0 : limitedError(a, frame);
+                ofTemporal += i < 5 ? 0 : limitedError(b, frame);
+            }
+        }
+        EXPECT_LE(ofTemporal, 1.3 * ofSingle) << "preset " << preset;
+    }
+}
+
+//! What comes into sight of the right image, as the camera pans, is measured: a guess from the last frame is none.
+TEST(HDPStereo_SlowTemporalPrediction, comes_into_sight)
+{
+    const int speed = 5, frames = 10;
+    int ofSingle = 0, ofTemporal = 0;
+    for (int preset : squarePresets)
+    {
+        SyntheticVideo video(Size(frameSize.width + speed * frames, frameSize.height), 14.3, 4);
+        const Ptr<HDPTreeMatcher> single = createSingle(preset), temporal = createTemporal(preset);
+        for (int i = 0; i < frames; ++i)
+        {
+            SyntheticFrame frame = video.render(i, someBoards());
+            const Rect view(Point(speed * (frames - i), 0), frameSize), border(15, 0, 25, frameSize.height);
+            for (Mat* map : { &frame.left, &frame.right, &frame.truth })
+                *map = (*map)(view).clone();
+            ofSingle += countWrong(matchFrame(*single, frame), frame.truth, 1, border);
+            ofTemporal += countWrong(matchFrame(*temporal, frame), frame.truth, 1, border);
+        }
+    }
+    EXPECT_LE(ofTemporal, ofSingle);
+}
+
 //! The first frame after a cut is that of a matcher which has seen nothing else.
 TEST(HDPStereo_TemporalPrediction, cut)
 {

@@ -31,9 +31,9 @@ CostVolume flatVolume(Size size)
 }
 
 //! What the last frame's disparity adds to the cost of a candidate
-int penalty(double disparity, int candidate)
+int penalty(double disparity, int candidate, int largest = 6 * CostVolume::scale)
 {
-    return std::min(cvRound(CostVolume::scale * std::abs(candidate - disparity)), 6 * CostVolume::scale);
+    return std::min(std::max(cvRound(CostVolume::scale * (std::abs(candidate - disparity) - 1)), 0), largest);
 }
 
 //! The third frame of a video: everything moved to the left by a cell, and nothing else is known to be as it was.
@@ -100,21 +100,22 @@ TEST(HDPStereo_TemporalPrior, sources)
     }
 }
 
-//! What only one pair has had predicts nothing, neither at the same place nor where the motion leads.
+//! What only one pair has had, or none has shown, predicts nothing, neither at the same place nor where the motion leads.
 TEST(HDPStereo_TemporalPrior, unconfirmed)
 {
-    for (int place : { SAME_PLACE, MOVED_PLACE })
-    {
-        MovedVideo video(10 * side * subpixelScale);
-        video.next.sources.setTo(place);
-        const int x = 5, from = x * side + side / 2 + (place == MOVED_PLACE ? FrameMemory::cell : 0);
-        video.last.detail.col(from).setTo(FrameMemory::countMask << FrameMemory::detailBits | 1);
-        Mat predicted;
-        predictDisparities(video.last, video.next, side, layerSize / side, predicted);
-        for (int y = 0; y < predicted.rows; ++y)
-            for (int k = 0; k < predicted.cols; ++k)
-                EXPECT_EQ(k == x ? -1 : 10, predicted.at<float>(y, k)) << Point(k, y);
-    }
+    for (int count : { 1, 5 | FrameMemory::GUESS })
+        for (int place : { SAME_PLACE, MOVED_PLACE })
+        {
+            MovedVideo video(10 * side * subpixelScale);
+            video.next.sources.setTo(place);
+            const int x = 5, from = x * side + side / 2 + (place == MOVED_PLACE ? FrameMemory::cell : 0);
+            video.last.detail.col(from).setTo(FrameMemory::detailOf(15, count));
+            Mat predicted;
+            predictDisparities(video.last, video.next, side, layerSize / side, predicted);
+            for (int y = 0; y < predicted.rows; ++y)
+                for (int k = 0; k < predicted.cols; ++k)
+                    EXPECT_EQ(k == x ? -1 : 10, predicted.at<float>(y, k)) << Point(k, y);
+        }
 }
 
 //! Means that contradict stay, other costs do not.
@@ -186,7 +187,7 @@ TEST(HDPStereo_CostVolume, prefer)
         preferDisparity(pixel, 7.25, largest, volume);
     for (int k = 0; k < candidates; ++k)
     {
-        const int rise = std::min(cvRound(CostVolume::scale * std::abs(k - 7.25)), largest);
+        const int rise = penalty(7.25, k, largest);
         EXPECT_EQ(flatCost + rise, costsOf(0)[k]);
         EXPECT_EQ(before[2 * CostVolume::chunk + k], costsOf(1)[k]) << "of a pixel without candidates";
         EXPECT_EQ(std::min(before[4 * CostVolume::chunk + k] + rise, 255), costsOf(2)[k]);
@@ -199,7 +200,7 @@ TEST(HDPStereo_CostVolume, prefer)
     volume.steps = 2; // candidates per pixel of disparity
     preferDisparity(0, 7.25 / 2, largest, volume);
     for (int k = 0; k < candidates; ++k)
-        EXPECT_EQ(flatCost + std::min(cvRound(CostVolume::scale * std::abs(k - 7.25)), largest), costsOf(0)[k]);
+        EXPECT_EQ(flatCost + penalty(7.25, k, largest), costsOf(0)[k]);
 }
 
 //! More candidates than 16 bits hold units of
@@ -215,8 +216,7 @@ TEST(HDPStereo_CostVolume, prefer_of_many)
     volume.candidates.push_back(own);
     preferDisparity(0, disparity, largest, volume);
     for (int k = 0; k < many; ++k)
-        ASSERT_EQ(flatCost + std::min(cvRound(CostVolume::scale * std::abs(k - disparity)), largest), volume.costs[k])
-            << k;
+        ASSERT_EQ(flatCost + penalty(disparity, k, largest), volume.costs[k]) << k;
 }
 
 TEST(HDPStereo_CostVolume, contradicts)

@@ -84,7 +84,8 @@ inline Mat warpedGrey(const Mat& before, const hdp::FrameWarp& warp)
 inline Mat findSources(const Mat& before, const Mat& now, const hdp::FrameWarp* warp)
 {
     const Mat there = warp ? warpedGrey(before, *warp) : before;
-    Mat change(now.size(), CV_8U), contrast(now.size(), CV_8U), sources(now.size(), CV_8U);
+    Mat change(now.size(), CV_8U), contrast(now.size(), CV_8U), sources(now.size(), CV_8U), unmovedChange;
+    absdiff(now, before, unmovedChange);
     std::vector<int> changes;
     for (int y = 0; y < now.rows; ++y)
         for (int x = 0; x < now.cols; ++x)
@@ -102,7 +103,8 @@ inline Mat findSources(const Mat& before, const Mat& now, const hdp::FrameWarp* 
             const bool looksTheSame = ofCell <= 9 * noise || 25 * 100 * ofCell <= 9 * 70 * around;
             const double meanChange = (squareSum(now, x, y, 1) - squareSum(before, x, y, 1)) / 9.;
             const bool isMoved = warp && looksTheSame && isKnown(*warp, 2 * x, 2 * y);
-            const bool isSame = warp ? std::abs(meanChange) <= 2.5 : looksTheSame;
+            const bool isNearer = squareSum(unmovedChange, x, y, 1) <= ofCell;
+            const bool isSame = warp ? std::abs(meanChange) <= 2.5 && isNearer : looksTheSame;
             sources.at<uchar>(y, x) = (uchar)((isSame ? hdp::SAME_PLACE : 0) + (isMoved ? hdp::MOVED_PLACE : 0));
         }
     return sources;
@@ -239,18 +241,17 @@ private:
         return sum;
     }
 
-    //! One of the last frame may cost more than the measured one by a share of its costs, in percent; one at the same
-    //! place that much more than the best one if the camera moved.
+    //! One of the last frame may cost more than the measured one by a share of its costs, in percent. One at the same
+    //! place must not cost more than where the motion leads.
     int choiceOf(Point cell, int unmovedShare, int movedShare) const
     {
         const Evidence e = around(cell);
         const int sources = sources_.at<uchar>(cell);
         const bool hasMoved = !isStill_ && (sources & hdp::MOVED_PLACE);
-        const int best = hasMoved ? std::min(e.moved, 0) : 0;
-        const int scale = isStill_ ? e.scaleUnmoved : std::max(e.scaleUnmoved, e.scaleMoved);
         // In a share, 128 says that what disagrees is taken, too.
         const int kept = hdp::KEPT;
-        if ((sources & hdp::SAME_PLACE) && 100 * (e.unmoved - best) <= unmovedShare % 128 * scale)
+        if ((sources & hdp::SAME_PLACE) && !(hasMoved && e.unmoved > e.moved) &&
+            100 * e.unmoved <= unmovedShare % 128 * e.scaleUnmoved)
             return hdp::UNMOVED + (unmovedShare >= 128 ? kept : 0);
         if (hasMoved && 100 * e.moved <= movedShare % 128 * e.scaleMoved)
             return hdp::MOVED + (movedShare >= 128 ? kept : 0);
@@ -267,7 +268,12 @@ private:
     }
 
     //! How many frames a disparity of the last frame counts for
-    int countOf(Point from) const { return last_->detail.at<uchar>(from) % 16; }
+    int countOf(Point from) const { return last_->detail.at<uchar>(from) % 8; }
+
+    //! Whether no right image has shown its match
+    bool isGuess(Point from) const { return last_->detail.at<uchar>(from) / 8 % 2 == 1; }
+
+    bool isUnseen(int x, int y) const { return (measured_.at<ushort>(y, x) + 8) / 16 > x; }
 
     //! Returns whether more than 30 percent of the cells that have a source contradict it.
     bool choose()
@@ -329,17 +335,27 @@ private:
                 choice = agreesMoved(u, y) ? hdp::MEASURED : choice;
         const int here = 16 * measured_.at<ushort>(y, x);
         int there = 0, count = 0;
+        bool wasGuess = false;
         if (choice == hdp::UNMOVED)
+        {
             take(Point(x, y), there, count);
+            wasGuess = isGuess(Point(x, y));
+        }
         else if (choice == hdp::MOVED)
+        {
             takeMoved(x, y, there, count);
+            wasGuess = isGuess(movedFrom(prediction_->warp, x, y));
+            if (wasGuess && !isUnseen(x, y)) // comes into sight
+                count = 0;
+        }
+        const int guess = isUnseen(x, y) ? 8 : 0, guessAgain = wasGuess ? guess : 0;
         if (count == 0)
-            return set(x, y, here, 1);
+            return set(x, y, here, 1 + guess);
         if (std::abs(here - there) > tolerance())
-            return choiceAt(x, y) >= hdp::KEPT ? set(x, y, there, count - 1) : set(x, y, here, 1);
+            return choiceAt(x, y) >= hdp::KEPT ? set(x, y, there, count - 1 + guessAgain) : set(x, y, here, 1 + guess);
         const int weight = std::min(count, isStill_ ? 4 : 1);
         const double step = std::max(std::min(here - there, 256), -256) / (weight + 1.);
-        set(x, y, there + (int)std::floor(step + 0.5), std::min(count + 1, 7));
+        set(x, y, there + (int)std::floor(step + 0.5), std::min(count + 1, 7) + guessAgain);
     }
 
     void set(int x, int y, int finer, int count)

@@ -133,7 +133,8 @@ void preferDisparity(int pixel, float disparity, int limit, CostVolume& volume)
         HDP_VECTORIZED for (short k = 0; k < CostVolume::chunk; ++k)
         {
             const short distance = (short)(first + k * CostVolume::scale);
-            const short rise = std::min(std::max(distance, (short)-distance), most);
+            const short beyond = (short)(std::max(distance, (short)-distance) - CostVolume::scale);
+            const short rise = std::min(std::max(beyond, (short)0), most);
             costs[k] = (uchar)std::min((short)(costs[k] + rise), (short)UCHAR_MAX);
         }
     }

@@ -72,7 +72,7 @@ private:
 CV_EXPORTS void excludeCandidates(const Mat& intervals, CostVolume& volume);
 
 //! Raises the costs of other disparities of pixel y * width + x than a preferred one, in pixels: by a unit of cost,
-//! CostVolume::scale, per candidate of distance, up to a limit in units of the volume.
+//! CostVolume::scale, per candidate of distance beyond the first, up to a limit in units of the volume.
 CV_EXPORTS void preferDisparity(int pixel, float disparity, int limit, CostVolume& volume);
 
 //! Whether the cost of a disparity, in pixels, exceeds the lowest one of the pixel by more than

@@ -94,7 +94,7 @@ Terms solve(const std::vector<TrackedPoint>& points, const std::vector<double>& 
     const double rest = inertia * points.size();
     NormalMatrix a = rest * NormalMatrix::eye();
     Terms b = Terms::zeros();
-    b(0) = b(5) = rest;
+    a(0, 0) = a(5, 5) = b(0) = b(5) = (double)points.size(); // cameras keep their focal length
     for (size_t i = 0; i < points.size(); ++i)
         addEquations(points[i], weights[i], a, b);
     return a.solve(b, DECOMP_CHOLESKY);

@@ -44,14 +44,15 @@ struct FrameMemory
     FrameKey key = FrameKey();
     CameraMotion motion;   // to this frame, in pixels of the layer
     Mat disparity;         // CV_16UC1, a disparity map
-    Mat detail;            // CV_8UC1: four more bits of each disparity, and the number of frames it stands for
+    Mat detail;            // CV_8UC1: four more bits of each disparity, GUESS, and the number of frames it stands for
     std::vector<Mat> grey; // CV_8UC1: the pyramid of the left image, from cells on
 
     bool isEmpty() const { return frames == 0; }
     void clear() { frames = 0; } // keeps the memory
 
     static const int cell = 2; // side of the pixels of grey's finest level, in pixels of the layer
-    static const int detailBits = 4, countMask = (1 << detailBits) - 1;
+    static const int detailBits = 4, countMask = 7;
+    static const int GUESS = 8;                           // in detail: of a pixel whose match no right image has shown
     static const int scale = subpixelScale << detailBits; // of disparities with all their bits, for means over frames
 
     //! detail of a disparity in 1 / scale pixel, rounded for the map by adding half a unit of that
@@ -59,6 +60,8 @@ struct FrameMemory
     {
         return (rounded & ((1 << detailBits) - 1)) << detailBits | count;
     }
+    //! Whether the right image does not show the match of column x
+    static CV_ALWAYS_INLINE int isUnseen(int disparity, int x) { return wholeDisparity(disparity) > x; }
     //! A disparity in 1 / scale pixel; joinRow() rounds it for the map, so it may be half a unit of that below it.
     static CV_ALWAYS_INLINE int finer(int disparity, int detail)
     {
@@ -70,10 +73,11 @@ struct FrameMemory
 struct VideoScratch
 {
     std::vector<TrackedPoint> points;
-    Mat halved;                                        // of predictFrame(): the left image
-    std::vector<Mat> exposed;                          // the same: its pyramid, by the last frame's exposure
-    Mat warped, change, contrast, difference, sums[3]; // of findSources(), per cell
-    Mat sources, shares, evidence, choices;            // of joinLastFrame(), per cell
+    Mat halved;               // of predictFrame(): the left image
+    std::vector<Mat> exposed; // the same: its pyramid, by the last frame's exposure
+    // Of findSources(), per cell
+    Mat warped, change, unmovedChange, contrast, difference, sums[4];
+    Mat sources, shares, evidence, choices; // of joinLastFrame(), per cell
 };
 
 }}} // namespace cv::stereo::hdp

@@ -239,7 +239,14 @@ Verdict joinLastFrame(const CensusCost& cost, const FrameMemory& last, const Fra
     {
         disparity.copyTo(next.disparity);
         next.detail.create(disparity.size(), CV_8U);
-        next.detail.setTo(Scalar(FrameMemory::detailOf(1 << (FrameMemory::detailBits - 1), 1))); // no rest, one frame
+        parallelForRows(disparity.size(), [&](int y) {
+            const int noRest = 1 << (FrameMemory::detailBits - 1);
+            for (int x = 0; x < disparity.cols; ++x)
+            {
+                const int isGuess = FrameMemory::isUnseen(disparity.ptr<ushort>(y)[x], x);
+                next.detail.ptr(y)[x] = (uchar)FrameMemory::detailOf(noRest, 1 | FrameMemory::GUESS * isGuess);
+            }
+        });
     }
     else if (!join(cost, last, prediction, scratch, next, disparity))
         return CONTRADICTED;

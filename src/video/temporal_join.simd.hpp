@@ -73,10 +73,10 @@ inline int countBits(unsigned bits)
 //! The cost of a pixel; half of the bits if the right image does not show its match
 template <int planes> inline int costOf(const ComparedRow& row, int x, int disparity)
 {
-    const int candidate = wholeDisparity(disparity);
-    if (candidate > x)
+    if (FrameMemory::isUnseen(disparity, x))
         return row.unseenCost;
-    return countBits(censusDifference<planes>(row.left + 4 * x, row.right - x + candidate, row.planeStride));
+    return countBits(
+        censusDifference<planes>(row.left + 4 * x, row.right - x + wholeDisparity(disparity), row.planeStride));
 }
 
 //! What a disparity at a distance from the measured one may cost more, and whether it is KEPT then
@@ -93,12 +93,10 @@ inline int choiceOf(const short* sums, int sources, int isStill, int shareOfUnmo
     const int unmovedShare = shareOfUnmoved & ChoiceRule::PERCENT, movedShare = shareOfMoved & ChoiceRule::PERCENT;
     const int unmovedKept = shareOfUnmoved & ChoiceRule::KEEPS, movedKept = shareOfMoved & ChoiceRule::KEEPS;
     const int unmoved = sums[COST_UNMOVED], moved = sums[COST_MOVED];
-    const int scaleUnmoved = sums[SCALE_UNMOVED], scaleMoved = sums[SCALE_MOVED];
     const int hasUnmoved = sources & 1, hasMoved = (sources >> 1) & (isStill ^ 1);
-    const int best = std::min(moved, 0) & -hasMoved;
-    const int scale = choose(isStill, scaleUnmoved, std::max(scaleUnmoved, scaleMoved));
-    const int takesUnmoved = hasUnmoved & (100 * (unmoved - best) <= unmovedShare * scale);
-    const int takesMoved = hasMoved & (100 * moved <= movedShare * scaleMoved);
+    const int prefersUnmoved = hasUnmoved & ((hasMoved ^ 1) | (unmoved <= moved));
+    const int takesUnmoved = prefersUnmoved & (100 * unmoved <= unmovedShare * sums[SCALE_UNMOVED]);
+    const int takesMoved = hasMoved & (100 * moved <= movedShare * sums[SCALE_MOVED]);
     static_assert(ChoiceRule::KEEPS == KEPT << 5, "One bit becomes the other.");
     return choose(takesUnmoved, UNMOVED | unmovedKept >> 5, takesMoved * (MOVED | movedKept >> 5));
 }
@@ -219,8 +217,11 @@ void joinRow(const ushort* measured, const ushort* unmoved, const uchar* unmoved
         const int here = measured[x] << FrameMemory::detailBits, choice = choose(isFringe, MEASURED, place),
                   isMoved = choice == MOVED;
         const int there = choose(isMoved, moved[x], FrameMemory::finer(unmoved[x], unmovedDetail[x]));
-        const int count =
-            choose(isMoved, movedDetail[x], unmovedDetail[x]) & FrameMemory::countMask & -(choice != MEASURED);
+        const int from = choose(isMoved, movedDetail[x], unmovedDetail[x]);
+        const int wasGuess = (from & FrameMemory::GUESS) != 0, isUnseen = FrameMemory::isUnseen(measured[x], x);
+        // What comes into sight is measured.
+        const int isTaken = (choice != MEASURED) & ((isMoved & wasGuess & (isUnseen ^ 1)) ^ 1);
+        const int count = from & FrameMemory::countMask & -isTaken;
         const int difference = here - there;
         const int limited = std::max(std::min(difference, maxStep), -maxStep);
         const int weight = std::min(count, maxWeight);
@@ -233,7 +234,8 @@ void joinRow(const ushort* measured, const ushort* unmoved, const uchar* unmoved
         const int joinedCount = choose(isNew, 1, choose(agrees, std::min(count + 1, maxCount), count - 1));
         const int rounded = joined + half;
         disparity[x] = (ushort)(rounded >> FrameMemory::detailBits);
-        detail[x] = (uchar)FrameMemory::detailOf(rounded, joinedCount);
+        const int isGuess = isUnseen & (isNew | wasGuess);
+        detail[x] = (uchar)FrameMemory::detailOf(rounded, joinedCount | isGuess * FrameMemory::GUESS);
     }
 }
 

@@ -37,6 +37,7 @@ const int changeSide = 3, changeCells = changeSide * changeSide, contrastSide = 
           contrastCells = contrastSide * contrastSide;
 
 const int cell = FrameMemory::cell;
+const int trackedReach = 4 * cell; // pixels, from a tracked point to the corners of the square that is compared
 
 /** The pyramid of this frame as the exposure of the last one would show it: levels of the same mean and deviation, if
 they are not about the same. They are only compared, so it need not be exact. */
@@ -54,15 +55,29 @@ const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const std::vect
     return exposed;
 }
 
+//! Whether what is tracked at a pixel shows two surfaces, which move apart: outlines have much texture.
+bool isAtStep(const FrameMemory& last, Point pixel)
+{
+    const int maxStep = maxSourceDistance * subpixelScale / last.key.scale, r = trackedReach;
+    const Rect map(Point(), last.disparity.size());
+    for (const Point& to : { Point(-r, -r), Point(r, -r), Point(-r, r), Point(r, r) })
+        if (map.contains(pixel + to) &&
+            std::abs(last.disparity.at<ushort>(pixel + to) - last.disparity.at<ushort>(pixel)) > maxStep)
+            return true;
+    return false;
+}
+
 //! From the last frame to this one, in pixels of the layer. The camera probably moves on as it did.
 CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
 {
     const std::vector<Mat>& before = last.grey;
     const Size size = now[0].size();
     choosePoints(before, points);
+    const auto isUnusable = [&](const TrackedPoint& point) { return isAtStep(last, cell * Point(point.before)); };
+    points.erase(std::remove_if(points.begin(), points.end(), isUnusable), points.end());
     for (TrackedPoint& point : points)
     {
-        const ushort disparity = last.disparity.at<ushort>(cell * (int)point.before.y, cell * (int)point.before.x);
+        const ushort disparity = last.disparity.at<ushort>(cell * Point(point.before));
         point.disparity = (disparity / (double)subpixelScale + last.key.minDisparity) / cell;
     }
     movePoints(scaled(last.motion, 1. / cell), size, points);
@@ -198,6 +213,8 @@ void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, Video
     {
         subtract(now, before, scratch.difference, noArray(), CV_16S);
         sumOverWindows(scratch.difference, changeSide, CV_16S, scratch.sums[2]);
+        absdiff(now, before, scratch.unmovedChange);
+        sumOverWindows(scratch.unmovedChange, changeSide, CV_16U, scratch.sums[3]);
     }
     const int noise = changeCells * (minNoise + noiseFactor * medianLevel(scratch.change));
     const int maxChange = (int)(changeCells * stillness), share = contrastShare * changeCells;
@@ -211,8 +228,12 @@ void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, Video
         if (!warp)
             return; // 1 is SAME_PLACE
         const short* differences = scratch.sums[2].ptr<short>(y);
-        HDP_VECTORIZED for (int x = 0; x < cells; ++x) ofRow[x] =
-            (uchar)(ofRow[x] * MOVED_PLACE + (std::abs(differences[x]) <= maxChange) * SAME_PLACE);
+        const ushort* unmovedChanges = scratch.sums[3].ptr<ushort>(y);
+        HDP_VECTORIZED for (int x = 0; x < cells; ++x)
+        {
+            const int isSame = (std::abs(differences[x]) <= maxChange) & (unmovedChanges[x] <= changes[x]);
+            ofRow[x] = (uchar)(ofRow[x] * MOVED_PLACE + isSame * SAME_PLACE);
+        }
         const Vec2s* const shifts = warp->ofRow(cell * y);
         for (int x = 0; x < cells; ++x)
         {

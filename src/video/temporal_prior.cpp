@@ -13,8 +13,12 @@ HDP_TUNABLE(int, maxRefused, 10, "percent of the predicted pixels",
 HDP_TUNABLE(int, maxPenalty, 6, "bits",
             "of disparities other than the predicted one: more keeps errors, less adds noise");
 
-//! Whether more than one pair has had a disparity
-bool isConfirmed(const FrameMemory& last, int x, int y) { return (last.detail.ptr(y)[x] & FrameMemory::countMask) > 1; }
+//! Whether more than one pair has shown a disparity
+bool isConfirmed(const FrameMemory& last, int x, int y)
+{
+    const int detail = last.detail.ptr(y)[x];
+    return (detail & FrameMemory::GUESS) == 0 && (detail & FrameMemory::countMask) > 1;
+}
 
 //! The disparity that the last frame predicts for a pixel, in pixels; negative if there is none
 float predict(const FrameMemory& last, const FramePrediction& p, int x, int y)
