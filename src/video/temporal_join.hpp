@@ -96,9 +96,10 @@ struct JoinRule
 /** Joins the disparities of a pair, before the median, with those of the frame before. Each pixel has up to three: the
 measured one, that of the last frame at the same place, if the image stands still there, and that which the motion of
 the camera takes there, if the image looks the same where it comes from. One of the last frame is kept unless the
-measured one has lower costs in the window around, clearly lower ones if the two are near each other. It moves towards
-the measured one if both agree, by less the more frames it stands for; if not, it stands for fewer frames, in the end
-for none, and the measured one is taken. If that is so for many of the pixels, the pair contradicts the last frame.
+measured one has lower costs in the window around, clearly lower ones if the two are near each other; of two, that which
+moved, unless the other one costs no more. It moves towards the measured one if both agree, by less the more frames it
+stands for; if not, it stands for fewer frames, in the end for none, and the measured one is taken. If that is so for
+many of the pixels, the pair contradicts the last frame. What moved into sight of the right image is measured.
 @param prediction What predictFrame() found.
 @param next Receives what this frame leaves to the next one; nothing if the image is smaller than a cell, or the pair
 contradicts the last frame.

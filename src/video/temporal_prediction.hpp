@@ -46,6 +46,7 @@ CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMe
 
 /** Finds what each cell may take from the last frame, a TemporalSource (CV_8UC1): what looks different where the motion
 leads, by more than noise and by about the contrast, is something else. Both are means over the squares around a cell.
+The same place, if the camera moved, has to look the same as well, and no more different than where the motion leads.
 @param before,now FrameMemory::grey[0] of the last frame and of this one.
 @param warp Where its pixels were; none if the camera stands still: what looks the same is at the same place then. */
 CV_EXPORTS void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch,

@@ -72,6 +72,20 @@ static const char* const keys =
     "{focal           |      | focal length in pixels; the principal point is the center of the image }"
     "{baseline        |      | distance of the cameras, in the unit of the points }";
 
+//! Options that have no effect without another one
+static void checkCompany(int argc, const char* const argv[], const CommandLineParser& parser)
+{
+    const String needed[][2] = { { "memory", "tiles" },
+                                 { "format", "batch" },
+                                 { "prior-sigma", "prior" },
+                                 { "unit", "calibration" },
+                                 { "field-of-view", "calibration" } };
+    for (int i = 1; i < argc; ++i)
+        for (const String* names : needed)
+            if (String(argv[i]).compare(0, names[0].size() + 3, "--" + names[0] + "=") == 0 && !parser.has(names[1]))
+                CV_Error(Error::StsBadArg, "--" + names[0] + " needs --" + names[1]);
+}
+
 int main(int argc, char** argv)
 {
     utils::logging::setLogLevel(utils::logging::LOG_LEVEL_SILENT); // errors are reported below
@@ -80,6 +94,7 @@ int main(int argc, char** argv)
     try
     {
         hdp_tools::checkArguments(argc, argv, parser, { "version", "batch", "tiles", "compare" }, 3);
+        checkCompany(argc, argv, parser);
         if (parser.has("help"))
         {
             CommandLineParser defaults(1, argv, keys); // whose values are those that help shows

@@ -343,6 +343,11 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
         { " --tiles " + none + " " + right + " " + out + ".tif", "cannot read the image '" + none + "'" },
         { " --tiles" + pair + out + ".tif --findings=" + none, "filename: '" + none + "' does not hold a pair model" },
         { " --tiles" + pair + out + ".tif --calibration=" + none, "--calibration does not go with --tiles" },
+        { pair + out + ".tif --memory=100", "--memory needs --tiles" },
+        { pair + out + ".tif --format=tif", "--format needs --batch" },
+        { pair + out + ".tif --prior-sigma=1", "--prior-sigma needs --prior" },
+        { pair + out + ".tif --unit=1", "--unit needs --calibration" },
+        { pair + out + ".tif --field-of-view=80", "--field-of-view needs --calibration" },
     };
     for (const auto& c : cases)
     {
