@@ -69,7 +69,7 @@ public:
         if (pairPlan.looksForRange)
             clock_.run("disparity range", [&] {
                 const bool isFrame = pairPlan.followsVideo;
-                const Range found = rangeSearch_.find(pair_.left, pair_.right, pair_.masks, isFrame);
+                const Range found = rangeSearch_.find(pair_.left, pair_.right, pair_.masks, p_.maxRowOffset, isFrame);
                 pairPlan = makePlan(withRange(p_, found.start, found.size()));
             });
         if (inputs_.hasRanges() || inputs_.hasPrior())

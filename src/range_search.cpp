@@ -77,13 +77,13 @@ Range supportedDisparities(const std::vector<CornerMatch>& matches, int& support
 }
 
 //! Returns how many there are; range: theirs
-int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, Range& range)
+int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset, Range& range)
 {
     const int bits = bitsInUse(left, right); // what has no data has the levels of what has
     greyLevels(left, bits, leftLevels_);
     greyLevels(right, bits, rightLevels_);
     const int width = left.cols;
-    matchCoarsely({ leftLevels_ }, { rightLevels_ }, masks, Range(-width, width), 0, coarse_);
+    matchCoarsely({ leftLevels_ }, { rightLevels_ }, masks, Range(-width, width), maxRowOffset, coarse_);
     if (!coarse_.matches.empty())
         keepMutualMatches(coarse_.left[coarse_.layer], coarse_.right[coarse_.layer], coarse_.windows, coarse_.matches);
     int support;
@@ -153,12 +153,12 @@ bool RangeSearch::searchAround(const PairMasks& masks, const Range& corners, Ran
     return true;
 }
 
-Range RangeSearch::find(const Mat& left, const Mat& right, const PairMasks& masks, bool isFrame)
+Range RangeSearch::find(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset, bool isFrame)
 {
     const Range last = isFrame && left.size() == lastSize_ ? last_ : Range();
     last_ = Range();
     Range corners, found;
-    const int support = matchCorners(left, right, masks, corners);
+    const int support = matchCorners(left, right, masks, maxRowOffset, corners);
     const bool isFound = support >= minSupport && searchAround(masks, corners, found);
     if (!isFound && last.empty())
         CV_Error(Error::StsBadArg, "numDisparities must be > 0 for this pair: too few corners match to find its range");

@@ -25,17 +25,18 @@ public:
     @param left Without NaN, as completePair() leaves it.
     @param right Of the same size and type.
     @param masks Theirs.
+    @param maxRowOffset By which rows may be off, see matchCoarsely().
     @param isFrame Whether it is a frame of a video: it keeps the range of the frame before if that has all that is
     found and is not much larger, or if nothing is found.
     @return First disparity, and the one behind the last.
     @throws cv::Exception if the images have too few points in common. */
-    Range find(const Mat& left, const Mat& right, const PairMasks& masks, bool isFrame);
+    Range find(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset, bool isFrame);
 
     //! The next frame is the first one of a video.
     void forgetFrames() { last_ = Range(); }
 
 private:
-    int matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, Range& range);
+    int matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset, Range& range);
     bool matchPixels(const PairMasks& masks, const Range& disparities, const Range& counting, Range& found);
     bool searchAround(const PairMasks& masks, const Range& corners, Range& found);
 

@@ -95,6 +95,24 @@ TEST(HDPStereo_SlowRangeSearch, all_presets_and_threads)
     expectCovers(first, 0);
 }
 
+//! By more than corners are matched over
+TEST(HDPStereo_RangeSearch, rows_are_off)
+{
+    for (const int rows : { 12, -16 })
+    {
+        SCOPED_TRACE(rows);
+        const Range all(std::max(rows, 0), scene().left.rows + std::min(rows, 0));
+        const Mat left = scene().left.rowRange(all).clone(),
+                  right = scene().right.rowRange(all.start - rows, all.end - rows).clone();
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+        match(*matcher, left, right);
+        expectCovers(foundRange(*matcher), 0);
+        matcher->setMaxRowOffset(0);
+        Mat disparity;
+        expectRejected([&] { matcher->compute(left, right, disparity); }, "too few corners");
+    }
+}
+
 TEST(HDPStereo_RangeSearch, nothing_to_find)
 {
     const Size size(320, 240);

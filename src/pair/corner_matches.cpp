@@ -5,6 +5,7 @@
 #include "corner_matches.hpp"
 #include "corner_matches.simd.hpp"
 #include "pair/corner_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/robust_fit.hpp"
 #include "image_pyramid.hpp"
 #include "point_tracker.hpp"
 
@@ -133,7 +134,7 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
                               windows.sums.step1(),
                               columns };
     correlations.resize(rows * columns);
-    dispatched::correlate(window, sum, scale, area, correlations.data());
+    dispatched::correlate(window, left.step1(), sum, scale, area, correlations.data());
     for (int row = columns; row <= rows * columns; row += columns) // disparities before the first one
         std::fill(correlations.begin() + row - (columns - count), correlations.begin() + row, -1.f);
     const int best = (int)(std::max_element(correlations.begin(), correlations.end()) - correlations.begin());
@@ -203,6 +204,13 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     match.isValid = true;
 }
 
+//! The image without its first rows, and as many behind; if rows < 0, the other way round.
+void moveRows(const Mat& image, int rows, int border, Mat& moved)
+{
+    const Mat part = image.rowRange(std::max(rows, 0), image.rows + std::min(rows, 0));
+    copyMakeBorder(part, moved, std::max(-rows, 0), std::max(rows, 0), 0, 0, border);
+}
+
 //! Matches corners that have been found. mask: of the right image
 void matchCorners(const Mat& left, const Mat& right, const Mat& mask, const Range& disparities, SearchWindows& windows,
                   std::vector<CornerMatch>& matches)
@@ -228,7 +236,14 @@ void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks
 
 void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows, std::vector<CornerMatch>& matches)
 {
-    measureWindows(left, windows);
+    std::vector<double> offsets; // of rows
+    for (const CornerMatch& match : matches)
+        if (match.isValid)
+            offsets.push_back(match.y - match.left.y);
+    const int rows = offsets.empty() ? 0 : cvRound(medianOf(offsets));
+    Mat moved;
+    moveRows(left, -rows, BORDER_REPLICATE, moved);
+    measureWindows(moved, windows);
     const int margin = CornerMatching::searchSide / 2, rowMargin = margin + CornerMatching::searchRadius;
     const Rect inside(margin, rowMargin, right.cols - 2 * margin, right.rows - 2 * rowMargin);
     const Range all(-left.cols, left.cols);
@@ -240,8 +255,9 @@ void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows
         match.isValid = inside.contains(back.left);
         if (!match.isValid)
             return;
-        findMatch(right, left, windows, all, correlations, back);
-        match.isValid = back.isValid && std::abs(back.x - match.left.x) <= 1 && std::abs(back.y - match.left.y) <= 1;
+        findMatch(right, moved, windows, all, correlations, back);
+        match.isValid =
+            back.isValid && std::abs(back.x - match.left.x) <= 1 && std::abs(back.y - rows - match.left.y) <= 1;
     });
 }
 
@@ -263,10 +279,6 @@ void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks
     const auto isValid = [](const CornerMatch& match) { return match.isValid; };
     const auto count = [&](const std::vector<CornerMatch>& all) {
         return std::count_if(all.begin(), all.end(), isValid);
-    };
-    const auto moveRows = [](const Mat& image, int rows, int border, Mat& moved) {
-        const Mat part = image.rowRange(std::max(rows, 0), image.rows + std::min(rows, 0));
-        copyMakeBorder(part, moved, std::max(-rows, 0), std::max(rows, 0), 0, 0, border);
     };
     findCornerMatches(left, right, masks, disparities, spacing, windows, matches);
     trackCornerMatches(left, right, matches);

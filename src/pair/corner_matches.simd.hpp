@@ -24,9 +24,9 @@ void structureTensors(const ushort* first, size_t step, int count, int* columns,
 void windowSums(const ushort* first, size_t step, int count, int* columns, int* sums, float* scales);
 
 /** The normalised cross-correlation of a window with those of an area: -1 to 1, row by row; 0 without texture.
-@param left First pixel of the window, in an image with the area's step.
+@param left,step First pixel of the window, and pixels from a row to the next.
 @param sum,scale Of the window, see windowSums(). */
-void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations);
+void correlate(const ushort* left, size_t step, int sum, float scale, const SearchArea& area, float* correlations);
 
 //! The left window of trackCornerMatches(). left: its first pixel; step: from a row to the next, in pixels
 void cutWindow(const ushort* left, size_t step, TrackedWindow& window);
@@ -101,13 +101,13 @@ void windowSums(const ushort* first, size_t step, int count, int* columns, int* 
     }
 }
 
-void correlate(const ushort* left, int sum, float scale, const SearchArea& area, float* correlations)
+void correlate(const ushort* left, size_t step, int sum, float scale, const SearchArea& area, float* correlations)
 {
     const int side = CornerMatching::searchSide, pixels = side * side, lanes = SearchArea::minColumns;
     short window[CornerMatching::searchSide * CornerMatching::searchSide];
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x)
-            window[y * side + x] = (short)(left[y * area.step + x] - middle);
+            window[y * side + x] = (short)(left[y * step + x] - middle);
     for (int row = 0; row < SearchArea::rows; ++row, correlations += area.columns)
     {
         const int* const sums = area.sums + row * area.sumStep;
