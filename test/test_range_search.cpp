@@ -98,7 +98,7 @@ TEST(HDPStereo_SlowRangeSearch, all_presets_and_threads)
 //! By more than corners are matched over
 TEST(HDPStereo_RangeSearch, rows_are_off)
 {
-    for (const int rows : { 12, -16 })
+    for (const int rows : { 12, -16, -20 })
     {
         SCOPED_TRACE(rows);
         const Range all(std::max(rows, 0), scene().left.rows + std::min(rows, 0));

@@ -282,7 +282,7 @@ void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks
     };
     findCornerMatches(left, right, masks, disparities, spacing, windows, matches);
     trackCornerMatches(left, right, matches);
-    if (count(matches) >= CornerMatching::minMatches)
+    if (count(matches) >= moreMatches * CornerMatching::minMatches) // half as many match by chance
         return;
     const int step = SearchArea::rows, farthest = std::min(maxRowOffset, left.rows / 8) + CornerMatching::searchRadius;
     Mat movedRight, movedMask;
