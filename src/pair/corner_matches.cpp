@@ -107,12 +107,12 @@ bool isUnique(const std::vector<float>& values, int columns, int best)
     return true;
 }
 
-//! correlations: memory for those of a corner, by rows, then by columns
-void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, const Range& disparities,
+//! rows: offset of the rows that are searched; correlations: memory for those of a corner, by rows, then by columns
+void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, const Range& disparities, int rows,
                std::vector<float>& correlations, CornerMatch& match)
 {
     match.isValid = false;
-    const int side = CornerMatching::searchSide, pixels = side * side, rows = SearchArea::rows;
+    const int side = CornerMatching::searchSide, pixels = side * side, areaRows = SearchArea::rows;
     const Point first = match.left - Point(side / 2, side / 2);
     const int minColumns = SearchArea::minColumns, width = windows.sums.cols;
     const int end = std::min(first.x + 1 - disparities.start, width);
@@ -120,7 +120,8 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     const int x0 = clamped(first.x + 1 - most, 0, width - minColumns), count = end - x0;
     if (count <= 0)
         return;
-    const int y0 = first.y - CornerMatching::searchRadius, columns = std::max(count, minColumns);
+    const int y0 = clamped(first.y + rows - CornerMatching::searchRadius, 0, windows.sums.rows - areaRows);
+    const int columns = std::max(count, minColumns);
     const ushort* const window = left.ptr<ushort>(first.y) + first.x;
     int memory[2 * CornerMatching::searchSide], sum;
     float scale;
@@ -133,9 +134,9 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
                               right.step1(),
                               windows.sums.step1(),
                               columns };
-    correlations.resize(rows * columns);
+    correlations.resize(areaRows * columns);
     dispatched::correlate(window, left.step1(), sum, scale, area, correlations.data());
-    for (int row = columns; row <= rows * columns; row += columns) // disparities before the first one
+    for (int row = columns; row <= areaRows * columns; row += columns) // disparities before the first one
         std::fill(correlations.begin() + row - (columns - count), correlations.begin() + row, -1.f);
     const int best = (int)(std::max_element(correlations.begin(), correlations.end()) - correlations.begin());
     if (correlations[best] < minCorrelation || !isUnique(correlations, columns, best))
@@ -204,22 +205,14 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     match.isValid = true;
 }
 
-//! The image without its first rows, and as many behind; if rows < 0, the other way round.
-void moveRows(const Mat& image, int rows, int border, Mat& moved)
-{
-    const Mat part = image.rowRange(std::max(rows, 0), image.rows + std::min(rows, 0));
-    copyMakeBorder(part, moved, std::max(-rows, 0), std::max(rows, 0), 0, 0, border);
-}
-
-//! Matches corners that have been found. mask: of the right image
-void matchCorners(const Mat& left, const Mat& right, const Mat& mask, const Range& disparities, SearchWindows& windows,
-                  std::vector<CornerMatch>& matches)
+//! Matches corners that have been found. mask, windows: of the right image
+void matchCorners(const Mat& left, const Mat& right, const Mat& mask, const Range& disparities, int rows,
+                  const SearchWindows& windows, std::vector<CornerMatch>& matches)
 {
     const Mat rightHas = windowsWithData(mask);
-    measureWindows(right, windows);
     parallelFor((int)matches.size(), std::vector<float>(), [&](int i, std::vector<float>& correlations) {
         CornerMatch& match = matches[i];
-        findMatch(left, right, windows, disparities, correlations, match);
+        findMatch(left, right, windows, disparities, rows, correlations, match);
         if (match.isValid && !rightHas.empty())
             match.isValid = rightHas.ptr((int)match.y)[(int)match.x] != 0;
     });
@@ -231,7 +224,8 @@ void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks
                        SearchWindows& windows, std::vector<CornerMatch>& matches)
 {
     findCorners(left, windowsWithData(masks.left), spacing, windows, matches);
-    matchCorners(left, right, masks.right, disparities, windows, matches);
+    measureWindows(right, windows);
+    matchCorners(left, right, masks.right, disparities, 0, windows, matches);
 }
 
 void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows, std::vector<CornerMatch>& matches)
@@ -241,9 +235,7 @@ void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows
         if (match.isValid)
             offsets.push_back(match.y - match.left.y);
     const int rows = offsets.empty() ? 0 : cvRound(medianOf(offsets));
-    Mat moved;
-    moveRows(left, -rows, BORDER_REPLICATE, moved);
-    measureWindows(moved, windows);
+    measureWindows(left, windows);
     const int margin = CornerMatching::searchSide / 2, rowMargin = margin + CornerMatching::searchRadius;
     const Rect inside(margin, rowMargin, right.cols - 2 * margin, right.rows - 2 * rowMargin);
     const Range all(-left.cols, left.cols);
@@ -255,9 +247,8 @@ void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows
         match.isValid = inside.contains(back.left);
         if (!match.isValid)
             return;
-        findMatch(right, moved, windows, all, correlations, back);
-        match.isValid =
-            back.isValid && std::abs(back.x - match.left.x) <= 1 && std::abs(back.y - rows - match.left.y) <= 1;
+        findMatch(right, left, windows, all, -rows, correlations, back);
+        match.isValid = back.isValid && std::abs(back.x - match.left.x) <= 1 && std::abs(back.y - match.left.y) <= 1;
     });
 }
 
@@ -285,16 +276,10 @@ void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks
     if (count(matches) >= moreMatches * CornerMatching::minMatches) // half as many match by chance
         return;
     const int step = SearchArea::rows, farthest = std::min(maxRowOffset, left.rows / 8) + CornerMatching::searchRadius;
-    Mat movedRight, movedMask;
     std::vector<CornerMatch> others = matches; // of the same corners
     for (int offset = step; offset <= farthest; offset = offset > 0 ? -offset : step - offset)
     {
-        moveRows(right, offset, BORDER_REPLICATE, movedRight);
-        if (!masks.right.empty())
-            moveRows(masks.right, offset, BORDER_CONSTANT, movedMask);
-        matchCorners(left, movedRight, movedMask, disparities, windows, others);
-        for (CornerMatch& match : others)
-            match.y += offset;
+        matchCorners(left, right, masks.right, disparities, offset, windows, others);
         trackCornerMatches(left, right, others);
         if (count(others) >= std::max<double>(CornerMatching::minMatches, moreMatches * count(matches)))
             matches.swap(others);

@@ -75,11 +75,9 @@ static const char* const keys =
 //! Options that have no effect without another one
 static void checkCompany(int argc, const char* const argv[], const CommandLineParser& parser)
 {
-    const String needed[][2] = { { "memory", "tiles" },
-                                 { "format", "batch" },
-                                 { "prior-sigma", "prior" },
-                                 { "unit", "calibration" },
-                                 { "field-of-view", "calibration" } };
+    const String needed[][2] = { { "memory", "tiles" },      { "format", "batch" },
+                                 { "prior-sigma", "prior" }, { "calibration2", "calibration" },
+                                 { "unit", "calibration" },  { "field-of-view", "calibration" } };
     for (int i = 1; i < argc; ++i)
         for (const String* names : needed)
             if (String(argv[i]).compare(0, names[0].size() + 3, "--" + names[0] + "=") == 0 && !parser.has(names[1]))

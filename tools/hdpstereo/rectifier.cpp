@@ -17,8 +17,6 @@ Rectifier::Rectifier(const CommandLineParser& parser)
                                                               parser.get<String>("right-mask") },
       unit_(numberOf(parser, "unit")), fieldOfView_(numberOf(parser, "field-of-view"))
 {
-    if (first_.empty() && !second_.empty())
-        CV_Error(Error::StsBadArg, "--calibration2 needs --calibration");
     for (const String& path : { first_, second_ }) // a mistake of the call, not of a pair
         if (!path.empty())
             requireFile(path);
