@@ -18,6 +18,7 @@ HDP_TUNABLE(int, minNeighbours, 3, "corners", "of the same surface: fewer believ
 HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the coarse layer",
             "by which these differ: more lets wrong corners in");
 HDP_TUNABLE(int, minSupport, 10, "corners", "fewer are no evidence of a range");
+HDP_TUNABLE(int, mostFiner, 2, "layers", "below the usual one that are searched for more corners: each takes longer");
 
 // All pixels
 HDP_TUNABLE(double, reach, 1.5, "share of the corners' range",
@@ -83,11 +84,15 @@ int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks
     greyLevels(left, bits, leftLevels_);
     greyLevels(right, bits, rightLevels_);
     const int width = left.cols;
-    matchCoarsely({ leftLevels_ }, { rightLevels_ }, masks, Range(-width, width), maxRowOffset, coarse_);
-    if (!coarse_.matches.empty())
-        keepMutualMatches(coarse_.left[coarse_.layer], coarse_.right[coarse_.layer], coarse_.windows, coarse_.matches);
-    int support;
-    range = supportedDisparities(coarse_.matches, support);
+    int support = 0;
+    for (int finer = 0; finer <= mostFiner && support < minSupport; ++finer)
+    {
+        matchCoarsely({ leftLevels_ }, { rightLevels_ }, masks, Range(-width, width), maxRowOffset, finer, coarse_);
+        if (!coarse_.matches.empty())
+            keepMutualMatches(coarse_.left[coarse_.layer], coarse_.right[coarse_.layer], coarse_.windows,
+                              coarse_.matches);
+        range = supportedDisparities(coarse_.matches, support);
+    }
     return support;
 }
 

@@ -113,6 +113,33 @@ TEST(HDPStereo_RangeSearch, rows_are_off)
     }
 }
 
+//! Texture that the layer whose corners are matched first does not have, and images with few of its cells
+TEST(HDPStereo_RangeSearch, fine_texture_and_small_images)
+{
+    for (const Size& size : { Size(640, 480), Size(100, 75), Size(64, 48) })
+        for (int seed = 1; seed <= 3; ++seed)
+        {
+            SCOPED_TRACE(format("%d x %d, seed %d", size.width, size.height, seed));
+            const int behind = size.width / 20, before = size.width / 8;
+            RNG rng(seed);
+            Mat canvas(size + Size(behind, 0), CV_32F);
+            rng.fill(canvas, RNG::UNIFORM, -1, 1);
+            cv::GaussianBlur(canvas, canvas, Size(), 1.2);
+            canvas.convertTo(canvas, CV_8U, 300, 128);
+            const Mat left = canvas.colRange(0, size.width).clone(),
+                      right = canvas.colRange(behind, behind + size.width).clone();
+            const Rect box(size.width / 2, size.height / 3, size.width / 4, size.height / 3);
+            const Mat texture = randomImage(rng, box.size(), CV_8U);
+            texture.copyTo(left(box));
+            texture.copyTo(right(box - Point(before, 0)));
+            const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+            match(*matcher, left, right);
+            EXPECT_LE(foundRange(*matcher).start, behind);
+            EXPECT_GT(foundRange(*matcher).end, before);
+            EXPECT_LT(foundRange(*matcher).end, 2 * before + 8);
+        }
+}
+
 TEST(HDPStereo_RangeSearch, nothing_to_find)
 {
     const Size size(320, 240);

@@ -289,12 +289,13 @@ void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks
 } // namespace
 
 void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
-                   const Range& disparities, int maxRowOffset, CoarseMatches& coarse)
+                   const Range& disparities, int maxRowOffset, int finer, CoarseMatches& coarse)
 {
     const Size size = left[0].size();
-    int layer = 0;
-    while ((size.width >> layer) * (size.height >> layer) > maxCoarseArea)
-        ++layer;
+    int usual = 0;
+    while ((size.width >> usual) * (size.height >> usual) > maxCoarseArea)
+        ++usual;
+    const int layer = std::max(usual - finer, 0);
     coarse.layer = layer;
     coarse.matches.clear();
     buildPyramid(left, layer + 1, coarse.left);
@@ -304,7 +305,7 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
         return;
     const Range ofLayer(disparities.start >> layer, layerDisparities(disparities.end, layer, true));
     const PairMasks coarseMasks = { dataOfLayer(masks.left, layer), dataOfLayer(masks.right, layer) };
-    findMatchesOfRows(coarseLeft, coarseRight, coarseMasks, ofLayer, std::max(minSpacing >> layer, 1),
+    findMatchesOfRows(coarseLeft, coarseRight, coarseMasks, ofLayer, std::max(minSpacing >> std::max(usual, finer), 1),
                       maxRowOffset >> layer, coarse.windows, coarse.matches);
 }
 

@@ -98,9 +98,10 @@ struct CoarseMatches
 /** The matches that row and light alignment, and the search for the range of disparities, begin with.
 @param left,right Pyramids, CV_16UC1, values up to 1023; their layers may end anywhere.
 @param masks,disparities Of the images.
-@param maxRowOffset Of the images: where few corners have matches in about the same rows, others are searched, too. */
+@param maxRowOffset Of the images: where few corners have matches in about the same rows, others are searched, too.
+@param finer Layers below the usual one, for what has texture there alone; if there are none, corners are nearer. */
 CV_EXPORTS void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
-                              const Range& disparities, int maxRowOffset, CoarseMatches& coarse);
+                              const Range& disparities, int maxRowOffset, int finer, CoarseMatches& coarse);
 
 }}} // namespace cv::stereo::hdp
 

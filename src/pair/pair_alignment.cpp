@@ -33,7 +33,7 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
         left.assign(1, buffers.leftLevels);
         right.assign(1, buffers.rightLevels);
     }
-    matchCoarsely(left, right, images[0].masks, Range(0, plan.numDisparities), plan.maxRowOffset, buffers.coarse);
+    matchCoarsely(left, right, images[0].masks, Range(0, plan.numDisparities), plan.maxRowOffset, 0, buffers.coarse);
     estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings);
     if (plan.findsLight && isGrey(images))
         findings.hasLight = estimateLight(buffers.coarse, findings.light);
