@@ -135,8 +135,8 @@ private:
     void growForest()
     {
         shared_.forestLayer = plan_.layer;
-        const JoinerParams params = { plan_.trees.beta, plan_.trees.linksTrees };
-        buildForest(guide(), own_.pixelIntv, *in_.pair.treeStrategy, params, shared_.forestBuffers, shared_.forest);
+        buildForest(guide(), own_.pixelIntv, *in_.pair.treeStrategy, plan_.trees.beta, plan_.trees.linksTrees,
+                    shared_.forestBuffers, shared_.forest);
     }
 
     //! Scanlines over the means of the costs in the layer's trees; none if these contradict the last frame.

@@ -13,7 +13,6 @@
 #include "../src/map/disparity_confidence.hpp"
 #include "../src/forest/disparity_forest.hpp"
 #include "../src/forest/disparity_prediction.hpp"
-#include "../src/forest/tree_walk.hpp"
 #include "../src/scanlines/scanline_aggregation.hpp"
 #include "../src/scanlines/range_scanlines.hpp"
 #include "../src/scanlines/volume_scanlines.hpp"

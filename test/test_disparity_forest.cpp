@@ -4,7 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/forest/tree_walk.hpp"
+#include "../src/forest/disparity_forest.hpp"
 
 namespace opencv_test { namespace {
 
@@ -52,13 +52,13 @@ std::vector<int> joinedEdges(const DisparityForest& forest)
     return joined;
 }
 
-void testForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, const hdp::JoinerParams& params,
+void testForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link,
                 hdp::ForestBuffers& buffers, DisparityForest& forest)
 {
-    SCOPED_TRACE(testing::Message() << strategy.getDefaultName() << ", " << image.size() << ", beta " << params.beta
-                                    << (params.link ? ", linked" : ""));
-    hdp::buildForest(image, pixelIntv, strategy, params, buffers, forest);
-    const oracle::Forest expected = oracle::buildForest(image, pixelIntv, strategy, params.beta, params.link);
+    SCOPED_TRACE(testing::Message() << strategy.getDefaultName() << ", " << image.size() << ", beta " << beta
+                                    << (link ? ", linked" : ""));
+    hdp::buildForest(image, pixelIntv, strategy, beta, link, buffers, forest);
+    const oracle::Forest expected = oracle::buildForest(image, pixelIntv, strategy, beta, link);
 
     expectIdentical(oracle::edgeWeights(image), forest.weights);
     ASSERT_EQ(image.size(), forest.links.size());
@@ -130,9 +130,8 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_on_sets_with_predicted_intervals)
                 for (int type : { CV_8UC1, CV_8UC3 })
                 {
                     const Mat pixelIntv = randomIntervals(rng, size);
-                    testForest(patchyImage(rng, size, type), pixelIntv, *strategy, { beta, false }, buffers, forest);
-                    testForest(randomImage(rng, size, type, 12), pixelIntv, *strategy, { beta, false }, buffers,
-                               forest);
+                    testForest(patchyImage(rng, size, type), pixelIntv, *strategy, beta, false, buffers, forest);
+                    testForest(randomImage(rng, size, type, 12), pixelIntv, *strategy, beta, false, buffers, forest);
                 }
 }
 
@@ -144,8 +143,8 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_on_grey_levels_in_quarters)
     for (const Ptr<TreeStrategy>& strategy : allStrategies())
         for (const Size& size : testSizes)
             for (int levels : { 3, 12, 1024 })
-                testForest(randomImage(rng, size, CV_16UC1, levels), randomIntervals(rng, size), *strategy,
-                           { 0.6, false }, buffers, forest);
+                testForest(randomImage(rng, size, CV_16UC1, levels), randomIntervals(rng, size), *strategy, 0.6, false,
+                           buffers, forest);
 }
 
 TEST(HDPStereo_DisparityForest, plain_kruskal_over_the_full_range)
@@ -158,8 +157,8 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_over_the_full_range)
             for (const Size& size : testSizes)
             {
                 const Mat pixelIntv = constantIntervals(size, 0, 63);
-                testForest(patchyImage(rng, size, CV_8UC3), pixelIntv, *strategy, { 0.95, link }, buffers, forest);
-                testForest(randomImage(rng, size, CV_8UC1), pixelIntv, *strategy, { 0.6, link }, buffers, forest);
+                testForest(patchyImage(rng, size, CV_8UC3), pixelIntv, *strategy, 0.95, link, buffers, forest);
+                testForest(randomImage(rng, size, CV_8UC1), pixelIntv, *strategy, 0.6, link, buffers, forest);
                 if (link)
                 {
                     EXPECT_EQ(1u, forest.trees.size());
@@ -198,7 +197,7 @@ TEST(HDPStereo_DisparityForest, plain_kruskal_in_any_number_of_stripes)
             const Ptr<TreeStrategy>& strategy = strategies[i % 5];
             // Segments are linked without prediction only, when all intervals are equal.
             const bool link = strategy != segments && i % 7 == 0;
-            testForest(image, pixelIntv, *strategy, { rng.uniform(0., 1.), link }, buffers, forest);
+            testForest(image, pixelIntv, *strategy, rng.uniform(0., 1.), link, buffers, forest);
             if (HasFatalFailure())
                 return;
         }
@@ -216,12 +215,12 @@ TEST(HDPStereo_DisparityForest, roots_do_not_depend_on_the_number_of_threads)
         DisparityForest expected, forest;
         {
             ScopedThreads one(1);
-            hdp::buildForest(image, pixelIntv, *strategy, { 0.6, false }, buffers, expected);
+            hdp::buildForest(image, pixelIntv, *strategy, 0.6, false, buffers, expected);
         }
         for (int threads = 2; threads <= 5; ++threads)
         {
             ScopedThreads scope(threads);
-            hdp::buildForest(image, pixelIntv, *strategy, { 0.6, false }, buffers, forest);
+            hdp::buildForest(image, pixelIntv, *strategy, 0.6, false, buffers, forest);
             ASSERT_EQ(expected.trees.size(), forest.trees.size());
             for (size_t t = 0; t < expected.trees.size(); ++t)
                 ASSERT_EQ(expected.trees[t].root, forest.trees[t].root) << threads << " threads";
@@ -236,8 +235,8 @@ TEST(HDPStereo_DisparityForest, regions_of_interest)
     hdp::ForestBuffers buffers;
     DisparityForest forest;
     const Mat image = patchyImage(rng, Size(40, 30), CV_8UC3);
-    testForest(image(Rect(4, 3, 21, 19)), randomIntervals(rng, Size(21, 19)), *createMinimumSpanningTree(),
-               { 0.6, false }, buffers, forest);
+    testForest(image(Rect(4, 3, 21, 19)), randomIntervals(rng, Size(21, 19)), *createMinimumSpanningTree(), 0.6, false,
+               buffers, forest);
 }
 
 //! DT-Rule 1: the weight up to which pixels whose intervals do not meet keep their edge, seen with beta = 0.
@@ -251,7 +250,7 @@ TEST(HDPStereo_DisparityForest, disjoint_intervals_keep_edges_of_weight_7)
         pixelIntv.at<Vec2w>(0, 1) = Vec2w(5, 9);
         hdp::ForestBuffers buffers;
         DisparityForest forest;
-        hdp::buildForest(image, pixelIntv, *createMinimumSpanningTree(), { 0, false }, buffers, forest);
+        hdp::buildForest(image, pixelIntv, *createMinimumSpanningTree(), 0, false, buffers, forest);
         EXPECT_EQ(weight <= 7 ? 1u : 2u, forest.trees.size()) << weight;
     }
 }
@@ -292,7 +291,7 @@ TEST(HDPStereo_DisparityForest, minimum_spanning_tree_is_minimal)
                 const Mat image = randomImage(rng, size, type, levels);
                 hdp::ForestBuffers buffers;
                 DisparityForest forest;
-                hdp::buildForest(image, constantIntervals(size, 0, 9), *createMinimumSpanningTree(), { 0.95, true },
+                hdp::buildForest(image, constantIntervals(size, 0, 9), *createMinimumSpanningTree(), 0.95, true,
                                  buffers, forest);
                 const std::vector<int> joined = joinedEdges(forest);
                 ASSERT_EQ(image.total() - 1, joined.size());
@@ -352,7 +351,7 @@ TEST(HDPStereo_DisparityForest, walk_visits_each_pixel_once_parents_first)
                 const Mat pixelIntv = predicted ? randomIntervals(rng, size) : constantIntervals(size, 0, 15);
                 hdp::ForestBuffers buffers;
                 DisparityForest forest;
-                hdp::buildForest(patchyImage(rng, size, CV_8UC3), pixelIntv, *strategy, { 0.6, !predicted }, buffers,
+                hdp::buildForest(patchyImage(rng, size, CV_8UC3), pixelIntv, *strategy, 0.6, !predicted, buffers,
                                  forest);
                 testWalk(forest);
             }
@@ -365,7 +364,7 @@ TEST(HDPStereo_DisparityForest, walk_of_a_long_path)
         hdp::ForestBuffers buffers;
         DisparityForest forest;
         hdp::buildForest(Mat(size, CV_8UC1, Scalar(5)), constantIntervals(size, 0, 3), *createMinimumSpanningTree(),
-                         { 0.6, true }, buffers, forest);
+                         0.6, true, buffers, forest);
         ASSERT_EQ(1u, forest.trees.size());
         testWalk(forest);
     }
@@ -377,12 +376,12 @@ TEST(HDPStereo_DisparityForest, search_ratio)
     const Mat image = patchyImage(rng, Size(48, 40), CV_8UC3);
     hdp::ForestBuffers buffers;
     DisparityForest forest;
-    hdp::buildForest(image, constantIntervals(image.size(), 3, 12), *createMinimumSpanningTree(), { 0.6, true },
-                     buffers, forest);
+    hdp::buildForest(image, constantIntervals(image.size(), 3, 12), *createMinimumSpanningTree(), 0.6, true, buffers,
+                     forest);
     EXPECT_DOUBLE_EQ(10 / 40., hdp::searchRatio(forest, 40));
 
     const Mat pixelIntv = randomIntervals(rng, image.size());
-    hdp::buildForest(image, pixelIntv, *createSegmentTree(), { 0.6, false }, buffers, forest);
+    hdp::buildForest(image, pixelIntv, *createSegmentTree(), 0.6, false, buffers, forest);
     const oracle::Forest expected = oracle::buildForest(image, pixelIntv, *createSegmentTree(), 0.6, false);
     double sum = 0;
     for (size_t p = 0; p < image.total(); ++p)

@@ -29,7 +29,7 @@ struct Layer
         for (int x = 0; x < size.width; ++x) // the left image, 6 pixels to the left
             right.col(x) = left.col(std::min(x + 6, size.width - 1)) + noise.col(x);
         hdp::ForestBuffers buffers;
-        hdp::buildForest(left, pixelIntv, strategy, { beta, link }, buffers, forest);
+        hdp::buildForest(left, pixelIntv, strategy, beta, link, buffers, forest);
         expectedForest = oracle::buildForest(left, pixelIntv, strategy, beta, link);
         cost.prepare(left, right, disparities, costParams);
         costTable = oracle::costTable(oracle::ColorGradientCost(left, right, costParams), size, disparities);
@@ -383,7 +383,7 @@ TEST(HDPStereo_ForestAggregation, lowest_disparity_wins_a_tie)
             hdp::ForestBuffers forestBuffers;
             hdp::DisparityForest forest;
             const Mat pixelIntv(size, CV_16UC2, Scalar(first, numDisparities - 1));
-            hdp::buildForest(left, pixelIntv, *createMinimumSpanningTree(), { 0.95, true }, forestBuffers, forest);
+            hdp::buildForest(left, pixelIntv, *createMinimumSpanningTree(), 0.95, true, forestBuffers, forest);
             hdp::ColorGradientCost cost;
             cost.prepare(left, right, numDisparities, costParams);
             hdp::AggregationBuffers buffers;

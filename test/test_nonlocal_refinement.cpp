@@ -21,7 +21,7 @@ struct Layer
     Layer(const Mat& image, const TreeStrategy& strategy, const Mat& pixelIntv)
     {
         hdp::ForestBuffers buffers;
-        hdp::buildForest(image, pixelIntv, strategy, { 0.6, true }, buffers, forest);
+        hdp::buildForest(image, pixelIntv, strategy, 0.6, true, buffers, forest);
         expectedForest = oracle::buildForest(image, pixelIntv, strategy, 0.6, true);
     }
 };

@@ -4,7 +4,6 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "../src/forest/tree_planes.hpp"
-#include "../src/forest/tree_walk.hpp"
 
 namespace opencv_test { namespace {
 
@@ -21,8 +20,8 @@ struct Layer
     explicit Layer(const Mat& colors, int steps = 1) : disparity(colors.size(), CV_16U, Scalar(0))
     {
         hdp::ForestBuffers buffers;
-        hdp::buildForest(colors, Mat(colors.size(), CV_16UC2, Scalar(0, candidates - 1)), *createSegmentTree(),
-                         { 0.6, false }, buffers, forest);
+        hdp::buildForest(colors, Mat(colors.size(), CV_16UC2, Scalar(0, candidates - 1)), *createSegmentTree(), 0.6,
+                         false, buffers, forest);
         volume.create(forest);
         volume.steps = steps;
         hdp::TreeWalk walk;

@@ -183,9 +183,9 @@ void startTrees(const Mat& pixelIntv, const Range& rows, ForestBuffers& buffers)
 void orderEdges(const TreeStrategy& strategy, const Mat& weights, const Mat& pixelIntv, const Range& rows,
                 std::vector<int>& edges)
 {
-    if (strategy.ordersByWeight())
-        return selectEdgesByWeight(weights, pixelIntv, rows, edges);
     selectEdges(weights, pixelIntv, rows, edges);
+    if (strategy.ordersByWeight())
+        return sortByWeight(weights, edges);
     std::vector<bool> isMissing(weights.total() * 2);
     for (int edge : edges)
         isMissing[edge] = true;
@@ -203,7 +203,7 @@ void orderEdges(const TreeStrategy& strategy, const Mat& weights, const Mat& pix
 }
 
 //! Joins the trees that the rules allow. forest: has the weights of the edges, and links that are 0; receives these.
-void joinTrees(const TreeStrategy& strategy, const Mat& pixelIntv, const JoinerParams& params, ForestBuffers& buffers,
+void joinTrees(const TreeStrategy& strategy, const Mat& pixelIntv, double beta, bool link, ForestBuffers& buffers,
                DisparityForest& forest)
 {
     const int height = pixelIntv.rows;
@@ -222,7 +222,7 @@ void joinTrees(const TreeStrategy& strategy, const Mat& pixelIntv, const JoinerP
         stripe.frozenRoots.clear();
         startTrees(pixelIntv, rows, buffers);
         orderEdges(strategy, weights, pixelIntv, rows, stripe.edges);
-        StripeJoiner(&strategy, params.beta, rows, buffers, stripe, forest).tryEdges(stripe.edges);
+        StripeJoiner(&strategy, beta, rows, buffers, stripe, forest).tryEdges(stripe.edges);
     });
 
     const Range all(0, height);
@@ -236,27 +236,84 @@ void joinTrees(const TreeStrategy& strategy, const Mat& pixelIntv, const JoinerP
             buffers.nodes[root].parent += frozenMark;
     }
     sortByWeight(weights, whole.edges); // those of one weight are by number already
-    StripeJoiner(&strategy, params.beta, all, buffers, whole, forest).tryEdges(whole.edges);
-    if (!params.link || !strategy.linksTrees())
+    StripeJoiner(&strategy, beta, all, buffers, whole, forest).tryEdges(whole.edges);
+    if (!link || !strategy.linksTrees())
         return;
     if (count > 1)
-        selectEdgesByWeight(weights, pixelIntv, all, stripes[0].edges);
-    StripeJoiner(nullptr, params.beta, all, buffers, whole, forest).tryEdges(stripes[0].edges);
+        orderEdges(strategy, weights, pixelIntv, all, stripes[0].edges);
+    StripeJoiner(nullptr, beta, all, buffers, whole, forest).tryEdges(stripes[0].edges);
 }
 
 } // namespace
 
-void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, const JoinerParams& params,
+void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta, bool link,
                  ForestBuffers& buffers, DisparityForest& forest)
 {
     forest.trees.clear(); // those of other links must not be walked if the strategy throws
     weighEdges(image, forest.weights);
     forest.links.create(image.size(), CV_8U);
     forest.links.setTo(Scalar::all(0));
-    joinTrees(strategy, pixelIntv, params, buffers, forest);
+    joinTrees(strategy, pixelIntv, beta, link, buffers, forest);
     for (size_t i = 0; i < buffers.nodes.size(); ++i)
         if (buffers.nodes[i].parent < 0)
             forest.trees.push_back({ (int)i, -buffers.nodes[i].parent, buffers.nodes[i].interval });
+}
+
+void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk& walk)
+{
+    const int width = forest.links.cols;
+    const uchar* links = forest.links.ptr();
+    const uchar* weights = forest.weights.ptr();
+    // By the side on which the parent of pixel p is: the number of the edge to it, less 2 * p
+    const int edgeOffsets[] = { 0, 0, 1, 0, -2, 0, 0, 0, 1 - 2 * width };
+
+    int* const pixels = grown(walk.pixels, tree.size);
+    int* const parents = grown(walk.parents, tree.size);
+    uchar* const edges = grown(walk.weights, tree.size);
+    size_t capacity = 64;
+    TreeWalk::Step* pending = grown(walk.pending, capacity);
+    pending[0] = { tree.root, 0, 0 };
+    size_t count = 1;
+    for (int i = 0; count > 0; ++i)
+    {
+        // One by one: what was written in parts a moment ago is slow to read at once.
+        const TreeWalk::Step& step = pending[--count];
+        const int p = step.pixel, parent = step.parent, parentLink = step.parentLink;
+        pixels[i] = p;
+        parents[i] = parent;
+        edges[i] = weights[2 * p + edgeOffsets[parentLink]];
+
+        // All four neighbours are written and only children are counted: branches would often be mispredicted.
+        if (count + 4 > capacity)
+            pending = grown(walk.pending, capacity *= 2);
+        const int children = links[p] & ~parentLink;
+        pending[count] = { p - width, i, TreeLink::BELOW };
+        count += (children / TreeLink::ABOVE) & 1;
+        pending[count] = { p - 1, i, TreeLink::RIGHT };
+        count += (children / TreeLink::LEFT) & 1;
+        pending[count] = { p + width, i, TreeLink::ABOVE };
+        count += (children / TreeLink::BELOW) & 1;
+        pending[count] = { p + 1, i, TreeLink::LEFT };
+        count += (children / TreeLink::RIGHT) & 1;
+    }
+    walk.weights[0] = 0;
+}
+
+void drawForest(const DisparityForest& forest, Mat& trees, Mat& intervals)
+{
+    trees.create(forest.links.size(), CV_32S);
+    intervals.create(forest.links.size(), CV_16UC2);
+    TreeWalk walk;
+    for (size_t t = 0; t < forest.trees.size(); ++t)
+    {
+        const DisparityTree& tree = forest.trees[t];
+        walkTree(forest, tree, walk);
+        for (int i = 0; i < tree.size; ++i)
+        {
+            trees.ptr<int>()[walk.pixels[i]] = (int)t;
+            intervals.ptr<DisparityInterval>()[walk.pixels[i]] = tree.interval;
+        }
+    }
 }
 
 double searchRatio(const DisparityForest& forest, int numDisparities)

@@ -43,20 +43,37 @@ struct ForestBuffers
     std::vector<Stripe> stripes;   // the last one in use is for all of them together
 };
 
-//! How trees are joined
-struct JoinerParams
-{
-    double beta; // threshold of DT-Rule 2
-    bool link;   // whether to join what Rule 2 left apart, by a second pass without it, if the strategy does so
-};
-
 /** Builds the forest of a layer by Kruskal's algorithm: tries one edge after the other in the order of Rule 1, and
 joins the trees at its ends if Rule 2 and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the
 image side by side; the trees and their roots are those of trying one edge after the other, for any number of stripes.
 @param image CV_8UC1 or CV_8UC3, the image that gives the edge weights.
-@param pixelIntv CV_16UC2 of its size. */
-CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy,
-                            const JoinerParams& params, ForestBuffers& buffers, DisparityForest& forest);
+@param pixelIntv CV_16UC2 of its size.
+@param beta Threshold of DT-Rule 2.
+@param link Whether to join what Rule 2 left apart, by a second pass without it, if the strategy does so. */
+CV_EXPORTS void buildForest(const Mat& image, const Mat& pixelIntv, const TreeStrategy& strategy, double beta,
+                            bool link, ForestBuffers& buffers, DisparityForest& forest);
+
+//! The pixels of a tree in the order of a walk from its root, depth first: parents come before their children.
+struct TreeWalk
+{
+    std::vector<int> pixels;    // y * width + x
+    std::vector<int> parents;   // position of the parent in the walk; 0 for the root
+    std::vector<uchar> weights; // of the edge to the parent; 0 for the root
+
+    struct Step
+    {
+        int pixel;
+        int parent;     // its position in the walk
+        int parentLink; // the side on which the parent is, a bit of TreeLink; 0 for the root
+    };
+    std::vector<Step> pending; // a stack of the pixels to be visited
+};
+
+//! Walks a tree of the forest. The vectors of the walk only ever grow; entries from tree.size on mean nothing.
+CV_EXPORTS void walkTree(const DisparityForest& forest, const DisparityTree& tree, TreeWalk& walk);
+
+//! The number of each pixel's tree, CV_32SC1, and its interval, CV_16UC2
+void drawForest(const DisparityForest& forest, Mat& trees, Mat& intervals);
 
 //! One of the library's strategies with default parameters, or an empty pointer if none has this name
 Ptr<TreeStrategy> createTreeStrategy(const String& name);

@@ -6,7 +6,6 @@
 
 #include "opencv2/core/utils/tls.hpp"
 #include "cost_volume.hpp"
-#include "tree_walk.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

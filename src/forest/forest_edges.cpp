@@ -6,7 +6,6 @@
 
 #include "forest_edges.simd.hpp"
 #include "forest/forest_edges.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/vectorized.hpp"
 #include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -26,27 +25,6 @@ int isKept(int weight, const DisparityInterval& a, const DisparityInterval& b)
     return (int)(weight <= largestSparedWeight) | (int)(std::max(a.first, b.first) <= std::min(a.last, b.last));
 }
 
-//! f(edge, weight, whether DT-Rule 1 keeps it) for the edges of some rows, and those from the row above into them, by
-//! number. Without branches, which would often be mispredicted.
-template <typename F> void visitEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, const F& f)
-{
-    const int width = weights.cols;
-    for (int y = std::max(rows.start - 1, 0); y < rows.end; ++y)
-    {
-        const uchar* const weight = weights.ptr(y);
-        const DisparityInterval* const interval = pixelIntv.ptr<DisparityInterval>(y);
-        const DisparityInterval* const next = pixelIntv.ptr<DisparityInterval>(std::min(y + 1, weights.rows - 1));
-        const int hasRight = (int)(y >= rows.start), hasBelow = (int)(y + 1 < weights.rows);
-        for (int x = 0; x < width; ++x)
-        {
-            const int edge = 2 * (y * width + x), right = std::min(x + 1, width - 1);
-            const int toRight = weight[2 * x], toBelow = weight[2 * x + 1];
-            f(edge, toRight, hasRight & (int)(x < right) & isKept(toRight, interval[x], interval[right]));
-            f(edge + 1, toBelow, hasBelow & isKept(toBelow, interval[x], next[x]));
-        }
-    }
-}
-
 } // namespace
 
 void weighEdges(const Mat& image, Mat& weights)
@@ -63,27 +41,24 @@ void weighEdges(const Mat& image, Mat& weights)
 
 void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges)
 {
-    const int begin = std::max(rows.start - 1, 0);
-    edges.resize((size_t)(rows.end - begin) * weights.cols * 2);
+    const int width = weights.cols, begin = std::max(rows.start - 1, 0);
+    edges.resize((size_t)(rows.end - begin) * width * 2);
     size_t count = 0;
-    visitEdges(weights, pixelIntv, rows, [&](int edge, int, int isKept) {
-        edges[count] = edge;
-        count += isKept;
-    });
-    edges.resize(count);
-}
-
-void selectEdgesByWeight(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges)
-{
-    int places[257] = { 0 }; // by weight: the number of edges that are lighter
-    visitEdges(weights, pixelIntv, rows, [&](int, int weight, int isKept) { places[weight + 1] += isKept; });
-    std::partial_sum(places, places + 257, places);
-    const int count = places[256];
-    edges.resize(count + 1); // the last one is for those that are not kept
-    visitEdges(weights, pixelIntv, rows, [&](int edge, int weight, int isKept) {
-        edges[choose(isKept, places[weight], count)] = edge;
-        places[weight] += isKept;
-    });
+    for (int y = begin; y < rows.end; ++y)
+    {
+        const uchar* const weight = weights.ptr(y);
+        const DisparityInterval* const interval = pixelIntv.ptr<DisparityInterval>(y);
+        const DisparityInterval* const next = pixelIntv.ptr<DisparityInterval>(std::min(y + 1, weights.rows - 1));
+        const int hasRight = (int)(y >= rows.start), hasBelow = (int)(y + 1 < weights.rows);
+        for (int x = 0; x < width; ++x) // without branches, which would often be mispredicted
+        {
+            const int edge = 2 * (y * width + x), right = std::min(x + 1, width - 1);
+            edges[count] = edge;
+            count += hasRight & (int)(x < right) & isKept(weight[2 * x], interval[x], interval[right]);
+            edges[count] = edge + 1;
+            count += hasBelow & isKept(weight[2 * x + 1], interval[x], next[x]);
+        }
+    }
     edges.resize(count);
 }
 
@@ -94,10 +69,9 @@ void sortByWeight(const Mat& weights, std::vector<int>& edges)
     for (int edge : edges)
         ++places[weight[edge] + 1];
     std::partial_sum(places, places + 257, places);
-    std::vector<int> sorted(edges.size());
-    for (int edge : edges)
-        sorted[places[weight[edge]]++] = edge;
-    edges.swap(sorted);
+    const std::vector<int> unsorted = edges;
+    for (int edge : unsorted)
+        edges[places[weight[edge]]++] = edge;
 }
 
 }}} // namespace cv::stereo::hdp

@@ -36,9 +36,6 @@ void weighEdges(const Mat& image, Mat& weights);
 //! The edges of some rows that DT-Rule 1 keeps, by number; and those from the row above into them.
 void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges);
 
-//! The same, as sortByWeight() leaves them.
-void selectEdgesByWeight(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges);
-
 //! Sorts edges by ascending weight; those of one weight stay in the order given.
 void sortByWeight(const Mat& weights, std::vector<int>& edges);
 
