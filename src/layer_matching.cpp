@@ -175,10 +175,7 @@ private:
         aggregateVolume(shared_.volume, weights, plan_.volumePenalties, shared_.volumeSums, result_.winners);
     }
 
-    //! DisparityInterval of each pixel; empty without ranges
-    Mat intervals() const { return in_.pair.hasRanges ? in_.known.intervals[plan_.layer] : Mat(); }
-
-    //! The same in the candidates that are compared
+    //! DisparityInterval of each pixel, in the candidates that are compared; empty without ranges
     Mat candidateIntervals() const { return in_.pair.hasRanges ? in_.known.candidates[plan_.layer] : Mat(); }
 
     void predictFromLastFrame()
@@ -194,8 +191,7 @@ private:
         shared_.forestLayer = -1;
         result_.searchRatio = 1;
         clock_.run("disparity prediction", [&] {
-            const DisparityInterval all = { 0, (ushort)(plan_.numDisparities - 1) };
-            shared_.volume.fill(TwoLayerCost(own_.census, in_.below), in_.images.guide.size(), all);
+            shared_.volume.fill(TwoLayerCost(own_.census, in_.below), in_.images.guide.size(), plan_.numDisparities);
             excludeBeyondRanges();
             if (!plan_.prefersLastFrame)
                 return;
@@ -335,7 +331,7 @@ private:
     void keepIntervals(Mat& disparity) const
     {
         if (in_.pair.hasRanges)
-            moveIntoIntervals(intervals(), disparity);
+            moveIntoIntervals(in_.known.intervals[plan_.layer], disparity);
     }
 
     //! Filters the map, in which pixels without data are USHRT_MAX then. They, and those beside them whose result that

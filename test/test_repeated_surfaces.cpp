@@ -33,8 +33,7 @@ struct Layer
             image(Rect(x, panel.y, 1, panel.height)).setTo((x % stripePeriod < 3 ? 68 : 188) * hdp::greyScale);
         census.prepare(image, image, candidates, 7);
         const hdp::TwoLayerCost cost(census, nullptr);
-        const hdp::DisparityInterval all = { 0, candidates - 1 };
-        volume.fill(cost, size, all);
+        volume.fill(cost, size, candidates);
         std::fill(volume.costs.begin(), volume.costs.end(), (uchar)highCost);
         for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x)

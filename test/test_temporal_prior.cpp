@@ -245,25 +245,26 @@ TEST(HDPStereo_CostVolume, fill)
     for (int blockSize : { 7, 5, 3 })
         for (const Size& imageSize : { Size(70, 5), Size(9, 4) })
         {
-            const DisparityInterval all = { 0, (ushort)(imageSize.width / 2) };
+            const int count = imageSize.width / 2 + 1;
             Mat left(imageSize, CV_16UC1), right(imageSize, CV_16UC1);
             rng.fill(left, RNG::UNIFORM, 0, 5);
             rng.fill(right, RNG::UNIFORM, 0, 5);
             CensusCost ofLayer;
-            ofLayer.prepare(left, right, all.size(), blockSize);
+            ofLayer.prepare(left, right, count, blockSize);
             const TwoLayerCost cost(ofLayer, nullptr);
             const oracle::CensusCost census(left, right, blockSize);
-            volume.fill(cost, imageSize, all);
+            volume.fill(cost, imageSize, count);
             EXPECT_EQ(imageSize, volume.size);
-            EXPECT_EQ(all.last + 1, volume.numDisparities);
+            EXPECT_EQ(count, volume.numDisparities);
             ASSERT_LE(volume.chunks * CostVolume::chunk, volume.costs.size());
             for (int pixel = 0; pixel < imageSize.area(); ++pixel)
             {
                 const CostVolume::Candidates own = volume.of(pixel);
-                ASSERT_EQ(all.size(), own.interval.size());
+                ASSERT_EQ(0, own.interval.first);
+                ASSERT_EQ(count, own.interval.size());
                 ASSERT_LE((size_t)own.firstChunk + own.chunks(), volume.chunks);
                 const Point at(pixel % imageSize.width, pixel / imageSize.width);
-                for (int k = 0; k < all.size(); ++k)
+                for (int k = 0; k < count; ++k)
                     ASSERT_EQ(CostVolume::scale * census(at.y, at.x, k), volume.costs[own.start() + k])
                         << at << ", " << k;
             }

@@ -37,16 +37,12 @@ void CostVolume::create(const DisparityForest& forest)
     const int mean = (int)(chunksOfTrees / size.area());
     usualChunks_ = most <= 2 * mean ? most : mean;
     chunks = (size_t)size.area() * usualChunks_;
-    if (isUniform)
-        pixels_.resize(size.area());
-    else
+    if (!isUniform)
         candidates.resize(size.area());
     starts_.clear();
-    unsigned pixels = 0;
     for (const DisparityTree& tree : forest.trees)
     {
-        starts_.push_back(isUniform ? pixels : (unsigned)chunks);
-        pixels += tree.size;
+        starts_.push_back((unsigned)chunks);
         if (chunksOf(tree.interval) > usualChunks_)
             chunks += (size_t)tree.size * chunksOf(tree.interval);
     }
@@ -62,19 +58,16 @@ void CostVolume::provideCosts()
 
 void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pixels)
 {
+    if (isUniform)
+        return;
     const DisparityInterval interval = forest.trees[tree].interval;
     const int count = forest.trees[tree].size;
-    if (isUniform)
-    {
-        std::copy_n(pixels, count, &pixels_[starts_[tree]]);
-        return;
-    }
     const unsigned own = chunksOf(interval), usual = usualChunks_;
     for (int i = 0; i < count; ++i)
         candidates[pixels[i]] = { own <= usual ? pixels[i] * usual : starts_[tree] + i * own, interval };
 }
 
-void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const DisparityInterval& interval)
+void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, int candidatesOfAll)
 {
     struct Row
     {
@@ -83,18 +76,18 @@ void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, const Dis
     };
     size = layerSize;
     steps = cost.steps();
-    numDisparities = interval.last + 1;
-    usualChunks_ = chunksOf(interval);
-    chunks = (size_t)size.area() * usualChunks_;
+    numDisparities = candidatesOfAll;
     isUniform = true;
-    uniform_ = interval;
+    uniform_ = { 0, (ushort)(numDisparities - 1) };
+    usualChunks_ = chunksOf(uniform_);
+    chunks = (size_t)size.area() * usualChunks_;
     provideCosts();
     const Row memory = { std::vector<int>(size.width), std::vector<uchar>(size.width * chunk) };
     parallelForRows(size, memory, [&](int y, Row& row) {
         std::iota(row.pixels.begin(), row.pixels.end(), y * size.width);
         for (int c = 0; c < usualChunks_; ++c)
         {
-            cost.evaluate(row.pixels.data(), size.width, interval.first + c * chunk, chunk, row.costs.data());
+            cost.evaluate(row.pixels.data(), size.width, c * chunk, chunk, row.costs.data());
             for (int x = 0; x < size.width; ++x)
                 std::copy_n(&row.costs[x * chunk], +chunk, &costs[of(row.pixels[x]).start() + c * chunk]);
         }
