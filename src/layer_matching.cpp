@@ -261,7 +261,7 @@ private:
         clock_.run("cost aggregation", [&] {
             weighEdges(guide(), own_.edgeWeights);
             weighSmoothness(in_.upper->disparity, in_.upper->residual, own_.census.comparisons(), plan_.smoothness,
-                            shared_.smoothness, own_.smoothness);
+                            own_.smoothness);
         });
         for (const ScanlinePenalties& penalties : plan_.passes)
         {
@@ -293,7 +293,7 @@ private:
         clock_.run("disparity prediction", [&] {
             const Mat& upper = isFirst ? in_.upper->disparity : own_.halved;
             const Mat& unfiltered = isFirst ? in_.upper->winners : own_.halvedWinners;
-            findOtherSurfaces(upper, unfiltered, own_.surfaceBuffers, own_.others);
+            findOtherSurfaces(upper, unfiltered, own_.others);
             predictWindows(upper, own_.others, plan_.numDisparities, own_.windows);
             if (in_.pair.hasRanges)
                 restrictWindows(in_.known.hulls[plan_.layer], plan_.numDisparities, own_.windows);

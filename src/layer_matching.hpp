@@ -45,7 +45,6 @@ struct LayerScratch
     ColorGradientCost colorGradient;
     Mat guide, edgeWeights;              // what edges are weighed on; their weights, if there is no forest
     Mat pixelIntv;                       // PixelIntv, section 3.1
-    SurfaceBuffers surfaceBuffers;       // memory of findOtherSurfaces()
     Mat others, windows;                 // what the windows of scanlines are predicted from; the windows
     Mat smoothness;                      // weights of the penalties in these windows
     Mat filtered, halved, halvedWinners; // what a pass of scanlines leaves to the next one
@@ -69,7 +68,6 @@ struct SharedScratch
     std::vector<DisparityInterval> intervals;
     ForestBuffers forestBuffers;
     AggregationBuffers aggregation;
-    SmoothnessBuffers smoothness;
     ScanlineBuffers scanlines;
     CostVolume volume;
     std::vector<short> volumeSums;

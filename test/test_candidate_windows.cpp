@@ -85,7 +85,6 @@ void expectWindows(const Prediction& prediction, int numDisparities)
 TEST(HDPStereo_OtherSurfaces, rule)
 {
     RNG rng(60);
-    hdp::SurfaceBuffers buffers;
     Mat others;
     int found = 0;
     for (const Size& size : { Size(1, 1), Size(4, 1), Size(35, 20), Size(80, 18), Size(20, 161) })
@@ -94,7 +93,7 @@ TEST(HDPStereo_OtherSurfaces, rule)
             SCOPED_TRACE(testing::Message() << size << ", disparities " << numDisparities);
             Prediction prediction(patchesAbove(rng, size, numDisparities, 7));
             prediction.addThinStructures(rng, numDisparities);
-            hdp::findOtherSurfaces(prediction.upper, prediction.unfiltered, buffers, others);
+            hdp::findOtherSurfaces(prediction.upper, prediction.unfiltered, others);
             ASSERT_EQ(size, others.size());
             ASSERT_EQ(CV_16UC1, others.type());
             for (int y = 0; y < size.height; ++y)

@@ -45,9 +45,8 @@ struct Layer
                         if (rng.uniform(0, 10)) // noise
                             right.at<ushort>(y, x - d) = left.at<ushort>(y, x);
             }
-        hdp::SurfaceBuffers buffers;
         Mat others;
-        hdp::findOtherSurfaces(upper, upper, buffers, others);
+        hdp::findOtherSurfaces(upper, upper, others);
         hdp::predictWindows(upper, others, numDisparities, windows);
         smoothness.create(upper.size(), CV_8UC1);
         rng.fill(smoothness, RNG::UNIFORM, +hdp::SmoothnessWeight::min, hdp::SmoothnessWeight::max + 1);

@@ -32,8 +32,7 @@ double expectedWeight(const Mat& upper, const Mat& residual, Point p)
 Mat weightsOf(const Mat& upper, const Mat& residual, int least = hdp::SmoothnessWeight::min)
 {
     Mat weights;
-    hdp::SmoothnessBuffers buffers;
-    hdp::weighSmoothness(upper, residual, bits, { side / 2, least, hdp::SmoothnessWeight::max }, buffers, weights);
+    hdp::weighSmoothness(upper, residual, bits, { side / 2, least, hdp::SmoothnessWeight::max }, weights);
     EXPECT_EQ(upper.size(), weights.size());
     EXPECT_EQ(CV_8UC1, weights.type());
     return weights;

@@ -21,29 +21,25 @@ HDP_DISPATCH(restrictRow)
 
 } // namespace
 
-void findOtherSurfaces(const Mat& upper, const Mat& unfiltered, SurfaceBuffers& buffers, Mat& others)
+void findOtherSurfaces(const Mat& upper, const Mat& unfiltered, Mat& others)
 {
     const Mat maps[] = { upper, unfiltered };
     const Size size = upper.size();
     // Not Mat::ones(): the first thread with an expression sets them up, in OpenCV, which ThreadSanitizer does not see.
     const Mat kernel(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U, Scalar(1));
-    for (int map = 0; map < 2; ++map)
-    {
-        buffers.min[map].create(size, CV_16U);
-        buffers.max[map].create(size, CV_16U);
-    }
     others.create(size, CV_16U);
     const int stripes = std::max(1, std::min<int>(maxStripes, size.height / minStripeHeight));
     parallel_for_(Range(0, stripes), [&](const Range& range) {
         const Range rows(size.height * range.start / stripes, size.height * range.end / stripes);
+        Mat min[2], max[2]; // of the disparities around each pixel
         for (int map = 0; map < 2; ++map)
         {
-            Mat minima = buffers.min[map].rowRange(rows), maxima = buffers.max[map].rowRange(rows);
-            erode(maps[map].rowRange(rows), minima, kernel); // a stripe sees its neighbours' rows
-            dilate(maps[map].rowRange(rows), maxima, kernel);
+            erode(maps[map].rowRange(rows), min[map], kernel); // a stripe sees its neighbours' rows
+            dilate(maps[map].rowRange(rows), max[map], kernel);
         }
         const auto rowOf = [&](int map, int y) -> DisparityRow {
-            return { maps[map].ptr<ushort>(y), buffers.min[map].ptr<ushort>(y), buffers.max[map].ptr<ushort>(y) };
+            const int own = y - rows.start;
+            return { maps[map].ptr<ushort>(y), min[map].ptr<ushort>(own), max[map].ptr<ushort>(own) };
         };
         for (int y = rows.start; y < rows.end; ++y)
             dispatched::findOthersOfRow(rowOf(0, y), rowOf(1, y), size.width, others.ptr<ushort>(y));

@@ -11,12 +11,6 @@ namespace cv { namespace stereo { namespace hdp {
 //! Pixels of the layer between disparities of different surfaces: what is nearer is in one window of candidates
 const int otherSurfaceDistance = 5;
 
-//! Memory of findOtherSurfaces()
-struct SurfaceBuffers
-{
-    Mat min[2], max[2]; // disparities around each pixel, filtered or not
-};
-
 //! A row of disparities of the layer above, and the minimum and maximum around each
 struct DisparityRow
 {
@@ -32,7 +26,7 @@ from it: the first one there is of
 @param unfiltered The same before the median, which removes thin structures.
 @param others Receives CV_16UC1 of the size of the layer above, in 1 / subpixelScale pixel of the layer: the other
 surface, or the pixel's own disparity if there is none. */
-CV_EXPORTS void findOtherSurfaces(const Mat& upper, const Mat& unfiltered, SurfaceBuffers& buffers, Mat& others);
+CV_EXPORTS void findOtherSurfaces(const Mat& upper, const Mat& unfiltered, Mat& others);
 
 /** The candidates of the pixels below a pixel of the upper layer: two runs of successive disparities. The first one is
 around the pixel's own disparity. The other one is around that of another surface the pixel may belong to, or follows

@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "smoothness_weights.hpp"
-#include "smoothness_weights.simd.hpp"
-#include "scanlines/smoothness_weights.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+
+#include "../base/vectorized.hpp"
 #include "../base/window_sums.hpp"
 
 #include <cmath>
@@ -17,8 +17,6 @@ HDP_TUNABLE(double, typical, 7.3, "natural logarithms per logarithm",
             "of pairs that the penalties are right for as they are: more loses bare surfaces, less loses details");
 HDP_TUNABLE(double, leastShare, 0.001, "share of neighbours",
             "that may be apart where none are: more makes flat scenes rough, less drags surfaces across borders");
-
-HDP_DISPATCH(findTermsOfRow)
 
 const int stripeHeight = 64; // rows that are in the caches at once: fewer find the rows between stripes more often
 
@@ -50,50 +48,51 @@ std::vector<ushort> inverseEvidence(int radius, int bits)
     return inverse;
 }
 
-//! The costs and the breaks of a layer in the windows around some of its rows
-struct WindowTerms
-{
-    Mat matchedSums, breakSums;
+ushort isBreak(ushort a, ushort b) { return (ushort)(difference(a, b) > (ushort)subpixelScale); }
 
-    WindowTerms(const Mat& upper, const Mat& residual, int bits, int radius, const Range& rows,
-                SmoothnessScratch& scratch)
+/** What a row shows of both terms.
+@param below Those of the next row, or its own if it is the last one.
+@param matched Receives the costs, by chance at most; pixels without data have a usual one.
+@param breaks Receives how many of a pixel's neighbours to the right and below are another surface. */
+void findTerms(const ushort* upper, const ushort* below, const uchar* residual, int width, int bits, uchar* matched,
+               uchar* breaks)
+{
+    const uchar usual = (uchar)(bits / 8), chance = (uchar)(bits / 2);
+    HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        const Range seen(std::max(rows.start - radius, 0), std::min(rows.end + radius, upper.rows));
-        const int cols = upper.cols;
-        Mat matched(seen.size(), cols, CV_8U, grown(scratch.matched, (size_t)seen.size() * cols));
-        Mat breaks(seen.size(), cols, CV_8U, grown(scratch.breaks, (size_t)seen.size() * cols));
-        for (int y = seen.start; y < seen.end; ++y)
-            dispatched::findTermsOfRow(upper.ptr<ushort>(y), upper.ptr<ushort>(std::min(y + 1, upper.rows - 1)),
-                                       residual.ptr(y), cols, bits, matched.ptr(y - seen.start),
-                                       breaks.ptr(y - seen.start));
-        const Range own = rows - seen.start;
-        matchedSums = Mat(own.size(), cols, CV_16U, grown(scratch.matchedSums, (size_t)own.size() * cols));
-        breakSums = Mat(own.size(), cols, CV_16U, grown(scratch.breakSums, (size_t)own.size() * cols));
-        sumOverWindows(matched, own, sideOf(radius), CV_16U, matchedSums);
-        sumOverWindows(breaks, own, sideOf(radius), CV_16U, breakSums);
+        const uchar cost = std::min(residual[x], chance);
+        matched[x] = residual[x] == UCHAR_MAX ? usual : cost;
     }
-};
+    HDP_VECTORIZED for (int x = 0; x < width - 1; ++x) breaks[x] =
+        (uchar)(isBreak(upper[x], upper[x + 1]) + isBreak(upper[x], below[x]));
+    breaks[width - 1] = (uchar)isBreak(upper[width - 1], below[width - 1]);
+}
 
 } // namespace
 
-void weighSmoothness(const Mat& upper, const Mat& residual, int bits, const SmoothnessPlan& plan,
-                     SmoothnessBuffers& buffers, Mat& weights)
+void weighSmoothness(const Mat& upper, const Mat& residual, int bits, const SmoothnessPlan& plan, Mat& weights)
 {
     const std::vector<ushort> steps = stepCosts(plan.radius), inverse = inverseEvidence(plan.radius, bits);
-    const int unit = productUnit / SmoothnessWeight::one;
+    const int unit = productUnit / SmoothnessWeight::one, cols = upper.cols;
     weights.create(upper.size(), CV_8U);
     const int stripes = (upper.rows + stripeHeight - 1) / stripeHeight;
     parallelFor(stripes, [&](int i) {
         const Range rows(i * stripeHeight, std::min((i + 1) * stripeHeight, upper.rows));
-        const WindowTerms terms(upper, residual, bits, plan.radius, rows, buffers.getRef());
+        const Range seen(std::max(rows.start - plan.radius, 0), std::min(rows.end + plan.radius, upper.rows));
+        Mat matched(seen.size(), cols, CV_8U), breaks(seen.size(), cols, CV_8U), matchedSums, breakSums;
+        for (int y = seen.start; y < seen.end; ++y)
+            findTerms(upper.ptr<ushort>(y), upper.ptr<ushort>(std::min(y + 1, upper.rows - 1)), residual.ptr(y), cols,
+                      bits, matched.ptr(y - seen.start), breaks.ptr(y - seen.start));
+        sumOverWindows(matched, rows - seen.start, sideOf(plan.radius), CV_16U, matchedSums);
+        sumOverWindows(breaks, rows - seen.start, sideOf(plan.radius), CV_16U, breakSums);
         for (int y = rows.start; y < rows.end; ++y)
         {
-            const ushort* const matched = terms.matchedSums.ptr<ushort>(y - rows.start);
-            const ushort* const breaks = terms.breakSums.ptr<ushort>(y - rows.start);
+            const ushort* const matchedSum = matchedSums.ptr<ushort>(y - rows.start);
+            const ushort* const breakSum = breakSums.ptr<ushort>(y - rows.start);
             uchar* const weight = weights.ptr(y);
-            for (int x = 0; x < upper.cols; ++x)
+            for (int x = 0; x < cols; ++x)
             {
-                const int product = steps[breaks[x]] * inverse[matched[x] >> sumBits];
+                const int product = steps[breakSum[x]] * inverse[matchedSum[x] >> sumBits];
                 weight[x] = (uchar)clamped(product / unit, plan.least, plan.most);
             }
         }

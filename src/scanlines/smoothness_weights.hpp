@@ -4,7 +4,6 @@
 #ifndef OPENCV_HDPSTEREO_SMOOTHNESS_WEIGHTS_HPP
 #define OPENCV_HDPSTEREO_SMOOTHNESS_WEIGHTS_HPP
 
-#include "opencv2/core/utils/tls.hpp"
 #include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -23,15 +22,6 @@ struct SmoothnessPlan
     int radius, least, most;
 };
 
-//! Memory of a thread
-struct SmoothnessScratch
-{
-    std::vector<uchar> matched, breaks;
-    std::vector<ushort> matchedSums, breakSums;
-};
-
-typedef TLSData<SmoothnessScratch> SmoothnessBuffers;
-
 /** Weighs smoothness against matching costs, by what the layer above has of both around each of its pixels
 @cite Zhang2007Parameters :
 
@@ -47,7 +37,7 @@ are large, penalties count more; where bits agree, or surfaces are many, they co
 @param plan The windows, and limits from SmoothnessWeight::min to SmoothnessWeight::max.
 @param weights Receives CV_8UC1, a SmoothnessWeight per pixel of the layer above. */
 CV_EXPORTS void weighSmoothness(const Mat& upper, const Mat& residual, int bits, const SmoothnessPlan& plan,
-                                SmoothnessBuffers& buffers, Mat& weights);
+                                Mat& weights);
 
 }}} // namespace cv::stereo::hdp
 
