@@ -27,11 +27,10 @@ void ScanlineScratch::Windows::prepare(size_t pairs)
         stored->resize(columns * CandidateWindow::candidates);
     isContiguous.assign(columns, 0);
     small.resize(columns + 16); // some more to read
-    nearer.resize(pairs);
     for (int run = 0; run < CandidateWindow::runs; ++run)
     {
-        first[run].assign(columns, 0); // of the margins' candidates, too, the addresses are valid
         distance[run].resize(columns);
+        first[run].assign(columns, 0); // of the margins' candidates, too, the addresses are valid
         firstOfColumn[run].resize(2 * pairs);
     }
     for (std::vector<uchar>* ofColumn : { &slopes, &large, &least })

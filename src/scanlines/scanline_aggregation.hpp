@@ -54,10 +54,9 @@ struct ScanlineScratch
     struct Windows
     {
         // By column of the layer above: the first candidate of each run, and how far it is from what was predicted;
-        // whether there is one run, and so there is for the other rows of the block in the same step; small penalties,
-        // and what the second run costs more
+        // whether there is one run, and so there is for the other rows of the block in the same step; small penalties
         std::vector<short> first[CandidateWindow::runs], distance[CandidateWindow::runs];
-        std::vector<uchar> isContiguous, small, nearer;
+        std::vector<uchar> isContiguous, small;
         std::vector<uchar> priors, intoSide, intoNext; // CandidateWindow::candidates per such column
         // By column of the layer: the first candidates, and what penalties of edges depend on
         std::vector<short> firstOfColumn[CandidateWindow::runs];

@@ -57,12 +57,16 @@ public:
         {
             const bool takesWinners = y >= rows_.start;
             const int blocks = countBlocks((takesWinners ? rows_.end : rows_.start) - y);
+            uchar* stored[ScanlineScratch::blocks];
             for (int i = 0; i < blocks; ++i)
+            {
                 enter(i, y + i * groups);
-            typedef void (Sweep::*Method)(int);
-            static const Method methods[][2] = { { &Sweep::downward<false, 1>, &Sweep::downward<false, 2> },
-                                                 { &Sweep::downward<true, 1>, &Sweep::downward<true, 2> } };
-            (this->*methods[takesWinners][blocks - 1])(y);
+                stored[i] = storedOf(y + i * groups);
+            }
+            Block::Carried h[ScanlineScratch::blocks];
+            const Range turns(0, countTurns(blocks));
+            takesWinners ? follow<false, true>(turns, blocks, stored, h)
+                         : follow<false, false>(turns, blocks, stored, h);
             for (int i = 0; takesWinners && i < blocks; ++i)
                 blocks_[i].finish(y + i * groups, rows_.end, disparity, residual);
             y += blocks * groups;
@@ -84,6 +88,9 @@ private:
 
     static int countBlocks(int rows) { return rows > groups ? +ScanlineScratch::blocks : 1; }
 
+    //! Turns in which blocks take their steps side by side
+    int countTurns(int blocks) const { return steps_ + (blocks - 1) * behind; }
+
     //! Blocks from that at row y up to that at row last; returns the row of the next one.
     int upward(int y, int last, Task task)
     {
@@ -104,51 +111,48 @@ private:
 
     void upward(int blocks, Task task, uchar* const* stored)
     {
-        typedef void (Sweep::*Method)(const Range&, uchar* const*, Block::Carried*) const;
-        static const Method methods[][2] = { { &Sweep::upward<false, 1>, &Sweep::upward<false, 2> },
-                                             { &Sweep::upward<true, 1>, &Sweep::upward<true, 2> } };
-        const int end = steps_ + (blocks - 1) * behind;
+        const int end = countTurns(blocks);
         Block::Carried h[ScanlineScratch::blocks];
         for (int t = 0; t < end; t += chunk)
         {
-            const Range steps(t, std::min(t + chunk, end));
+            const Range turns(t, std::min(t + chunk, end));
             for (int i = 0; i < blocks; ++i)
                 blocks_[i].storeCosts(
-                    Range(std::max(steps.start - i * behind, 0), std::min(steps.end - i * behind, steps_)), stored[i]);
-            if (task != STORE_COSTS)
-                (this->*methods[task == SUM][blocks - 1])(steps, stored, h);
+                    Range(std::max(turns.start - i * behind, 0), std::min(turns.end - i * behind, steps_)), stored[i]);
+            if (task == SUM)
+                follow<true, true>(turns, blocks, stored, h);
+            else if (task == FOLLOW)
+                follow<true, false>(turns, blocks, stored, h);
         }
     }
 
-    template <bool sums, int blocks>
-    void upward(const Range& steps, uchar* const* stored, Block::Carried* carried) const
+    //! Lets the blocks take their steps in some turns.
+    template <bool isUpward, bool sums>
+    void follow(const Range& turns, int blocks, uchar* const* stored, Block::Carried* carried) const
+    {
+        if (blocks == 1)
+            follow<isUpward, sums, 1>(turns, stored, carried);
+        else
+            follow<isUpward, sums, 2>(turns, stored, carried);
+    }
+
+    template <bool isUpward, bool sums, int blocks>
+    void follow(const Range& turns, uchar* const* stored, Block::Carried* carried) const
     {
         const Block a = blocks_[0], b = blocks_[1];
         Block::Carried first = carried[0], second = carried[1];
-        for (int t = steps.start; t < steps.end; ++t)
+        const int steps = steps_, forward = isUpward ? 1 : -1;
+        int t = isUpward ? turns.start : steps - 1 - turns.start; // of the first block; u: of the second one
+        for (int turn = turns.start; turn < turns.end; ++turn, t += forward)
         {
-            if (blocks == 1 || t < steps_)
-                a.upward<sums>(t, first, stored[0]);
-            if (blocks == 2 && t >= behind)
-                b.upward<sums>(t - behind, second, stored[1]);
+            const int u = t - forward * behind;
+            if (blocks == 1 || (isUpward ? t < steps : t >= 0))
+                a.follow<isUpward, sums>(t, first, stored[0]);
+            if (blocks == 2 && (isUpward ? u >= 0 : u < steps))
+                b.follow<isUpward, sums>(u, second, stored[1]);
         }
         carried[0] = first;
         carried[1] = second;
-    }
-
-    template <bool takesWinners, int blocks> void downward(int y)
-    {
-        const uchar *const first = storedOf(y), *const second = storedOf(y + groups);
-        const Block a = blocks_[0], b = blocks_[1];
-        const int steps = steps_;
-        Block::Carried ofFirst, ofSecond;
-        for (int t = steps - 1; t >= -(blocks - 1) * behind; --t)
-        {
-            if (blocks == 1 || t >= 0)
-                a.downward<takesWinners>(t, ofFirst, first);
-            if (blocks == 2 && t + behind < steps)
-                b.downward<takesWinners>(t + behind, ofSecond, second);
-        }
     }
 
     //! Enters the rows of a block from y on, after those of the block before.

@@ -195,8 +195,7 @@ public:
             const int inBlock = y + groups - 1 - r, row = std::min(inBlock, lastRow);
             const int edgeRow = std::max(std::min(row, row + forward), 0); // its edges below lead to the next row
             costs_.enterRow(r, row);
-            weighScanlineEdges(p_.weights->ptr(row), p_.weights->ptr(edgeRow), tables.edgePenalties(), width_,
-                               p_.penalties.edgeNoise, edges_[r]);
+            tables.weighEdges(p_.weights->ptr(row), p_.weights->ptr(edgeRow), edges_[r]);
             if (isUpward_ && inBlock > lastRow) // with large penalties of 0, nothing comes from there
                 std::memset(edges_[r], 0, 2 * (size_t)width_);
         }
@@ -215,46 +214,19 @@ public:
         (this->*methods[!p_.cost->limits().isEmpty()][p_.cost->planes() - 1])(steps, stored);
     }
 
-    //! A step of the direction from below, and if it is to sum, of that from the left; stored: costs, receives the sums
-    template <bool sums> CV_ALWAYS_INLINE void upward(int t, Carried& h, uchar* stored) const
+    /** A step of the direction from below or from above, and if it is to sum, of that from the left or from the right.
+    Then the sum of both is stored upward, and downward the winners are taken of all four.
+    @param stored Costs, and behind them sums. */
+    template <bool isUpward, bool sums> CV_ALWAYS_INLINE void follow(int t, Carried& h, uchar* stored) const
     {
         const ByteLanes small = smallPenalty(t);
-        const ByteLanes toRight[2] = { largePenalty<2>(t), largePenalty<4>(t) };
+        const ByteLanes toSide[2] = { largePenalty < isUpward ? 2 : 0 > (t), largePenalty < isUpward ? 4 : 2 > (t) };
         const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
         if (sums)
             h.side = h.side.permute(ByteLanes::load(ScanlineWindows::ofStep(intoSide_, t)));
-        for (int column = 0; column < 2; ++column)
-        {
-            uchar* const costs = stored + storedAt(t, column);
-            const ByteLanes cost = ByteLanes::load(costs);
-            const ByteLanes below = fromBelow(cost, small, toNext[column], t, column, h.before[column]);
-            if (sums)
-                (below + advance(h.side, cost, small, toRight[column])).store(costs + lanes);
-        }
-        if (sums && t + 1 < groups)
-            h.side = clearOutside(h.side, t, 1);
-    }
-
-    //! A step downward, with its winners, or of the direction from above alone; stored: costs and sums
-    template <bool takesWinners> CV_ALWAYS_INLINE void downward(int t, Carried& h, const uchar* stored) const
-    {
-        const ByteLanes small = smallPenalty(t);
-        const ByteLanes toLeft[2] = { largePenalty<0>(t), largePenalty<2>(t) };
-        const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
-        if (takesWinners)
-            h.side = h.side.permute(ByteLanes::load(ScanlineWindows::ofStep(intoSide_, t)));
-        for (int column = 1; column >= 0; --column)
-        {
-            const uchar* const costs = stored + storedAt(t, column);
-            const ByteLanes cost = ByteLanes::load(costs);
-            const ByteLanes above = fromAbove(cost, small, toNext[column], t, column, h.before[column]);
-            if (!takesWinners)
-                continue;
-            const ByteLanes right = advance(h.side, cost, small, toLeft[column]);
-            if (t + 1 >= pairs_)
-                h.side = clearOutside(h.side, t, column);
-            takeWinners(ByteLanes::load(costs + lanes) + right + above, t, column, costs);
-        }
+        const int first = isUpward ? 0 : 1, second = 1 - first; // columns, known to the compiler
+        followColumn<isUpward, sums, first>(t, small, toSide[first], toNext[first], h, stored);
+        followColumn<isUpward, sums, second>(t, small, toSide[second], toNext[second], h, stored);
     }
 
     //! Disparities and residuals of the winners; rows from y on, of which those before end count
@@ -284,7 +256,8 @@ private:
         }
     }
 
-    //! large(p, q) of edges of a step, see weighScanlineEdges(): number `at` from the pixel left of its columns on
+    //! large(p, q) of edges of a step, see ScanlineWindows::weighEdges(): number `at`, from the pixel left of its columns
+    //! on
     template <int at> CV_ALWAYS_INLINE ByteLanes largePenalty(int step) const
     {
         const uchar* edges[groups];
@@ -337,29 +310,42 @@ private:
         return vertical_ + (2 * (ptrdiff_t)(step - group) + column) * Window::candidates;
     }
 
-    //! The direction from below: before holds H of the last step's columns; large: to the next row
-    CV_ALWAYS_INLINE ByteLanes fromBelow(const ByteLanes& cost, const ByteLanes& small, const ByteLanes& large, int t,
-                                         int column, ByteLanes& before) const
+    //! The direction from the row before, below or above. before: H of the last step's columns, of which a group takes
+    //! that of the group before it, in this row then; the first one of these takes it from memory, and only that may
+    //! enter another row of windows. The last one leaves its own there. large: to the next row
+    template <bool isUpward>
+    CV_ALWAYS_INLINE ByteLanes followRows(const ByteLanes& cost, const ByteLanes& small, const ByteLanes& large, int t,
+                                          int column, ByteLanes& before) const
     {
-        before = ByteLanes::shiftInFirst(verticalAt(0, t, column), before);
-        if (entersUpperRow_) // only the row that the block begins with may
-            before = before.permute(ByteLanes::first(ScanlineWindows::ofStep(intoNext_, t)));
+        uchar *const lowest = verticalAt(0, t, column), *const highest = verticalAt(groups - 1, t, column);
+        before = isUpward ? ByteLanes::shiftInFirst(lowest, before) : ByteLanes::shiftInLast(before, highest);
+        if (entersUpperRow_)
+            before = before.permute(isUpward ? ByteLanes::first(ScanlineWindows::ofStep(intoNext_, t))
+                                             : ByteLanes::last(ScanlineWindows::ofStep(intoNext_, t - groups + 1)));
         const ByteLanes direction = advance(before, cost, small, large);
-        before.storeLast(verticalAt(groups - 1, t, column));
+        if (isUpward)
+            before.storeLast(highest);
+        else
+            before.storeFirst(lowest);
         return direction;
     }
 
-    //! The direction from above: a group takes H of that of the row above, which was there a step before; the last
-    //! group, the upper row, takes it from memory. Only that may enter another row of windows.
-    CV_ALWAYS_INLINE ByteLanes fromAbove(const ByteLanes& cost, const ByteLanes& small, const ByteLanes& large, int t,
-                                         int column, ByteLanes& before) const
+    template <bool isUpward, bool sums, int column>
+    CV_ALWAYS_INLINE void followColumn(int t, const ByteLanes& small, const ByteLanes& toSide, const ByteLanes& toNext,
+                                       Carried& h, uchar* stored) const
     {
-        before = ByteLanes::shiftInLast(before, verticalAt(groups - 1, t, column));
-        if (entersUpperRow_)
-            before = before.permute(ByteLanes::last(ScanlineWindows::ofStep(intoNext_, t - groups + 1)));
-        const ByteLanes direction = advance(before, cost, small, large);
-        before.storeFirst(verticalAt(0, t, column));
-        return direction;
+        uchar* const costs = stored + storedAt(t, column);
+        const ByteLanes cost = ByteLanes::load(costs);
+        const ByteLanes vertical = followRows<isUpward>(cost, small, toNext, t, column, h.before[column]);
+        if (!sums)
+            return;
+        const ByteLanes sum = vertical + advance(h.side, cost, small, toSide);
+        if (isUpward ? (t + 1 < groups && column == 1) : t + 1 >= pairs_)
+            h.side = clearOutside(h.side, t, column);
+        if (isUpward)
+            sum.store(costs + lanes);
+        else
+            takeWinners(ByteLanes::load(costs + lanes) + sum, t, column, costs);
     }
 
     //! The winners' lanes, sums with those beside them, and costs

@@ -13,33 +13,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-//! Of the pixels of a row, what large(p, q) depends on: the slope, large(p) and the least of it
-struct EdgePenalties
-{
-    const uchar *slope, *large, *least;
-};
-
-/** large(p, q) between each pixel of a row and its neighbours to the right and in the next row.
-@param row Weights of the row's edges, of which those to the right are read.
-@param toNext Weights of those between it and the next row, which are those below of the upper one.
-@param edges Receives two penalties per pixel. */
-inline void weighScanlineEdges(const uchar* row, const uchar* toNext, const EdgePenalties& pixels, int width,
-                               int edgeNoise, uchar* edges)
-{
-    const uchar *const slopes = pixels.slope, *const large = pixels.large, *const least = pixels.least;
-    const ushort noise = (ushort)edgeNoise;
-    const auto penalty = [&](ushort weight, int x) {
-        const ushort fall = (ushort)((ushort)((ushort)(std::max(weight, noise) - noise) * slopes[x]) / 2);
-        return (uchar)std::max((ushort)(std::max<ushort>(large[x], fall) - fall), (ushort)least[x]);
-    };
-    HDP_VECTORIZED for (int x = 0; x < width; ++x)
-    {
-        edges[2 * x] = penalty(row[2 * x], x);
-        edges[2 * x + 1] = penalty(toNext[2 * x + 1], x);
-    }
-    edges[2 * width - 2] = 0; // there is no pixel
-}
-
 /** What scanlines need to know of the windows of a row of the layer above, from column to column: where the candidates
 begin, their prior and penalties, and which lane of the window before has the same disparity. A step is two columns of
 the layer, a column of the layer above. */
@@ -53,8 +26,8 @@ public:
                     ScanlineScratch::Windows& scratch)
         : p_(problem), isUpward_(isUpward), pairs_((problem.size.width + 1) / 2),
           isContiguous_(scratch.isContiguous.data() + margin), small_(scratch.small.data() + margin),
-          nearer_(scratch.nearer.data()), slopes_(scratch.slopes.data()), large_(scratch.large.data()),
-          least_(scratch.least.data()), priors_(firstStep(scratch.priors)), intoSide_(firstStep(scratch.intoSide)),
+          slopes_(scratch.slopes.data()), large_(scratch.large.data()), least_(scratch.least.data()),
+          priors_(firstStep(scratch.priors)), intoSide_(firstStep(scratch.intoSide)),
           intoNext_(firstStep(scratch.intoNext))
     {
         for (int run = 0; run < Window::runs; ++run)
@@ -83,8 +56,6 @@ public:
     bool isContiguous(int step) const { return isContiguous_[step] != 0; }
     //! The first disparity of a run, by column of the layer
     const short* firstOfColumn(int run) const { return firstOfColumn_[run]; }
-    //! By column of the layer
-    EdgePenalties edgePenalties() const { return { slopes_, large_, least_ }; }
     //! The small penalty, by column of the layer above
     const uchar* small() const { return small_; }
     //! With ScanlinePenalties::max, which is a part of all costs in a sweep
@@ -93,6 +64,27 @@ public:
     //! the right in one downward, and from the row before. Of the first step; see ofStep().
     const uchar* intoSide() const { return intoSide_; }
     const uchar* intoNext() const { return intoNext_; }
+    /** large(p, q) between each pixel of a row of the layer and its neighbours to the right and in the next row.
+    @param row Weights of the row's edges, of which those to the right are read.
+    @param toNext Weights of those between it and the next row, which are those below of the upper one.
+    @param edges Receives two penalties per pixel. */
+    void weighEdges(const uchar* row, const uchar* toNext, uchar* edges) const
+    {
+        const uchar *const slopes = slopes_, *const large = large_, *const least = least_;
+        const ushort noise = (ushort)p_.penalties.edgeNoise;
+        const int width = p_.size.width;
+        const auto penalty = [&](ushort weight, int x) {
+            const ushort fall = (ushort)((ushort)((ushort)(std::max(weight, noise) - noise) * slopes[x]) / 2);
+            return (uchar)std::max((ushort)(std::max<ushort>(large[x], fall) - fall), (ushort)least[x]);
+        };
+        HDP_VECTORIZED for (int x = 0; x < width; ++x)
+        {
+            edges[2 * x] = penalty(row[2 * x], x);
+            edges[2 * x + 1] = penalty(toNext[2 * x + 1], x);
+        }
+        edges[2 * width - 2] = 0; // there is no pixel
+    }
+
     //! What is stored for the pixels of the layer above lies from right to left, as in the groups of a step.
     static CV_ALWAYS_INLINE const uchar* ofStep(const uchar* firstStep, int step)
     {
@@ -141,14 +133,10 @@ private:
         const bool isSingle = ByteLanes::groups == 1;
         HDP_VECTORIZED for (int x = 0; x < pairs; ++x) isContiguous[x] =
             (uchar)((high[x] - low[x] == length) & (isSingle | (high[x - 1] - low[x - 1] == length)));
-        uchar *const slopes = slopes_, *const nearer = nearer_;
+        uchar* const slopes = slopes_;
         const uchar edgeSlope = (uchar)p_.penalties.edgeSlope, borderSlope = (uchar)p_.penalties.borderSlope;
-        const uchar ofNearer = (uchar)p_.penalties.nearer;
-        HDP_VECTORIZED for (int x = 0; x < pairs; ++x)
-        {
-            slopes[2 * x] = slopes[2 * x + 1] = high[x] - low[x] == length ? edgeSlope : borderSlope;
-            nearer[x] = high[x] - low[x] > length ? ofNearer : 0;
-        }
+        HDP_VECTORIZED for (int x = 0; x < pairs; ++x) slopes[2 * x] = slopes[2 * x + 1] =
+            high[x] - low[x] == length ? edgeSlope : borderSlope;
     }
 
     //! small(p) and large(p); weights: SmoothnessWeight by column of the layer above
@@ -176,16 +164,18 @@ private:
     void enterPriors(const uchar* weights) const
     {
         uchar* const priors = priors_;
-        const uchar* const nearer = nearer_;
-        const short *const low = distance_[0], *const high = distance_[1];
+        const short *const low = first_[0], *const high = first_[1];
+        const short *const ofLow = distance_[0], *const ofHigh = distance_[1];
         const int pairs = pairs_, lanesUsed = p_.validCandidates(), lastColumn = p_.windows->cols - 1;
         const ushort ofPrior = (ushort)p_.penalties.prior;
+        const uchar ofNearer = (uchar)p_.penalties.nearer;
         for (int x = 0; x < pairs; ++x)
         {
             const ushort slope = (ushort)(ofPrior * weights[std::min(x, lastColumn)]);
+            const bool isNearer = high[x] - low[x] > Window::runLength;
             uchar* const prior = priors - (ptrdiff_t)x * Window::candidates;
-            enterPrior(low[x], slope, 0, prior);
-            enterPrior(high[x], slope, nearer[x], prior + Window::runLength);
+            enterPrior(ofLow[x], slope, 0, prior);
+            enterPrior(ofHigh[x], slope, isNearer ? ofNearer : 0, prior + Window::runLength);
         }
         if (lanesUsed < Window::candidates)
             for (int x = 0; x < pairs; ++x)
@@ -273,7 +263,7 @@ private:
     const int pairs_; // of columns
     // The scratch memory, from column or step 0 on
     short *first_[Window::runs], *distance_[Window::runs], *firstOfColumn_[Window::runs];
-    uchar *const isContiguous_, *const small_, *const nearer_, *const slopes_, *const large_, *const least_;
+    uchar *const isContiguous_, *const small_, *const slopes_, *const large_, *const least_;
     uchar *const priors_, *const intoSide_, *const intoNext_;
     const uchar* orders_[Window::runs]; // of a run, by the distance of the candidates
 };
