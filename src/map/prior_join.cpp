@@ -73,23 +73,23 @@ public:
             cells_[cellOf(place)].push_back((int)i);
             before_[i] = winners.ptr<ushort>(place.y)[place.x] * (1.f / subpixelScale);
         }
+        sumCosts(winners, ofWinners_);
     }
 
     void join(int maxDisparity)
     {
         judgePoints();
-        Mat hypotheses(winners_.size(), CV_16U), limits(winners_.size(), CV_32F), ofWinners, ofHypotheses;
+        Mat hypotheses(winners_.size(), CV_16U), limits(winners_.size(), CV_32F), ofHypotheses;
         parallelForRows(winners_.size(), std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
             for (int x = 0; x < width_; ++x)
                 limits.ptr<float>(y)[x] = propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
         });
-        sumCosts(winners_, ofWinners);
         sumCosts(hypotheses, ofHypotheses);
         const int area = windowSide * windowSide;
         parallelForRows(winners_.size(), [&](int y) {
             for (int x = 0; x < width_; ++x)
             {
-                const int more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners.ptr<ushort>(y)[x];
+                const int more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners_.ptr<ushort>(y)[x];
                 if (more <= area * limits.ptr<float>(y)[x])
                     winners_.ptr<ushort>(y)[x] = hypotheses.ptr<ushort>(y)[x];
             }
@@ -144,7 +144,7 @@ private:
         found.resize(count);
     }
 
-    //! By how much the costs around a point are higher at its disparity than at the winner
+    //! By how much the costs around a point are higher at its disparity than at the winners
     int excessOf(int index) const
     {
         const PriorPoint& point = points_[index];
@@ -155,12 +155,11 @@ private:
             {
                 const int y = clamped(point.place.y + dy, 0, winners_.rows - 1),
                           x = clamped(point.place.x + dx, 0, width_ - 1), pixel = y * width_ + x;
-                uchar own[4], other[4];
-                cost_.evaluate(&pixel, 1, cvRound(point.disparity), 4, own);
-                cost_.evaluate(&pixel, 1, wholeDisparity(winners_.ptr<ushort>(y)[x]), 4, other);
-                sum += own[0] - other[0];
+                uchar cost[4];
+                cost_.evaluate(&pixel, 1, cvRound(point.disparity), 4, cost);
+                sum += cost[0];
             }
-        return sum;
+        return sum - ofWinners_.ptr<ushort>(point.place.y)[point.place.x];
     }
 
     //! Of the grid, row by row
@@ -316,6 +315,7 @@ private:
     const Mat& guide_;
     const CensusCost& cost_;
     Mat& winners_;
+    Mat ofWinners_;                      // their costs, see sumCosts()
     const int width_, farthest_, reach_; // how far a pixel sees at most, and how far with so many points
     const double scale_;                 // of the layer
     const Size grid_;
