@@ -17,7 +17,20 @@ void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int bl
 
 namespace {
 
-typedef OcclusionFilling O;
+const int minSurface = 4; // columns of a surface at the border of the right image: fewer are there by chance
+const int nearBorder = 3; // columns of the right image, from 1 on, that are its border: matches there are off by some
+
+// Of the pixels left of a surface, at most one in so many is the best match of its column, if the surface begins at the
+// border: a smaller number takes other surfaces for it
+const int pixelsPerBest = 7;
+// If the surface hides them, at most one is visible, as some match by chance, and at most one is not behind nearer
+// ones: a smaller number takes things farther inside for the border
+const int pixelsPerVisible = 8, pixelsPerShown = 4;
+static_assert(pixelsPerVisible % pixelsPerShown == 0, "mapToRight() divides them");
+
+const int mostByChance = 3;     // columns between two gaps that are no shorter: more lose thin things
+const int minSlopeColumns = 8;  // of the surface at the border, to tell its slope: fewer tell noise
+const int maxSlopeColumns = 32; // of it, to be as many as are filled: more are bent
 
 //! The first byte from begin on that has this value, or end
 inline int findByte(const uchar* bytes, int begin, int end, uchar value)
@@ -51,10 +64,9 @@ inline RowLimits mapToRight(const ushort* disparity, const uchar* residual, int 
         const int column = std::max(x + 1 - wholeDisparity(disparity[x]), 0);
         columns[x] = column;
         maxDisparity = std::max(maxDisparity, (int)disparity[x]);
-        border = std::max(border, column <= O::nearBorder ? x + 1 : 0);
+        border = std::max(border, column <= nearBorder ? x + 1 : 0);
         // The columns that pixels on the left of x can have: of the visible ones, and of those that are not hidden
-        const bool leavesFew =
-            O::pixelsPerVisible * (column - blank) <= (1 + O::pixelsPerVisible / O::pixelsPerShown) * x;
+        const bool leavesFew = pixelsPerVisible * (column - blank) <= (1 + pixelsPerVisible / pixelsPerShown) * x;
         hiding = std::max(hiding, leavesFew ? x + 1 : 0);
         keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
     }
@@ -85,18 +97,18 @@ inline int findBorder(const ushort* disparity, const OcclusionScratch& scratch, 
     const int* columns = scratch.columns.data();
     int border = 0, bestBefore = 0;
     for (int begin = findByte(isBest, 0, width, 1);
-         begin < width && (begin < end || O::pixelsPerBest * bestBefore < width);)
+         begin < width && (begin < end || pixelsPerBest * bestBefore < width);)
     {
         const int runEnd = findByte(isBest, begin, width, 0);
         for (int x = begin; x < runEnd; ++x)
         {
-            const bool isAtBorder = columns[x] <= O::nearBorder;
-            if (!isAtBorder && (x > begin || O::pixelsPerBest * bestBefore > x))
+            const bool isAtBorder = columns[x] <= nearBorder;
+            if (!isAtBorder && (x > begin || pixelsPerBest * bestBefore > x))
                 break;
             int surfaceEnd = x + 1;
-            while (surfaceEnd < std::min(x + O::minSurface, runEnd) && !isStep(disparity, surfaceEnd))
+            while (surfaceEnd < std::min(x + minSurface, runEnd) && !isStep(disparity, surfaceEnd))
                 ++surfaceEnd;
-            if (surfaceEnd == x + O::minSurface)
+            if (surfaceEnd == x + minSurface)
                 border = x;
         }
         bestBefore += runEnd - begin;
@@ -118,20 +130,20 @@ inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch,
         return border;
 
     // Surfaces farther on are not so near that they hide much.
-    const int end = std::min(2 * last + O::minSurface, width);
+    const int end = std::min(2 * last + minSurface, width);
     uchar* visibility = scratch.visibility.data();
     testVisibility(disparity, columns, end, width, subpixelScale, scratch.nearest.data(), visibility);
     const auto isHidden = [=](int x) { return visibility[x] != VISIBLE; };
     int visibleBefore = 0, hiddenBefore = 0;
-    for (int x = 0; x <= last && x + O::minSurface <= end; ++x)
+    for (int x = 0; x <= last && x + minSurface <= end; ++x)
     {
-        const bool hides = O::pixelsPerVisible * visibleBefore <= x && O::pixelsPerShown * (x - hiddenBefore) <= x;
+        const bool hides = pixelsPerVisible * visibleBefore <= x && pixelsPerShown * (x - hiddenBefore) <= x;
         if (hides && x > border && (isHidden(x - 1) || isStep(disparity, x)))
         {
             int next = x;
-            while (next < x + O::minSurface && !isHidden(next) && (next == x || !isStep(disparity, next)))
+            while (next < x + minSurface && !isHidden(next) && (next == x || !isStep(disparity, next)))
                 ++next;
-            if (next == x + O::minSurface)
+            if (next == x + minSurface)
                 border = x;
         }
         hiddenBefore += isHidden(x);
@@ -143,12 +155,12 @@ inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch,
 //! Continues the surface that begins at this pixel to the left border, half as steep as it is: most surfaces are bent.
 inline void continueSurface(ushort* disparity, const uchar* isShown, int begin, int width, int maxDisparity)
 {
-    const int last = std::min(width, begin + clamped(begin, +O::minSlopeColumns, +O::maxSlopeColumns));
+    const int last = std::min(width, begin + clamped(begin, minSlopeColumns, maxSlopeColumns));
     int end = begin + 1;
     while (end < last && isShown[end] && !isStep(disparity, end))
         ++end;
     const int half = (end - begin) / 2;
-    if (2 * half < O::minSlopeColumns)
+    if (2 * half < minSlopeColumns)
         return std::fill(disparity, disparity + begin, disparity[begin]);
     int rise = 0; // between the halves, times half
     for (int x = begin; x < begin + half; ++x)
@@ -168,8 +180,8 @@ inline int findGapEnd(const uchar* isShown, int begin, int width)
     int end = findByte(isShown, begin, width, 1);
     for (;;)
     {
-        const int next = findByte(isShown, end, std::min(end + O::mostByChance + 1, width), 0), pixels = next - end;
-        if (next >= width || pixels > std::min(+O::mostByChance, end - begin))
+        const int next = findByte(isShown, end, std::min(end + mostByChance + 1, width), 0), pixels = next - end;
+        if (next >= width || pixels > std::min(mostByChance, end - begin))
             return end;
         const int nextEnd = findByte(isShown, next, width, 1);
         if (pixels > nextEnd - next)
