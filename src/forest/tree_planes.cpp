@@ -205,14 +205,14 @@ private:
 //! its candidates keep their own fractions.
 void put(const Plane& plane, const int* pixels, const DisparityTree& tree, const CostVolume& volume, Mat& disparity)
 {
-    const double rowsPerPixel = 1. / volume.size.width;
+    const int width = volume.size.width;
     const float first = (float)tree.interval.first / volume.steps, last = (float)tree.interval.last / volume.steps;
     const auto candidateOf = [&](float value) { return cvFloor(volume.steps * value + 0.5f); };
     for (int i = 0; i < tree.size; ++i)
     {
-        const int pixel = pixels[i], y = rowOf(pixel, rowsPerPixel), x = pixel - y * volume.size.width;
+        const int pixel = pixels[i], x = pixel % width, y = pixel / width;
         const float value = clamped((float)(plane[0] + plane[1] * x + plane[2] * y), first, last);
-        ushort& own = disparity.ptr<ushort>(y)[x];
+        ushort& own = disparity.ptr<ushort>()[pixel];
         if (candidateOf(value) != candidateOf(own / (float)subpixelScale) && !isContradicted(pixel, value, volume))
             own = (ushort)cvRound(value * subpixelScale);
     }
