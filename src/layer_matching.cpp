@@ -312,7 +312,18 @@ private:
     //! From the winners to the layer's disparities. The authors' program has this median; the paper has no such filter.
     void filter()
     {
-        filterMap();
+        if (plan_.medianSize > 0)
+            medianDisparity(result_.winners, plan_.medianSize, result_.disparity);
+        else
+            result_.winners.copyTo(result_.disparity);
+        if (plan_.restoresThinStructures)
+            restoreThinStructures(result_.winners, result_.disparity);
+        if (plan_.votesAtEdges)
+            filterWhereData(1, [&](const Mat& map) { voteAtEdges(in_.images.colours, map, result_.disparity); });
+        if (plan_.surfaceDifference > 0)
+            filterWhereData(0, [&](const Mat& map) {
+                smoothSurfaces(in_.images.left, plan_.noise, plan_.surfaceDifference, map, result_.disparity);
+            });
         if (!plan_.isFinest) // whose map outputDisparity() moves into the ranges
             keepIntervals(result_.disparity);
     }
@@ -348,21 +359,6 @@ private:
         Mat isFiltered;
         erode(hasData, isFiltered, Mat(), Point(-1, -1), reach);
         own_.filtered.copyTo(result_.disparity, isFiltered == 0);
-    }
-
-    void filterMap()
-    {
-        if (plan_.medianSize == 0)
-            return result_.winners.copyTo(result_.disparity);
-        medianDisparity(result_.winners, plan_.medianSize, result_.disparity);
-        if (plan_.restoresThinStructures)
-            restoreThinStructures(result_.winners, result_.disparity);
-        if (plan_.votesAtEdges)
-            filterWhereData(1, [&](const Mat& map) { voteAtEdges(in_.images.colours, map, result_.disparity); });
-        if (plan_.surfaceDifference > 0)
-            filterWhereData(0, [&](const Mat& map) {
-                smoothSurfaces(in_.images.left, plan_.noise, plan_.surfaceDifference, map, result_.disparity);
-            });
     }
 
     const LayerInput& in_;
