@@ -23,14 +23,17 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! f(i, scratch) for each i of 0 .. count - 1, by all threads; each has a copy of the scratch.
-template <typename Scratch, typename F> void parallelFor(int count, const Scratch& scratch, const F& f)
+//! f(i, scratch) for each i of 0 .. count - 1, by all threads; each has a copy of the scratch. parts: how many of these
+//! are done by themselves, about
+template <typename Scratch, typename F>
+void parallelFor(int count, const Scratch& scratch, const F& f, double parts = -1)
 {
-    parallel_for_(Range(0, count), [&](const Range& range) {
+    const auto part = [&](const Range& range) {
         Scratch own = scratch;
         for (int i = range.start; i < range.end; ++i)
             f(i, own);
-    });
+    };
+    parallel_for_(Range(0, count), part, parts);
 }
 
 //! f(i) for each i of 0 .. count - 1, by all threads
@@ -39,23 +42,12 @@ template <typename F> void parallelFor(int count, const F& f)
     parallelFor(count, 0, [&](int i, int) { f(i); });
 }
 
-//! How many parts of an image are done by themselves: what takes some microseconds is not worth waking a thread, and an
-//! even number gives also two threads as much to do.
-inline int countParts(const Size& size)
-{
-    const double pixels = 1 << 14; // of a part, at least about
-    return std::max(2 * cvRound(size.area() / (2 * pixels)), 1);
-}
-
-//! f(y, scratch) for each row of an image, by all threads; each has a copy of the scratch.
+//! f(y, scratch) for each row of an image, by all threads; each has a copy of the scratch. What takes some microseconds
+//! is not worth waking a thread, and an even number of parts gives also two threads as much to do.
 template <typename Scratch, typename F> void parallelForRows(const Size& size, const Scratch& scratch, const F& f)
 {
-    const auto part = [&](const Range& rows) {
-        Scratch own = scratch;
-        for (int y = rows.start; y < rows.end; ++y)
-            f(y, own);
-    };
-    parallel_for_(Range(0, size.height), part, countParts(size));
+    const double pixels = 1 << 14; // of a part, at least about
+    parallelFor(size.height, scratch, f, std::max(2 * cvRound(size.area() / (2 * pixels)), 1));
 }
 
 //! f(y) for each row of an image, by all threads

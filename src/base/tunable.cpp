@@ -6,17 +6,16 @@
 
 #ifdef HDPSTEREO_TUNABLE
 
-#include <algorithm>
 #include <cstdlib>
+#include <map>
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-//! By name
-std::vector<TunableInfo*>& allTunables()
+std::map<String, TunableInfo*>& allTunables()
 {
-    static std::vector<TunableInfo*> tunables; // made by the first one, in whatever file that is
+    static std::map<String, TunableInfo*> tunables; // made by the first one, in whatever file that is
     return tunables;
 }
 
@@ -32,37 +31,34 @@ String stemOf(const String& file)
 void addTunable(const char* file, TunableInfo& info)
 {
     info.name = stemOf(file) + "." + info.name;
-    std::vector<TunableInfo*>& all = allTunables();
-    const auto isBefore = [](const TunableInfo* a, const TunableInfo* b) { return a->name < b->name; };
-    all.insert(std::upper_bound(all.begin(), all.end(), &info, isBefore), &info);
+    allTunables()[info.name] = &info;
 }
 
 void setTunable(const String& name, const String& value)
 {
-    String names;
-    for (TunableInfo* info : allTunables())
+    const auto found = allTunables().find(name);
+    if (found == allTunables().end())
     {
-        names += (names.empty() ? "" : ", ") + info->name;
-        if (info->name != name)
-            continue;
-        char* end = nullptr;
-        const double number = std::strtod(value.c_str(), &end);
-        const bool isValid =
-            number >= info->least && number <= info->most && (!info->isWhole || number == cvFloor(number));
-        if (end == value.c_str() || *end != 0 || !isValid)
-            CV_Error(Error::StsBadArg, "'" + value + "' is not " + (info->isWhole ? "a whole number" : "a number") +
-                                           ", which " + name + " takes (" + info->unit + ")");
-        info->value = number;
-        return;
+        String names;
+        for (const auto& tunable : allTunables())
+            names += (names.empty() ? "" : ", ") + tunable.first;
+        CV_Error(Error::StsBadArg, "no tunable is called '" + name + "', there are: " + names);
     }
-    CV_Error(Error::StsBadArg, "no tunable is called '" + name + "', there are: " + names);
+    TunableInfo& info = *found->second;
+    char* end = nullptr;
+    const double number = std::strtod(value.c_str(), &end);
+    const bool isValid = number >= info.least && number <= info.most && (!info.isWhole || number == cvFloor(number));
+    if (end == value.c_str() || *end != 0 || !isValid)
+        CV_Error(Error::StsBadArg, "'" + value + "' is not " + (info.isWhole ? "a whole number" : "a number") +
+                                       ", which " + name + " takes (" + info.unit + ")");
+    info.value = number;
 }
 
 std::vector<TunableInfo> listTunables()
 {
     std::vector<TunableInfo> infos;
-    for (const TunableInfo* info : allTunables())
-        infos.push_back(*info);
+    for (const auto& tunable : allTunables())
+        infos.push_back(*tunable.second);
     return infos;
 }
 

@@ -14,14 +14,11 @@ the file without its extension.
 
 The type is int, bool, float or double. Not for *.simd.hpp: those get values as arguments. Not where the compiler needs
 a value, such as the size of an array. */
-#ifdef HDPSTEREO_TUNABLE
+#ifndef HDPSTEREO_TUNABLE
+#define HDP_TUNABLE(type, name, value, unit, reason) const type name = value
+#else
 #define HDP_TUNABLE(type, name, value, unit, reason)                                                                   \
     const ::cv::stereo::hdp::Tunable<type> name(__FILE__, #name, value, unit, reason)
-#else
-#define HDP_TUNABLE(type, name, value, unit, reason) const type name = value
-#endif
-
-#ifdef HDPSTEREO_TUNABLE
 
 #include "opencv2/core.hpp"
 
