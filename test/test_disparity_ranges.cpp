@@ -291,9 +291,7 @@ TEST(HDPStereo_DisparityRanges, candidates_of_half_a_pixel)
 {
     const Mat intervals = (Mat_<Vec2w>(1, 5) << Vec2w(0, 0), Vec2w(2, 5), Vec2w(7, 9), Vec2w(8, 8), Vec2w(9, 9));
     const Mat expected = (Mat_<Vec2w>(1, 5) << Vec2w(0, 1), Vec2w(4, 11), Vec2w(14, 16), Vec2w(16, 16), Vec2w(16, 16));
-    Mat doubled;
-    hdp::doubleIntervals(intervals, 17, doubled);
-    expectIdentical(expected, doubled);
+    expectIdentical(expected, hdp::doubleIntervals(intervals, 17));
 }
 
 TEST(HDPStereo_DisparityRanges, windows_have_candidates_of_their_pixels)

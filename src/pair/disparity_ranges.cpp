@@ -33,15 +33,14 @@ void resizeNearest(const Mat& map, Size size, Mat& resized)
     });
 }
 
-//! Limits of one kind for each pixel, in 1 / subpixelScale pixel; none is beyond the limit of all.
+//! Limits of one kind for each pixel, in 1 / subpixelScale pixel; none is beyond the limit of all, in pixels.
 void expandLimits(const Mat& given, int limitOfAll, bool isWhole, bool isLargest, Size size, Mat& expanded)
 {
     Mat coarse;
     Mat& limits = given.size() == size ? expanded : coarse;
     limits.create(given.size(), CV_16S);
-    const Range range(isLargest ? SHRT_MIN : limitOfAll, isLargest ? limitOfAll : SHRT_MAX);
     parallelForRows(limits.size(), [&](int y) {
-        dispatched::toUnits(given.ptr<float>(y), limits.cols, isWhole, isLargest, range, limits.ptr<short>(y));
+        dispatched::toUnits(given.ptr<float>(y), limits.cols, limitOfAll, isWhole, isLargest, limits.ptr<short>(y));
     });
     if (!coarse.empty())
         resizeNearest(coarse, size, expanded);
@@ -57,8 +56,8 @@ void expandRanges(const Mat& smallest, const Mat& largest, Size size, Range disp
         ranges = PixelRanges();
         return;
     }
-    expandLimits(smallest, disparities.start * subpixelScale, isWhole, false, size, ranges.smallest);
-    expandLimits(largest, disparities.end * subpixelScale, isWhole, true, size, ranges.largest);
+    expandLimits(smallest, disparities.start, isWhole, false, size, ranges.smallest);
+    expandLimits(largest, disparities.end, isWhole, true, size, ranges.largest);
     ranges.hasEmpty = countNonZero(ranges.smallest > ranges.largest) > 0;
 }
 
@@ -103,12 +102,7 @@ void buildIntervals(const PixelRanges& ranges, int minDisparity, int extension, 
     }
 }
 
-void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled)
-{
-    add(intervals, intervals, doubled);
-    add(doubled, Scalar(0, 1), doubled);
-    min(doubled, candidates - 1, doubled);
-}
+Mat doubleIntervals(const Mat& intervals, int candidates) { return min(2 * intervals + Scalar(0, 1), candidates - 1); }
 
 void intersectIntervals(const Mat& intervals, Mat& others)
 {

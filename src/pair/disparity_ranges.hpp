@@ -39,7 +39,7 @@ CV_EXPORTS void buildIntervals(const PixelRanges& ranges, int minDisparity, int 
 CV_EXPORTS void halveIntervals(const Mat& intervals, Mat& hulls);
 
 //! The intervals of a layer in candidates of the layer below, of which there are so many
-CV_EXPORTS void doubleIntervals(const Mat& intervals, int candidates, Mat& doubled);
+CV_EXPORTS Mat doubleIntervals(const Mat& intervals, int candidates);
 
 //! What candidates both have of each pixel, or those of the first if they have none in common; to the second
 CV_EXPORTS void intersectIntervals(const Mat& intervals, Mat& others);

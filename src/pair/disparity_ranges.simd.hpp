@@ -11,10 +11,10 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 // Rows of so many pixels. Of intervals each pixel has two numbers, the first and the last one.
 
-/** Limits in 1 / subpixelScale pixel, in a range.
-@param isWhole Whether limits are whole pixels.
-@param isLargest Whether a limit that is no number is the end of the range, not its start. */
-void toUnits(const float* limits, int width, bool isWhole, bool isLargest, const Range& range, short* units);
+/** Limits in 1 / subpixelScale pixel.
+@param limitOfAll In pixels: none is beyond it, and what is no number is as far.
+@param isWhole Whether limits are whole pixels. */
+void toUnits(const float* limits, int width, int limitOfAll, bool isWhole, bool isLargest, short* units);
 
 //! Limits of the image from this offset on, in 0 .. last
 void joinLimits(const short* smallest, const short* largest, int width, int offset, int last, ushort* units);
@@ -31,19 +31,17 @@ void moveIntoIntervals(const ushort* intervals, int width, ushort* disparity);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-void toUnits(const float* limits, int width, bool isWhole, bool isLargest, const Range& range, short* units)
+void toUnits(const float* limits, int width, int limitOfAll, bool isWhole, bool isLargest, short* units)
 {
-    const float scale = isWhole ? 1.f : (float)subpixelScale; // exact
-    const int first = range.start, last = range.end, unlimited = isLargest ? last : first;
-    const int unit = isWhole ? subpixelScale : 1, outward = isLargest ? -1 : 1;
+    const int unit = isWhole ? subpixelScale : 1, ofAll = limitOfAll * subpixelScale;
+    const int first = isLargest ? SHRT_MIN : ofAll, last = isLargest ? ofAll : SHRT_MAX;
+    const int sign = isLargest ? -1 : 1; // limits are rounded to the inside: up, if largest ones are negated
+    const float scale = (float)(subpixelScale / unit), unlimited = (float)limitOfAll; // both exact
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        const bool isNumber = limits[x] == limits[x];
-        const float steps = clamped(isNumber ? limits[x] * scale : 0.f, SHRT_MIN * scale, SHRT_MAX * scale);
-        const int towardsZero = (int)steps;
-        const bool isInside = isLargest ? (float)towardsZero <= steps : (float)towardsZero >= steps;
-        const int inside = (towardsZero + (isInside ? 0 : outward)) * unit;
-        units[x] = (short)(isNumber ? clamped(inside, first, last) : unlimited);
+        const float limit = limits[x] == limits[x] ? limits[x] : unlimited;
+        const float steps = clamped(limit, (float)SHRT_MIN, (float)SHRT_MAX) * scale;
+        units[x] = (short)clamped(sign * cvCeil(sign * steps) * unit, first, last);
     }
 }
 

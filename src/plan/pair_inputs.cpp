@@ -160,10 +160,8 @@ void takeKnown(const PairInputs& inputs, const PairPlan& plan, KnownDisparities&
         for (const LayerPlan& layer : plan.layers)
         {
             const Mat& intervals = known.intervals[layer.layer];
-            Mat doubled; // memory of its own: the candidates may have been the intervals before
-            if (layer.seesBelow)
-                doubleIntervals(intervals, layer.numDisparities, doubled);
-            known.candidates[layer.layer] = layer.seesBelow ? doubled : intervals;
+            known.candidates[layer.layer] =
+                layer.seesBelow ? doubleIntervals(intervals, layer.numDisparities) : intervals;
             halveIntervals(intervals, known.hulls[layer.layer]);
         }
     known.points.resize(counts.size());
