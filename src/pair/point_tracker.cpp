@@ -15,7 +15,8 @@ HDP_TUNABLE(int, maxCoarsestWidth, 160, "pixels",
 HDP_TUNABLE(int, spacing, 4, "pixels of that level", "of the points: fewer tell less of the motion, more cost time");
 HDP_TUNABLE(int, halfSide, 4, "pixels of any level",
             "half of the squares that are compared: smaller have more rivals, larger see two surfaces");
-HDP_TUNABLE(int, searchRadius, 8, "pixels of that level", "of trackPoints() there: more costs time and finds rivals");
+HDP_TUNABLE(int, searchRadius, 8, "pixels of that level",
+            "there, of points that are not nearby: more costs time and finds rivals");
 HDP_TUNABLE(int, refinementRadius, 2, "pixels of the level",
             "of all other searches: 1 is what the level before rounds away, and 1 is for its errors");
 HDP_TUNABLE(int, minTexture, 3, "grey levels from a pixel to the next",
@@ -138,29 +139,21 @@ void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& poi
         points.push_back({ place, place, 0 });
 }
 
-void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
+void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, bool isNearby,
+                 std::vector<TrackedPoint>& points)
 {
-    const int top = (int)before.size() - 1;
+    const int top = (int)before.size() - 1, first = isNearby ? std::min(1, top) : top;
     parallelFor((int)points.size(), [&](int i) {
         TrackedPoint& point = points[i];
         const Point from = point.before;
-        Point match = search(before, now, top, from, onLevel(from, top), searchRadius);
-        for (int level = top - 1; level >= 0 && match != nowhere; --level)
-            match = search(before, now, level, from, 2 * match, refinementRadius);
-        point.now = match != nowhere ? refine(before[0], from, now[0], match) : point.before;
-    });
-}
-
-void trackNearby(const std::vector<Mat>& before, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
-{
-    const int coarse = std::min(1, (int)before.size() - 1);
-    parallelFor((int)points.size(), [&](int i) {
-        TrackedPoint& point = points[i];
-        const Point from = point.before;
-        Point match(cvFloor(point.now.x + 0.5), cvFloor(point.now.y + 0.5));
-        for (int level : { coarse, 0 })
+        const Point2d guess = isNearby ? point.now : point.before;
+        Point match(cvFloor(guess.x + 0.5), cvFloor(guess.y + 0.5));
+        for (int level = first; level >= 0; --level)
             if (match.x >= 0 && isInside(before[level], onLevel(from, level)))
-                match = (1 << level) * search(before, now, level, from, onLevel(match, level), refinementRadius);
+            {
+                const int radius = !isNearby && level == top ? +searchRadius : +refinementRadius;
+                match = (1 << level) * search(before, now, level, from, onLevel(match, level), radius);
+            }
         point.now = match.x >= 0 ? refine(before[0], from, now[0], match) : point.before;
     });
 }

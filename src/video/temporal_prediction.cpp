@@ -81,15 +81,15 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
         point.disparity = (disparity / (double)subpixelScale + last.key.minDisparity) / cell;
     }
     movePoints(scaled(last.motion, 1. / cell), size, points);
-    trackNearby(before, now, points);
+    trackPoints(before, now, true, points);
     CameraMotion motion = fitMotion(points, size, maxError);
     if (motion.error > maxError)
     {
-        trackPoints(before, now, points);
+        trackPoints(before, now, false, points);
         motion = fitMotion(points, size, maxError);
     }
     movePoints(motion, size, points);
-    trackNearby(before, now, points);
+    trackPoints(before, now, true, points);
     return scaled(fitMotion(points, size, maxError), cell);
 }
 
