@@ -406,8 +406,8 @@ TEST(HDPStereo_DisparityConfidence, minDisparity_does_not_matter)
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(shift, 48 - shift);
     match(*matcher, testPair().left, testPair().right);
     // Where the left pixels have matches inside, these are the same ones as of a right image moved by minDisparity.
-    Mat moved;
-    hdp::shiftColumns(testPair().right, shift, 0, moved);
+    Mat memory;
+    const Mat moved = hdp::shiftColumns(testPair().right, shift, 0, memory);
     const Ptr<HDPTreeMatcher> fromZero = HDPTreeMatcher::create(0, 48 - shift);
     match(*fromZero, testPair().left, moved);
     expectIdentical(confidenceOf(*fromZero), confidenceOf(*matcher));

@@ -7,8 +7,7 @@
 #include "../src/pair/image_pyramid.hpp"
 #include "../src/pair/pair_pyramids.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 TEST(HDPStereo_ImagePyramid, means_of_2x2_pixels_truncated)
 {
@@ -84,16 +83,14 @@ TEST(HDPStereo_ImagePyramid, shifts_columns_and_repeats_the_nearest)
         for (int shift : { 0, 1, 5, 8, 9, 10, 1000, INT_MAX, -1, -8, -9, -10, -1000, INT_MIN })
         {
             SCOPED_TRACE(testing::Message() << shift << ", extension " << extension);
-            Mat expected(right.rows, right.cols + extension, right.type()), shifted;
+            Mat expected(right.rows, right.cols + extension, right.type()), memory;
             for (int x = 0; x < expected.cols; ++x)
             {
                 const int64 from = std::max<int64>(0, std::min<int64>((int64)x - extension - shift, right.cols - 1));
                 right.col((int)from).copyTo(expected.col(x));
             }
-            hdp::shiftColumns(right, shift, extension, shifted);
-            expectIdentical(expected, shifted);
+            expectIdentical(expected, hdp::shiftColumns(right, shift, extension, memory));
         }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -256,19 +256,19 @@ TEST(HDPStereo_PairModel, another_range)
     model.rows = { 1.5, 0.01, -0.02, 0, 0 };
     model.areRowsMoved = model.isLightChanged = true;
     model.light[1] = 0.3;
-    const auto align = [&](int minDisparity, int extension, Mat& shifted) {
+    const auto align = [&](int minDisparity, int extension) {
         const hdp::PyramidPlan plan = { minDisparity, extension, 1, true, false };
-        hdp::shiftColumns(right, minDisparity, extension, shifted);
+        Mat memory;
+        const Mat shifted = hdp::shiftColumns(right, minDisparity, extension, memory);
         const hdp::GivenPair given = hdp::toGivenPair(model, plan, size);
         Mat aligned;
         hdp::alignRows(shifted, given.findings.rows, given.frame, aligned);
         hdp::alignLight(aligned, given.findings.light, given.frame);
         return aligned;
     };
-    Mat shifted;
-    const Mat unmoved = align(0, 0, shifted);
-    expectIdentical(unmoved.colRange(0, size.width - 9), align(9, 0, shifted).colRange(9, size.width));
-    expectIdentical(unmoved.colRange(0, size.width), align(-20, 32, shifted).colRange(12, size.width + 12));
+    const Mat unmoved = align(0, 0);
+    expectIdentical(unmoved.colRange(0, size.width - 9), align(9, 0).colRange(9, size.width));
+    expectIdentical(unmoved.colRange(0, size.width), align(-20, 32).colRange(12, size.width + 12));
 }
 
 TEST(HDPStereo_PairModel, enlarged)

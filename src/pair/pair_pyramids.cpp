@@ -47,15 +47,6 @@ Mat blackened(const Mat& image, const Mat& mask)
     return blackened;
 }
 
-//! An image that is moved as shiftColumns() does: itself if it stays where it is
-Mat moved(const Mat& image, int minDisparity, int extension, Mat& memory)
-{
-    if (image.empty() || (minDisparity == 0 && extension == 0))
-        return image;
-    shiftColumns(image, minDisparity, extension, memory);
-    return memory;
-}
-
 //! Grey levels of a pair that is moved, with its masks, brightened if it is dark, and without the blocks of
 //! compression. share: with data
 void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, double share, bool isKnown,
@@ -92,11 +83,11 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
 {
     const int minDisparity = plan.minDisparity, extension = plan.extension, layers = plan.layers;
     ImagePyramids &l = pyramids.left, &r = pyramids.right;
-    const Mat movedLeft = moved(left, 0, extension, l.moved),
-              movedRight = moved(right, minDisparity, extension, r.moved);
+    const Mat movedLeft = shiftColumns(left, 0, extension, l.moved),
+              movedRight = shiftColumns(right, minDisparity, extension, r.moved);
     Mat leftMask, rightMask;
-    const PairMasks movedMasks = { moved(masks.left, 0, extension, leftMask),
-                                   moved(masks.right, minDisparity, extension, rightMask) };
+    const PairMasks movedMasks = { shiftColumns(masks.left, 0, extension, leftMask),
+                                   shiftColumns(masks.right, minDisparity, extension, rightMask) };
     const double all = 2. * left.total(); // pixels
     const double share = masks.isEmpty() ? 1 : ((double)countNonZero(masks.left) + countNonZero(masks.right)) / all;
     LevelFindings& levels = pyramids.levels;
@@ -129,15 +120,18 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
         pyramid->front().release(); // may be the caller's
 }
 
-void shiftColumns(const Mat& image, int minDisparity, int extension, Mat& shifted)
+Mat shiftColumns(const Mat& image, int minDisparity, int extension, Mat& memory)
 {
+    if (image.empty() || (minDisparity == 0 && extension == 0))
+        return image;
     const int width = image.cols + extension;
     const int64 shift = (int64)minDisparity + extension; // minDisparity is any int
     const auto columnAt = [&](int x) { return (int)clamped<int64>(x - shift, 0, image.cols - 1); };
     const Mat inside = image.colRange(columnAt(0), columnAt(width - 1) + 1);
     const int rest = width - inside.cols, before = (int)clamped<int64>(shift, 0, rest);
     // Isolated: around a region of a larger image, that is not looked at.
-    copyMakeBorder(inside, shifted, 0, 0, before, rest - before, BORDER_REPLICATE | BORDER_ISOLATED);
+    copyMakeBorder(inside, memory, 0, 0, before, rest - before, BORDER_REPLICATE | BORDER_ISOLATED);
+    return memory;
 }
 
 }}} // namespace cv::stereo::hdp

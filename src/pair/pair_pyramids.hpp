@@ -69,8 +69,8 @@ CV_EXPORTS void buildPairPyramids(const Mat& left, const Mat& right, const PairM
                                   const LevelFindings* given = nullptr);
 
 //! An image with more columns on the left, the right one moved by minDisparity, so that candidates count from 0:
-//! shifted(x + extension) = image(x - minDisparity), the nearest column where there is none.
-CV_EXPORTS void shiftColumns(const Mat& image, int minDisparity, int extension, Mat& shifted);
+//! shifted(x + extension) = image(x - minDisparity), the nearest column where there is none. Itself if it stays.
+CV_EXPORTS Mat shiftColumns(const Mat& image, int minDisparity, int extension, Mat& memory);
 
 }}} // namespace cv::stereo::hdp
 
