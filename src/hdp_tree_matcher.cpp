@@ -142,12 +142,11 @@ public:
         const Result& r = result_.isMatched ? result_ : none;
         // The model is about the centre of the right image that is matched, which has columns added and is shifted.
         const RowModel rows = r.findings.rows.about(0.5 * r.model.addedColumns + r.model.minDisparity);
-        Findings findings;
+        Findings findings = Findings();
         findings.rows.assign(rows.coefficients.val, rows.coefficients.val + RowModel::terms);
         findings.areRowsMoved = r.findings.hasRows;
         findings.light = r.model.light;
         findings.isLightChanged = r.findings.hasLight;
-        findings.rowError = findings.noise = findings.minDisparity = findings.numDisparities = 0;
         if (!r.isMatched)
             return findings;
         findings.minDisparity = r.plan.output.minDisparity;
@@ -427,9 +426,7 @@ private:
 
 Ptr<HDPTreeMatcher> HDPTreeMatcher::create(int minDisparity, int numDisparities, int preset)
 {
-    MatcherParameters parameters(preset);
-    parameters.minDisparity = minDisparity;
-    parameters.numDisparities = numDisparities;
+    const MatcherParameters parameters = withRange(MatcherParameters(preset), minDisparity, numDisparities);
     checkParameters(parameters);
     return makePtr<HDPTreeMatcherImpl>(parameters);
 }

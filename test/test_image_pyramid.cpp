@@ -48,17 +48,6 @@ TEST(HDPStereo_ImagePyramid, halves_a_region_of_interest)
     expectIdentical(oracle::halve(region.clone()), half);
 }
 
-TEST(HDPStereo_ImagePyramid, layers_have_at_least_one_pixel)
-{
-    EXPECT_EQ(1, hdp::countLayers(Size(1, 1), 3));
-    EXPECT_EQ(1, hdp::countLayers(Size(100, 1), 3));
-    EXPECT_EQ(2, hdp::countLayers(Size(2, 3), 16));
-    EXPECT_EQ(2, hdp::countLayers(Size(3, 100), 3));
-    EXPECT_EQ(3, hdp::countLayers(Size(4, 4), 3));
-    EXPECT_EQ(3, hdp::countLayers(Size(640, 480), 3));
-    EXPECT_EQ(1, hdp::countLayers(Size(640, 480), 1));
-}
-
 TEST(HDPStereo_ImagePyramid, largest_disparity_is_halved_and_included)
 {
     for (int largest = 0; largest < 300; ++largest)

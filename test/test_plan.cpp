@@ -106,6 +106,23 @@ TEST(HDPStereo_Plan, what_is_documented_to_have_no_effect_has_none)
         }
 }
 
+TEST(HDPStereo_Plan, layers_have_at_least_one_pixel)
+{
+    const auto layersOf = [](const Size& size, int numLayers) {
+        MatcherParameters p = parametersOf(M::PRESET_FAST);
+        p.numLayers = numLayers;
+        p.maxTopDisparities = 0;
+        return (int)hdp::plan(p, size, CV_8UC1).layers.size();
+    };
+    EXPECT_EQ(1, layersOf(Size(1, 1), 3));
+    EXPECT_EQ(1, layersOf(Size(100, 1), 3));
+    EXPECT_EQ(2, layersOf(Size(2, 3), 16));
+    EXPECT_EQ(2, layersOf(Size(3, 100), 3));
+    EXPECT_EQ(3, layersOf(Size(4, 4), 3));
+    EXPECT_EQ(3, layersOf(Size(640, 480), 3));
+    EXPECT_EQ(1, layersOf(Size(640, 480), 1));
+}
+
 //! Where each parameter matters
 const Row withEffect[] = {
     { "minDisparity", keep, [](MatcherParameters& p) { p.minDisparity = -5; } },

@@ -15,14 +15,6 @@ HDP_DISPATCH(halveRow)
 
 } // namespace
 
-int countLayers(Size size, int numLayers)
-{
-    int layers = 1;
-    while (layers < numLayers && std::min(size.width, size.height) >> layers > 0)
-        ++layers;
-    return layers;
-}
-
 void halveImage(const Mat& image, Mat& half)
 {
     half.create(image.rows / 2, image.cols / 2, image.type());

@@ -12,9 +12,6 @@ namespace cv { namespace stereo { namespace hdp {
 
 // The graph pyramid of section 2.1 with S = 2
 
-//! Number of layers, at most numLayers, in which an image of this size has at least one pixel.
-CV_EXPORTS int countLayers(Size size, int numLayers);
-
 //! d_l + 1, the number of candidates of layer l: floor((numDisparities - 1) / 2^l) + 1 for whole disparities (section
 //! 2.1). Sub-pixel disparities keep their fraction from layer to layer, so the largest one needs the next candidate,
 //! too.

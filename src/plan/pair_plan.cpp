@@ -81,8 +81,6 @@ HDP_TUNABLE(double, surfaceDifference, 1.25, "pixels",
 //! The paper's winners, of sums over trees, whatever the layer
 bool hasTreeSums(const MatcherParameters& p) { return p.aggregation == M::AGGREGATION_TREES; }
 
-bool hasFractions(const MatcherParameters& p) { return p.useSubpixel || !hasTreeSums(p); }
-
 bool isLarge(Size size) { return size.width >= largeImageWidth; }
 
 void checkCombinations(const MatcherParameters& p, Size size, bool hasPrior)
@@ -127,7 +125,9 @@ int countLayers(const MatcherParameters& p, Size size, const Ptr<DisparityPredic
         return 1;
     const int maxLayers = model ? model->getNumLayers() + 1 : INT_MAX;
     const int chosen = chooseLayers(p.numDisparities, p.numLayers, p.maxTopDisparities, maxLayers);
-    const int layers = hdp::countLayers(size, chosen);
+    int layers = 1; // each has at least a pixel
+    while (layers < chosen && std::min(size.width, size.height) >> layers > 0)
+        ++layers;
     if (model && model->getNumLayers() < layers - 1)
         CV_Error(Error::StsOutOfRange, format("predictionModel must have numLayers - 1 = %d layers, not %d", layers - 1,
                                               model->getNumLayers()));
@@ -194,11 +194,11 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
     return trees;
 }
 
-//! For means of trees, for costs with what the last frame predicts, which are as smooth, and for costs as they are;
-//! steps: candidates per pixel of disparity
-VolumePenalties planVolume(const MatcherParameters& p, int steps)
+//! For means of trees, for costs with what the last frame predicts, which are as smooth, and for costs as they are
+VolumePenalties planVolume(const MatcherParameters& p, const LayerPlan& layer)
 {
     const int scale = CostVolume::scale, large = cvRound(scale * rangeP2 * p.P2);
+    const int steps = layer.seesBelow ? 2 : 1; // candidates per pixel of disparity
     return { cvRound(scale * meanP1 * p.P1 / steps), std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
 }
 
@@ -235,7 +235,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.layer = layer;
     plan.isTop = layer == layers - 1;
     plan.isFinest = layer == finest;
-    plan.hasFractions = hasFractions(p);
+    plan.hasFractions = p.useSubpixel || !hasTreeSums(p);
     plan.numDisparities = layerDisparities(p.numDisparities, layer, plan.hasFractions);
     plan.maxDisparity = std::min(largestDisparity(p.numDisparities, layer), (plan.numDisparities - 1) * subpixelScale);
     plan.cost = planCost(p);
@@ -254,7 +254,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     if (plan.method == TREE_SUMS || plan.method == TREE_SCANLINES)
         plan.trees = planTrees(p, plan, size);
     if (hasVolume)
-        plan.volumePenalties = planVolume(p, plan.steps());
+        plan.volumePenalties = planVolume(p, plan);
     if (plan.method == RANGE_SCANLINES)
         plan.rangePenalties = planRange(p);
     plan.fillsOcclusions = p.fillOcclusions;

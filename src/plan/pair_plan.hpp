@@ -87,9 +87,6 @@ struct LayerPlan
     bool votesAtEdges = false;
     int surfaceDifference = 0; // most of the disparities of a surface, which are smoothed; 0: they are not
     double noise = 0;          // of the images, in levels of 255, if surfaces are smoothed
-
-    //! Candidates per pixel of disparity
-    int steps() const { return seesBelow ? 2 : 1; }
 };
 
 //! What is done for a pair
