@@ -51,8 +51,9 @@ struct FrameMemory
     void clear() { frames = 0; } // keeps the memory
 
     static const int cell = 2; // side of the pixels of grey's finest level, in pixels of the layer
-    static const int detailBits = 4, countMask = 7;
-    static const int GUESS = 8;                           // in detail: of a pixel whose match no right image has shown
+    static const int detailBits = 4;
+    static const int countMask = 7; // and the largest number of frames: more flickers less, but follows changes later
+    static const int GUESS = 8;     // in detail: of a pixel whose match no right image has shown
     static const int scale = subpixelScale << detailBits; // of disparities with all their bits, for means over frames
 
     //! detail of a disparity in 1 / scale pixel, rounded for the map by adding half a unit of that
@@ -77,7 +78,7 @@ struct VideoScratch
     std::vector<Mat> exposed; // the same: its pyramid, by the last frame's exposure
     // Of findSources(), per cell
     Mat warped, change, unmovedChange, contrast, difference, sums[4];
-    Mat sources, shares, evidence, choices; // of joinLastFrame(), per cell
+    Mat sources, shares, evidence, evidenceSums, choices; // of joinLastFrame(), per cell
 };
 
 }}} // namespace cv::stereo::hdp

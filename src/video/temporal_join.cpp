@@ -6,6 +6,8 @@
 #include "temporal_join.simd.hpp"
 #include "video/temporal_join.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
+#include "../base/window_sums.hpp"
+
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -14,9 +16,10 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-typedef TemporalJoin T;
-
 // Which disparity a cell takes
+HDP_TUNABLE(int, window, 7, "cells",
+            "side of the square that costs are compared over: a smaller one decides by noise, a larger one has two "
+            "surfaces");
 HDP_TUNABLE(int, sameDistance, 1, "pixels", "up to which disparities are the same: their costs differ by noise");
 HDP_TUNABLE(int, costOffset, 6, "bits of 24",
             "that a measured disparity's cost gets before shares of it are taken: without it, noise decides low ones");
@@ -36,8 +39,6 @@ HDP_TUNABLE(int, driftStep, 12, "cells", "between those that correct the predict
 // How it is joined with the measured one
 HDP_TUNABLE(int, tolerance, 2, "pixels of the image", "between disparities that agree: more joins two surfaces");
 HDP_TUNABLE(int, maxStep, 1, "pixels", "towards the measured one, before its share is taken: it may be an outlier");
-HDP_TUNABLE(int, maxCount, 7, "frames", "that a disparity may stand for: more flickers less and follows changes later");
-HDP_TUNABLE(int, stripeHeight, 32, "rows of cells", "for a thread: fewer compute the rows between stripes more often");
 
 const int cell = FrameMemory::cell;
 
@@ -45,8 +46,6 @@ HDP_DISPATCH(changeDisparities)
 HDP_DISPATCH(compareDisparities)
 HDP_DISPATCH(compareCells)
 HDP_DISPATCH(chooseCells)
-HDP_DISPATCH(addEvidence)
-HDP_DISPATCH(sumWindow)
 HDP_DISPATCH(joinRow)
 
 //! What the last frame has for this one
@@ -158,29 +157,14 @@ void compareCosts(const CensusCost& cost, const Mat& measured, const LastFrame& 
 bool chooseSources(const LastFrame& frame, VideoScratch& scratch)
 {
     const Size cells = frame.cells();
-    const int radius = T::window / 2, stripes = (cells.height + stripeHeight - 1) / stripeHeight;
     const int wrong = frame.isStill() ? +stillShare : +wrongShare;
     std::vector<int> contradicted(cells.height);
     scratch.choices.create(cells, CV_8U);
-    parallel_for_(Range(0, stripes), [&](const Range& range) {
-        const Range rows(range.start * stripeHeight, std::min(range.end * stripeHeight, cells.height));
-        const int length = cells.width * EVIDENCE_CHANNELS;
-        std::vector<short> columns(length + (T::window - 1) * EVIDENCE_CHANNELS), sums(length);
-        const auto add = [&](int y, int sign) {
-            if (y >= 0 && y < cells.height)
-                dispatched::addEvidence(scratch.evidence.ptr<short>(y), sign, length,
-                                        &columns[radius * EVIDENCE_CHANNELS]);
-        };
-        for (int y = rows.start - radius; y < rows.start + radius; ++y)
-            add(y, 1);
-        for (int y = rows.start; y < rows.end; ++y)
-        {
-            add(y + radius, 1);
-            dispatched::sumWindow(columns.data(), length, sums.data());
-            contradicted[y] = dispatched::chooseCells(sums.data(), scratch.sources.ptr(y), scratch.shares.ptr(y),
-                                                      cells.width, frame.isStill(), wrong, scratch.choices.ptr(y));
-            add(y - radius, -1);
-        }
+    sumOverWindows(scratch.evidence, window, CV_16S, scratch.evidenceSums, BORDER_CONSTANT);
+    parallelForRows(cells, [&](int y) {
+        contradicted[y] =
+            dispatched::chooseCells(scratch.evidenceSums.ptr<short>(y), scratch.sources.ptr(y), scratch.shares.ptr(y),
+                                    cells.width, frame.isStill(), wrong, scratch.choices.ptr(y));
     });
     const int64 all = countNonZero(scratch.sources);
     return 100 * std::accumulate(contradicted.begin(), contradicted.end(), (int64)0) > contradictedShare * all;
@@ -203,7 +187,7 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
     }
     const int maxDistance = std::max(tolerance / frame.prediction.key.scale, 1) * FrameMemory::scale;
     // The motion is an estimate: what it moves counts for one frame.
-    const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale, frame.isStill() ? +T::maxWeight : 1, maxCount };
+    const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale, frame.isStill() ? +TemporalJoin::maxWeight : 1 };
     dispatched::joinRow(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), row,
                         width, rule, next.disparity.ptr<ushort>(y), next.detail.ptr(y));
 }

@@ -14,10 +14,8 @@ struct TemporalJoin
 {
     enum
     {
-        window = 7, // cells; side of the square that costs are compared over: a smaller one decides by noise, a larger
-                    // one has two surfaces
-        fringe = 2, // pixels beside one that agrees: what disagrees there, where the motion leads, is measured;
-                    // fewer leave a rim of the last frame, more drop what is right
+        fringe = 2,   // pixels beside one that agrees: what disagrees there, where the motion leads, is measured;
+                      // fewer leave a rim of the last frame, more drop what is right
         maxWeight = 4 // frames that a disparity counts for, at most: joinRow() divides by one more
     };
 };
@@ -90,7 +88,6 @@ struct JoinRule
 {
     int tolerance, maxStep;
     int maxWeight; // frames that the one before counts for, up to TemporalJoin::maxWeight
-    int maxCount;  // frames that a disparity may stand for
 };
 
 /** Joins the disparities of a pair, before the median, with those of the frame before. Each pixel has up to three: the

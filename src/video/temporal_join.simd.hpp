@@ -14,14 +14,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param step From a pixel of row y to the next; the first one is 0. */
 void changeDisparities(const DisparityChange& change, int y, int step, int count, int* finer);
 
-//! Adds a row times sign to columns.
-void addEvidence(const short* row, int sign, int length, short* columns);
-
-/** Sums over TemporalJoin::window cells of a row.
-@param columns The first of the cells that the first sum is over.
-@param length Number of sums, EVIDENCE_CHANNELS per cell. */
-void sumWindow(const short* columns, int length, short* sums);
-
 /** Compares the disparities of the first pixels of a row's cells. Two of the frame before that are about the same count
 as one, the moved one; so do two that are far apart.
 @param measured,unmoved,unmovedDetail Of the pixels of the row; the last two are FrameMemory's.
@@ -135,20 +127,6 @@ void changeDisparities(const DisparityChange& change, int y, int step, int count
         (int)(c.now(finer[i] * unit, i * stepX, (float)y) * FrameMemory::scale);
 }
 
-void addEvidence(const short* row, int sign, int length, short* columns)
-{
-    HDP_VECTORIZED for (int i = 0; i < length; ++i) columns[i] = (short)(columns[i] + sign * row[i]);
-}
-
-void sumWindow(const short* columns, int length, short* sums)
-{
-    const int c = EVIDENCE_CHANNELS;
-    static_assert(TemporalJoin::window == 7, "There are as many terms.");
-    HDP_VECTORIZED for (int i = 0; i < length; ++i) sums[i] =
-        (short)(columns[i] + columns[i + c] + columns[i + 2 * c] + columns[i + 3 * c] + columns[i + 4 * c] +
-                columns[i + 5 * c] + columns[i + 6 * c]);
-}
-
 void compareDisparities(const ushort* measured, const ushort* unmoved, const uchar* unmovedDetail,
                         const TemporalRow& row, int count, const ChoiceRule& rule, const uchar* sources, uchar* used,
                         uchar* different, uchar* shares)
@@ -198,7 +176,7 @@ void joinRow(const ushort* measured, const ushort* unmoved, const uchar* unmoved
              const JoinRule& rule, ushort* disparity, uchar* detail)
 {
     const int tolerance = rule.tolerance, maxStep = rule.maxStep;
-    const int maxWeight = rule.maxWeight, maxCount = rule.maxCount;
+    const int maxWeight = rule.maxWeight, maxCount = FrameMemory::countMask;
     const int half = 1 << (FrameMemory::detailBits - 1);
     const int* const moved = row.moved.data();
     const uchar *const movedDetail = row.detail.data(), *const choices = row.choices.data();

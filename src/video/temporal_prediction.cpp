@@ -132,17 +132,13 @@ int medianLevel(const Mat& image)
 }
 
 //! How far each cell is from the mean around it
-void findContrast(const Mat& image, Mat& sums, Mat& contrast)
+void findContrast(const Mat& image, VideoScratch& scratch)
 {
+    Mat &levels = scratch.sums[0], &sums = scratch.sums[1];
+    image.convertTo(levels, CV_16U, contrastCells);
     sumOverWindows(image, contrastSide, CV_16U, sums);
-    contrast.create(image.size(), CV_8U);
-    parallelForRows(image.size(), [&](int y) {
-        const uchar* levels = image.ptr(y);
-        const ushort* ofWindow = sums.ptr<ushort>(y);
-        uchar* contrasts = contrast.ptr(y);
-        for (int x = 0; x < image.cols; ++x)
-            contrasts[x] = (uchar)(std::abs(contrastCells * levels[x] - ofWindow[x]) / contrastCells);
-    });
+    absdiff(levels, sums, sums);
+    sums.convertTo(scratch.contrast, CV_8U, 1. / contrastCells, -0.48); // rounded down
 }
 
 //! The last frame as this one would show it if nothing moved but the camera: half a cell is the mean of two.
@@ -206,7 +202,7 @@ void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, Video
     if (warp)
         warpGrey(before, *warp, scratch.warped);
     absdiff(now, warp ? scratch.warped : before, scratch.change);
-    findContrast(now, scratch.sums[0], scratch.contrast);
+    findContrast(now, scratch);
     sumOverWindows(scratch.change, changeSide, CV_16U, scratch.sums[0]);
     sumOverWindows(scratch.contrast, contrastSide, CV_16U, scratch.sums[1]);
     if (warp)
