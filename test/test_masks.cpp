@@ -267,30 +267,23 @@ TEST(HDPStereo_Masks, bad_masks_change_nothing)
 TEST(HDPStereo_Masks, floats_are_levels_of_16_bits)
 {
     const MaskedPair pair(CV_16UC1);
-    Mat floats[2], whole[2];
+    Mat floats[2];
     const Mat images[2] = { pair.left, pair.right };
     for (int i = 0; i < 2; ++i)
         images[i].convertTo(floats[i], CV_32F, 1. / 256, -7);
-    const hdp::PairMasks all = { Mat(pair.left.size(), CV_8U, Scalar(255)), Mat(pair.left.size(), CV_8U, Scalar(255)) };
-    const hdp::FloatLevels levels = hdp::findLevels(floats[0], floats[1], all);
-    const auto toWhole = [&] {
-        for (int i = 0; i < 2; ++i)
-            hdp::wholeLevels(floats[i], all.left, levels, whole[i]);
-    };
-    toWhole();
+    hdp::CompletePair whole;
+    hdp::completePair(floats[0], floats[1], Mat(), Mat(), nullptr, whole);
     for (const System& preset : presets)
     {
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45);
-        const Mat expected = match(*matcher, whole[0], whole[1]).clone();
+        const Mat expected = match(*matcher, whole.left, whole.right).clone();
         expectIdentical(expected, match(*matcher, floats[0], floats[1]));
-        floats[0].copyTo(whole[0]); // to be masked by numbers
-        floats[1].copyTo(whole[1]);
-        whole[0].setTo(notANumber, pair.leftMask == 0);
-        whole[1].setTo(-std::numeric_limits<float>::infinity(), pair.rightMask == 0);
-        const Mat masked = match(*matcher, whole[0], whole[1]).clone();
+        Mat byNumbers[2] = { floats[0].clone(), floats[1].clone() };
+        byNumbers[0].setTo(notANumber, pair.leftMask == 0);
+        byNumbers[1].setTo(-std::numeric_limits<float>::infinity(), pair.rightMask == 0);
+        const Mat masked = match(*matcher, byNumbers[0], byNumbers[1]).clone();
         pair.set(*matcher);
         expectIdentical(masked, match(*matcher, floats[0], floats[1]));
-        toWhole();
     }
 }
 
@@ -300,9 +293,10 @@ TEST(HDPStereo_Masks, scale_of_floats)
     for (int round = 0; round < 20; ++round)
     {
         const Size size(rng.uniform(1, 90), rng.uniform(1, 90));
-        Mat images[2], levels[2];
+        Mat images[2];
         std::vector<float> values;
-        hdp::PairMasks masks = { randomImage(rng, size, CV_8UC1, 2) * 255, randomImage(rng, size, CV_8UC1, 2) * 255 };
+        const hdp::PairMasks masks = { randomImage(rng, size, CV_8UC1, 2) * 255,
+                                       randomImage(rng, size, CV_8UC1, 2) * 255 };
         for (int i = 0; i < 2; ++i)
         {
             images[i].create(size, CV_32F);
@@ -311,9 +305,8 @@ TEST(HDPStereo_Masks, scale_of_floats)
                 if ((i ? masks.right : masks.left).ptr(k / size.width)[k % size.width])
                     values.push_back(images[i].ptr<float>(k / size.width)[k % size.width]);
         }
-        const hdp::FloatLevels floats = hdp::findLevels(images[0], images[1], masks);
-        hdp::wholeLevels(images[0], masks.left, floats, levels[0]);
-        hdp::wholeLevels(images[1], masks.right, floats, levels[1]);
+        hdp::CompletePair whole;
+        hdp::completePair(images[0], images[1], masks.left, masks.right, nullptr, whole);
         std::sort(values.begin(), values.end());
         const size_t outliers = values.size() / 1024;
         for (int i = 0; i < 2 && !values.empty(); ++i)
@@ -321,14 +314,14 @@ TEST(HDPStereo_Masks, scale_of_floats)
             {
                 const double low = values[outliers], high = values[values.size() - 1 - outliers];
                 const double share = (images[i].ptr<float>(k / size.width)[k % size.width] - low) / (high - low);
-                const bool counts = (i ? masks.right : masks.left).ptr(k / size.width)[k % size.width] && high > low;
-                ASSERT_NEAR(counts ? 65535 * std::min(std::max(share, 0.), 1.) : 0,
-                            levels[i].ptr<ushort>(k / size.width)[k % size.width], 0.501);
+                if ((i ? masks.right : masks.left).ptr(k / size.width)[k % size.width])
+                    ASSERT_NEAR(high > low ? 65535 * std::min(std::max(share, 0.), 1.) : 0,
+                                (i ? whole.right : whole.left).ptr<ushort>(k / size.width)[k % size.width], 0.501);
             }
     }
 }
 
-//! The documentation of fillMissing(), pixel by pixel
+//! The documentation of completePair(), pixel by pixel
 TEST(HDPStereo_Masks, missing_pixels_get_the_nearest_ones_of_their_row)
 {
     RNG rng(10);
@@ -336,11 +329,12 @@ TEST(HDPStereo_Masks, missing_pixels_get_the_nearest_ones_of_their_row)
     {
         const Size size(rng.uniform(1, 30), rng.uniform(1, 12));
         const Mat image = randomImage(rng, size, round % 3 == 0 ? CV_8UC3 : round % 3 == 1 ? CV_16UC1 : CV_8UC1);
-        Mat mask = (randomImage(rng, size, CV_8UC1, 9) < rng.uniform(0, 9)), filled;
+        Mat mask = (randomImage(rng, size, CV_8UC1, 9) < rng.uniform(0, 9));
         for (int y = 0; y < size.height; ++y)
             if (rng.uniform(0, 3) == 0)
                 mask.row(y).setTo(0);
-        hdp::fillMissing(image, mask, filled);
+        hdp::CompletePair complete;
+        hdp::completePair(image, image, mask, mask, nullptr, complete);
         const auto rowHas = [&](int y) { return y >= 0 && y < size.height && cv::countNonZero(mask.row(y)) > 0; };
         for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x)
@@ -353,7 +347,7 @@ TEST(HDPStereo_Masks, missing_pixels_get_the_nearest_ones_of_their_row)
                         if (column < 0 && side >= 0 && side < size.width && mask.at<uchar>(row, side))
                             column = side;
                 const Mat expected = row < 0 ? Mat::zeros(1, 1, image.type()) : image(Rect(column, row, 1, 1)).clone();
-                expectIdentical(expected, filled(Rect(x, y, 1, 1)).clone());
+                expectIdentical(expected, complete.left(Rect(x, y, 1, 1)).clone());
             }
     }
 }

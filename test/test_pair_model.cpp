@@ -221,7 +221,7 @@ TEST(HDPStereo_PairModel, levels_of_a_tile)
 TEST(HDPStereo_PairModel, floats_of_a_tile)
 {
     const SyntheticPair pair = makeMisalignedPair(Size(240, 180), 32, 4);
-    Mat floats[2], levels[2];
+    Mat floats[2];
     const Mat images[2] = { pair.left, pair.right };
     for (int i = 0; i < 2; ++i)
     {
@@ -231,18 +231,16 @@ TEST(HDPStereo_PairModel, floats_of_a_tile)
     const Ptr<HDPTreeMatcher> matcher = M::create(0, 32);
     match(*matcher, floats[0], floats[1]);
     PairModel model = matcher->getPairModel();
-    const Mat all(pair.left.size(), CV_8U, Scalar(255));
-    const hdp::FloatLevels found = hdp::findLevels(floats[0], floats[1], { all, all });
-    EXPECT_EQ(found.black, model.black);
-    EXPECT_EQ(found.white, model.white);
-    for (int i = 0; i < 2; ++i)
-        hdp::wholeLevels(floats[i], all, found, levels[i]);
+    hdp::CompletePair whole;
+    hdp::completePair(floats[0], floats[1], Mat(), Mat(), nullptr, whole);
+    EXPECT_EQ(whole.floats.black, model.black);
+    EXPECT_EQ(whole.floats.white, model.white);
     const Rect tile(48, 16, 100, 120);
     matcher->setPairModel(model.tile(tile));
     const Mat actual = match(*matcher, floats[0](tile), floats[1](tile)).clone();
     model.depth = CV_16U;
     matcher->setPairModel(model.tile(tile));
-    expectIdentical(match(*matcher, levels[0](tile), levels[1](tile)), actual);
+    expectIdentical(match(*matcher, whole.left(tile), whole.right(tile)), actual);
 }
 
 TEST(HDPStereo_PairModel, another_range)

@@ -40,8 +40,7 @@ std::vector<int> nearestWithData(const uchar* has, int count)
     return nearest;
 }
 
-} // namespace
-
+//! Of 8 or 16 bits and any number of channels; mask: CV_8UC1, 255 where there is data, else 0
 void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
 {
     const size_t pixel = image.elemSize();
@@ -61,6 +60,7 @@ void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
             filled.row(rows[y]).copyTo(filled.row(y));
 }
 
+//! Of the pixels that are in the masks
 FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks)
 {
     std::vector<float> values;
@@ -83,6 +83,7 @@ FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks
     return floats;
 }
 
+//! Levels of CV_32FC1 in CV_16UC1, 0 where there is no data; all are black if floats' black and white are the same.
 void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, Mat& levels)
 {
     const double range = floats.white - floats.black, scale = range > FLT_MIN ? USHRT_MAX / range : 0;
@@ -95,6 +96,8 @@ void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, M
             level[x] = (ushort)(has[x] ? clamped((row[x] - floats.black) * scale, 0., 65535.) + 0.5 : 0);
     });
 }
+
+} // namespace
 
 void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
                   const FloatLevels* given, CompletePair& complete)

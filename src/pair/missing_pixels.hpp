@@ -23,25 +23,15 @@ struct CompletePair
     Mat filled[2];      // memory, kept from pair to pair
 };
 
-/** Gives the pixels without data levels that depend on the others alone, and images of type CV_32FC1 16 bits.
+/** Gives the pixels without data levels that depend on the others alone, and images of type CV_32FC1 16 bits. A run of
+pixels without data in a row gets the levels at its ends, each half of it the nearer one's. A row without any gets what
+the nearest row has that has some, the upper one of two; black if there is none. Floats have one scale for both images:
+the darkest pixel becomes black and the brightest white, but for one in 1024 at each end.
 @param leftMask,rightMask CV_8UC1, 0 where there is no data; empty: there is everywhere.
 @param given What floats are matched as; none: that of this pair.
 @param complete Receives the pair: the images themselves if nothing is to be done. */
 CV_EXPORTS void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
                              const FloatLevels* given, CompletePair& complete);
-
-//! One scale for both images of a pair of CV_32FC1: the darkest pixel becomes black and the brightest white, but for
-//! one in 1024 at each end. masks: which pixels count, all of them finite
-CV_EXPORTS FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks);
-
-//! Levels of CV_32FC1 in CV_16UC1, 0 where there is no data; all are black if floats' black and white are the same.
-CV_EXPORTS void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, Mat& levels);
-
-/** Fills the pixels without data. A run of them in a row gets the levels at its ends, each half of it the nearer one's.
-A row without any gets what the nearest row has that has some, the upper one of two; black if there is none.
-@param image Of 8 or 16 bits, any number of channels.
-@param mask CV_8UC1, 255 where there is data, else 0. */
-CV_EXPORTS void fillMissing(const Mat& image, const Mat& mask, Mat& filled);
 
 }}} // namespace cv::stereo::hdp
 
