@@ -64,8 +64,6 @@ void addOffsets(const Mat& map, const Mat& upper, const Range& rows, OffsetHisto
         }
 }
 
-#ifdef HAVE_OPENCV_ML
-
 const int minTrainingPixels = 100; // in each half
 
 double countPixels(const OffsetHistogram& histogram)
@@ -149,6 +147,8 @@ Mat_<double> quantiles(const OffsetHistogram& histogram)
     return samples;
 }
 
+#ifdef HAVE_OPENCV_ML
+
 //! What the EM algorithm begins with. nested: components of one mean, the median, and of widths in a geometric series
 //! from minSigma to about the range; otherwise of one width, and of means that are far from each other (k-means++).
 //! Samples ascend; means has a row per component, and variances is empty before.
@@ -220,6 +220,15 @@ bool runEM(const Mat_<double>& samples, int components, bool nested, RNG& rng, G
     return !order.empty();
 }
 
+#else
+
+bool runEM(const Mat_<double>&, int, bool, RNG&, GaussianMixture&)
+{
+    CV_Error(Error::StsNotImplemented, "train() needs opencv_ml, which this library was built without");
+}
+
+#endif
+
 //! The most likely of several runs
 GaussianMixture fitMixture(const OffsetHistogram& histogram, int components, int seed)
 {
@@ -244,8 +253,6 @@ GaussianMixture fitMixture(const OffsetHistogram& histogram, int components, int
     return best;
 }
 
-#endif
-
 } // namespace
 
 double densityOf(const GaussianMixture& mixture, double offset)
@@ -259,7 +266,6 @@ double densityOf(const GaussianMixture& mixture, double offset)
     return sum;
 }
 
-#ifdef HAVE_OPENCV_ML
 double trainMixture(const std::vector<Mat>& maps, const std::vector<Mat>& uppers, int maxComponents, int seed,
                     GaussianMixture& mixture)
 {
@@ -282,13 +288,6 @@ double trainMixture(const std::vector<Mat>& maps, const std::vector<Mat>& uppers
     mixture = fitMixture(fitted, bestComponents, seed);
     return best;
 }
-#else
-double trainMixture(const std::vector<Mat>& maps, const std::vector<Mat>& uppers, int, int, GaussianMixture&)
-{
-    checkMaps(maps, uppers);
-    CV_Error(Error::StsNotImplemented, "train() needs opencv_ml, which this library was built without");
-}
-#endif
 
 } // namespace hdp
 
