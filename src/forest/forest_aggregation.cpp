@@ -6,7 +6,7 @@
 #include "forest_aggregation.simd.hpp"
 #include "forest/forest_aggregation.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
-#include "../base/parabola.hpp"
+#include "../base/fits.hpp"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include "corner_matches.hpp"
 #include "corner_matches.simd.hpp"
 #include "pair/corner_matches.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/robust_fit.hpp"
+#include "../base/fits.hpp"
 #include "image_pyramid.hpp"
 #include "point_tracker.hpp"
 

@@ -7,7 +7,7 @@
 #include "pair/light_alignment.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "image_levels.hpp"
-#include "../base/robust_fit.hpp"
+#include "../base/fits.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "point_tracker.hpp"
 
-#include "../base/parabola.hpp"
+#include "../base/fits.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -5,7 +5,7 @@
 #include "row_alignment.hpp"
 
 #include "image_levels.hpp"
-#include "../base/robust_fit.hpp"
+#include "../base/fits.hpp"
 #include "../base/vectorized.hpp"
 
 #include <cfloat>

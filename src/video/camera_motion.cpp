@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "camera_motion.hpp"
 
-#include "../base/robust_fit.hpp"
+#include "../base/fits.hpp"
 
 #include <cmath>
 #include <numeric>
