@@ -312,11 +312,13 @@ TEST(HDPStereo_Masks, scale_of_floats)
         for (int i = 0; i < 2 && !values.empty(); ++i)
             for (int k = 0; k < size.area(); ++k)
             {
+                const int x = k % size.width, y = k / size.width;
+                if (!(i ? masks.right : masks.left).ptr(y)[x])
+                    continue;
                 const double low = values[outliers], high = values[values.size() - 1 - outliers];
-                const double share = (images[i].ptr<float>(k / size.width)[k % size.width] - low) / (high - low);
-                if ((i ? masks.right : masks.left).ptr(k / size.width)[k % size.width])
-                    ASSERT_NEAR(high > low ? 65535 * std::min(std::max(share, 0.), 1.) : 0,
-                                (i ? whole.right : whole.left).ptr<ushort>(k / size.width)[k % size.width], 0.501);
+                const double share = (images[i].ptr<float>(y)[x] - low) / (high - low);
+                ASSERT_NEAR(high > low ? 65535 * std::min(std::max(share, 0.), 1.) : 0,
+                            (i ? whole.right : whole.left).ptr<ushort>(y)[x], 0.501);
             }
     }
 }

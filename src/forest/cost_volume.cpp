@@ -37,12 +37,16 @@ void CostVolume::create(const DisparityForest& forest)
     const int mean = (int)(chunksOfTrees / size.area());
     usualChunks_ = most <= 2 * mean ? most : mean;
     chunks = (size_t)size.area() * usualChunks_;
-    if (!isUniform)
+    if (isUniform)
+        pixels_.resize(size.area());
+    else
         candidates.resize(size.area());
     starts_.clear();
+    unsigned pixels = 0;
     for (const DisparityTree& tree : forest.trees)
     {
-        starts_.push_back((unsigned)chunks);
+        starts_.push_back(isUniform ? pixels : (unsigned)chunks);
+        pixels += tree.size;
         if (chunksOf(tree.interval) > usualChunks_)
             chunks += (size_t)tree.size * chunksOf(tree.interval);
     }
@@ -58,10 +62,13 @@ void CostVolume::provideCosts()
 
 void CostVolume::place(const DisparityForest& forest, size_t tree, const int* pixels)
 {
-    if (isUniform)
-        return;
     const DisparityInterval interval = forest.trees[tree].interval;
     const int count = forest.trees[tree].size;
+    if (isUniform)
+    {
+        std::copy_n(pixels, count, &pixels_[starts_[tree]]);
+        return;
+    }
     const unsigned own = chunksOf(interval), usual = usualChunks_;
     for (int i = 0; i < count; ++i)
         candidates[pixels[i]] = { own <= usual ? pixels[i] * usual : starts_[tree] + i * own, interval };

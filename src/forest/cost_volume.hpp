@@ -52,6 +52,8 @@ struct CV_EXPORTS CostVolume
     void create(const DisparityForest& forest);
     //! Tells where a tree's pixels are, and with that their candidates. tree: its number; pixels: as many as it has.
     void place(const DisparityForest& forest, size_t tree, const int* pixels);
+    //! Pixels y * width + x of a tree, as place() got them, if all have the same candidates
+    const int* pixelsOf(size_t tree) const { return &pixels_[starts_[tree]]; }
     //! Takes the costs as they are, of so many candidates from 0 on for all pixels.
     void fill(const TwoLayerCost& cost, const Size& size, int numDisparities);
 
@@ -62,7 +64,8 @@ private:
     // Pixels of usual trees have so many chunks each, in the order of the pixels, and the others more, behind them, in
     // the order of the trees, where scanlines wait for them: all are usual if that takes at most twice the memory.
     int usualChunks_ = 0;
-    std::vector<unsigned> starts_; // by tree, if it is not usual: its first chunk
+    std::vector<int> pixels_;      // in the order of the trees, if all have the same candidates
+    std::vector<unsigned> starts_; // by tree: in these pixels; or else its first chunk, if it is not usual
 };
 
 //! Excludes the candidates that pixels do not have, by the largest cost. intervals: DisparityInterval, of the layer.

@@ -224,12 +224,11 @@ int takeTreePlanes(const DisparityForest& forest, const CostVolume& volume, Mat&
 {
     CV_DbgAssert(volume.isUniform);
     std::vector<uchar> hasPlane(forest.trees.size());
-    parallelFor((int)forest.trees.size(), TreeWalk(), [&](int t, TreeWalk& walk) {
+    parallelFor((int)forest.trees.size(), [&](int t) {
         const DisparityTree& tree = forest.trees[t];
         if (tree.size < samples)
             return;
-        walkTree(forest, tree, walk);
-        const int* const pixels = walk.pixels.data();
+        const int* const pixels = volume.pixelsOf(t);
         const TreeSamples of(pixels, tree, disparity, volume);
         if (!of.haveContrast())
             return;
