@@ -256,7 +256,7 @@ private:
         }
     }
 
-    //! large(p, q) of a step's edges, see ScanlineWindows::weighEdges(): number `at`, from the pixel left of its columns on
+    //! large(p, q) of a step's edges, see ScanlineWindows::weighEdges(): number `at` from the pixel left of them on
     template <int at> CV_ALWAYS_INLINE ByteLanes largePenalty(int step) const
     {
         const uchar* edges[groups];
