@@ -57,25 +57,24 @@ public:
     }
 
 private:
-    //! Sections 3.1 to 3.3: over the candidates of disparity trees. Returns whether they do not contradict the last
-    //! frame.
+    //! Sections 3.1 to 3.3: over the candidates of disparity trees. Returns false if these contradict the last frame.
     bool matchTrees()
     {
         estimatePrior();
         clock_.run("disparity prediction", [&] { predictCandidates(); });
         clock_.run("disparity forest", [&] { growForest(); });
         result_.searchRatio = searchRatio(shared_.forest, plan_.numDisparities);
-        bool isRefused = false;
+        bool agrees = true;
         clock_.run("cost aggregation", [&] {
             if (plan_.method == TREE_SCANLINES)
-                isRefused = !aggregateTreeMeans();
+                agrees = aggregateTreeMeans();
             else
                 aggregateForest(shared_.forest, own_.cost(plan_.cost), plan_.trees.gamma, plan_.hasFractions,
                                 shared_.aggregation, result_.winners);
         });
-        if (!isRefused)
+        if (agrees)
             finishWinners();
-        return !isRefused;
+        return agrees;
     }
 
     //! P(D_l) of section 3.1
@@ -88,11 +87,11 @@ private:
             clock_.run("support points", [&] { countSupportPoints(); });
     }
 
-    //! Those of the left image; the authors' program counts those of the right one, too.
+    //! Support points of the left image; the authors' program counts those of the right one, too.
     void countSupportPoints()
     {
         Mat left = in_.images.left, right = in_.images.right;
-        if (left.depth() != CV_8U) // greyLevels()
+        if (left.depth() != CV_8U) // 10 bits, see greyLevels()
         {
             left.convertTo(left, CV_8U, 1. / greyScale);
             right.convertTo(right, CV_8U, 1. / greyScale);
@@ -139,7 +138,8 @@ private:
                     shared_.forestBuffers, shared_.forest);
     }
 
-    //! Scanlines over the means of the costs in the layer's trees; none if these contradict the last frame.
+    //! Scanlines over the means of the costs in the layer's trees. Returns false, without any, if these contradict the
+    //! last frame.
     bool aggregateTreeMeans()
     {
         const DisparityForest& forest = shared_.forest;
@@ -154,7 +154,7 @@ private:
         }
         if (plan_.prefersLastFrame)
             preferPredicted(shared_.predicted, volume);
-        const bool hasPlanes = plan_.isTop && volume.isUniform; // which ranges may change
+        const bool hasPlanes = plan_.isTop && volume.isUniform; // with ranges, trees may have other candidates each
         if (hasPlanes)
             preferLargestSurfaces(own_.census, volume);
         scanVolume(forest.weights);
@@ -217,10 +217,10 @@ private:
         finishWinners();
     }
 
-    //! The last candidate of a layer with fractions may be beyond the range.
+    //! What all winners go through: the range, what is known beforehand, occlusions
     void finishWinners()
     {
-        if (plan_.hasFractions && plan_.layer > 0)
+        if (plan_.hasFractions && plan_.layer > 0) // whose last candidate may be beyond the range
             min(result_.winners, plan_.maxDisparity, result_.winners);
         joinWithPrior();
         if (plan_.fillsOcclusions || !plan_.isFinest)
@@ -235,17 +235,18 @@ private:
         if (plan_.cost.isCensus)
             clock_.run("matching cost", [&] {
                 own_.census.ofDisparities(result_.winners, result_.residual);
-                leaveWithoutData(result_.residual);
+                excludeMissing(result_.residual);
             });
     }
 
-    void leaveWithoutData(Mat& residual) const
+    //! Gives pixels without data the largest cost, with which they win no column of the right image.
+    void excludeMissing(Mat& residual) const
     {
         if (!in_.images.masks.isEmpty())
             residual.setTo(Scalar(UCHAR_MAX), pixelsWithData(in_.images.masks.left) == 0);
     }
 
-    //! residual: of the winners. Pixels without data hide none from the right image.
+    //! residual: of the winners
     void fillOcclusions(const Mat& residual)
     {
         clock_.run("occlusions",
@@ -276,7 +277,7 @@ private:
                 findResidual(); // without the costs of windows for what is far from predicted
             if (plan_.fillsOcclusions)
             {
-                leaveWithoutData(own_.passResidual);
+                excludeMissing(own_.passResidual);
                 fillOcclusions(own_.passResidual);
             }
         }
@@ -345,8 +346,8 @@ private:
             moveIntoIntervals(in_.known.intervals[plan_.layer], disparity);
     }
 
-    //! Filters the map, in which pixels without data are USHRT_MAX then. They, and those beside them whose result that
-    //! may change, up to reach pixels away, stay as they are.
+    //! Filters the map. The filter sees USHRT_MAX for pixels without data: these, and those up to reach pixels away
+    //! from them, keep their disparities.
     template <typename Filter> void filterWhereData(int reach, const Filter& filter)
     {
         swap(result_.disparity, own_.filtered);
@@ -357,7 +358,7 @@ private:
         own_.masked.setTo(Scalar(USHRT_MAX), hasData == 0);
         filter(own_.masked);
         Mat isFiltered;
-        erode(hasData, isFiltered, Mat(), Point(-1, -1), reach);
+        erode(hasData, isFiltered, Mat(), Point(-1, -1), reach); // by a pixel, so many times
         own_.filtered.copyTo(result_.disparity, isFiltered == 0);
     }
 

@@ -13,10 +13,9 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 // Corners
-HDP_TUNABLE(int, neighbourReach, 24, "pixels of the coarse layer", "in which a corner is to have neighbours");
+HDP_TUNABLE(int, neighbourReach, 24, "pixels of the layer", "in which a corner is to have neighbours");
 HDP_TUNABLE(int, minNeighbours, 3, "corners", "of the same surface: fewer believe a pattern that repeats itself");
-HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the coarse layer",
-            "by which these differ: more lets wrong corners in");
+HDP_TUNABLE(double, neighbourStep, 0.5, "pixels of the layer", "by which these differ: more lets wrong corners in");
 HDP_TUNABLE(int, minSupport, 10, "corners", "fewer are no evidence of a range");
 HDP_TUNABLE(int, mostFiner, 2, "layers", "below the usual one that are searched for more corners: each takes longer");
 
@@ -26,7 +25,7 @@ HDP_TUNABLE(double, reach, 1.5, "share of the corners' range",
 HDP_TUNABLE(double, leastReach, 0.1, "share of the image's width",
             "the same at least: a near thing before a wall has few corners; more costs time and errors");
 HDP_TUNABLE(double, endShare, 0.05, "share of what is searched",
-            "at its ends: what is found there goes on beyond; more searches twice more often");
+            "at its ends: what is found there goes on beyond; more leads to a second search more often");
 HDP_TUNABLE(double, minConfidence, 15, "confidence",
             "of disparities that count: less believes errors, more misses what is near and small");
 HDP_TUNABLE(double, leftOut, 0.0005, "share of the disparities", "at each end that may be wrong");
@@ -41,7 +40,7 @@ HDP_TUNABLE(double, keptExcess, 2, "times the range", "that the range of a video
 
 const int mostDisparity = SHRT_MAX / StereoMatcher::DISP_SCALE - 2;
 
-//! Without what no pixel of images of this width can have, or CV_16S
+//! From first to last, cut to disparities that an image of this width can have and CV_16S can hold
 Range limited(double first, double last, int width)
 {
     const int limit = std::min(width - 1, mostDisparity);
@@ -77,10 +76,12 @@ Range supportedDisparities(const std::vector<CornerMatch>& matches, int& support
     return support == 0 ? Range() : Range(cvFloor(first), cvCeil(last) + 1);
 }
 
-//! Returns how many there are; range: theirs
-int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset, Range& range)
+//! Matches corners, on finer layers if too few have neighbours that agree; returns how many do. range: receives the
+//! disparities of these, in pixels of coarse_.layer
+int RangeSearch::findCornerRange(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset,
+                                 Range& range)
 {
-    const int bits = bitsInUse(left, right); // what has no data has the levels of what has
+    const int bits = bitsInUse(left, right); // what has no data has levels of what has some
     greyLevels(left, bits, leftLevels_);
     greyLevels(right, bits, rightLevels_);
     const int width = left.cols;
@@ -96,7 +97,8 @@ int RangeSearch::matchCorners(const Mat& left, const Mat& right, const PairMasks
     return support;
 }
 
-//! Of the layer below that of the corners. disparities, those that count, found: in pixels of the image
+//! Matches all pixels, one layer below that of the corners. disparities: that are searched; counting: those of them
+//! that may be found; found: receives their range, if there are any, which is returned. All are in pixels of the image.
 bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, const Range& counting, Range& found)
 {
     const int layer = std::max(coarse_.layer - 1, 0), scale = 1 << layer;
@@ -111,7 +113,7 @@ bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, 
     matcher_->setMinDisparity(searched.start);
     matcher_->setNumDisparities(searched.size());
     matcher_->setMasks(dataOfLayer(masks.left, layer), dataOfLayer(masks.right, layer));
-    coarse_.left[layer].convertTo(left_, CV_16U, 64); // of 10 bits
+    coarse_.left[layer].convertTo(left_, CV_16U, 64); // from 10 bits to 16
     coarse_.right[layer].convertTo(right_, CV_16U, 64);
     matcher_->compute(left_, right_, disparity_);
     matcher_->getConfidence(confidence_);
@@ -126,15 +128,16 @@ bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, 
         }
     if (disparities_.empty())
         return false;
-    const size_t end = disparities_.size() - 1, skipped = (size_t)(leftOut * end);
+    const size_t lastIndex = disparities_.size() - 1, skipped = (size_t)(leftOut * lastIndex);
     std::sort(disparities_.begin(), disparities_.end());
     found.start = cvFloor(disparities_[skipped] * scale);
-    found.end = cvCeil(disparities_[end - skipped] * scale) + 1;
+    found.end = cvCeil(disparities_[lastIndex - skipped] * scale) + 1;
     return true;
 }
 
-//! With more disparities than those of the corners, and more again if some are found at the ends: surfaces may go on
-//! there. What is at the ends then, too, is errors. found: in pixels of the image
+//! Matches all pixels over a range around that of the corners. If disparities are found near its ends, surfaces may go
+//! on beyond: pixels are matched once more, around what was found. What is near the ends of that is taken for errors.
+//! found: in pixels of the image
 bool RangeSearch::searchAround(const PairMasks& masks, const Range& corners, Range& found)
 {
     const double least = leastReach * coarse_.left[0].cols;
@@ -163,7 +166,7 @@ Range RangeSearch::find(const Mat& left, const Mat& right, const PairMasks& mask
     const Range last = isFrame && left.size() == lastSize_ ? last_ : Range();
     last_ = Range();
     Range corners, found;
-    const int support = matchCorners(left, right, masks, maxRowOffset, corners);
+    const int support = findCornerRange(left, right, masks, maxRowOffset, corners);
     const bool isFound = support >= minSupport && searchAround(masks, corners, found);
     if (!isFound && last.empty())
         CV_Error(Error::StsBadArg, "numDisparities must be > 0 for this pair: too few corners match to find its range");
@@ -175,8 +178,8 @@ Range RangeSearch::find(const Mat& left, const Mat& right, const PairMasks& mask
         const double first = found.start - std::max(farMargin * size, least);
         range = limited(isNearZero ? std::min(first, 0.) : first, found.end - 1 + std::max(nearMargin * size, least),
                         left.cols);
-        const bool isEnough = last.start <= found.start && last.end >= found.end;
-        if (!last.empty() && isEnough && last.size() <= keptExcess * range.size())
+        const bool coversFound = last.start <= found.start && last.end >= found.end;
+        if (!last.empty() && coversFound && last.size() <= keptExcess * range.size())
             range = last;
     }
     if (isFrame)

@@ -10,7 +10,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! Corners whose disparity some of their neighbours have, too: the least and the largest disparity of their layer.
+//! The range of the disparities, in pixels of their layer, of those corners that agree with some of their neighbours.
 //! support: receives how many there are; with none the range is empty.
 CV_EXPORTS Range supportedDisparities(const std::vector<CornerMatch>& matches, int& support);
 
@@ -37,7 +37,7 @@ public:
     void forgetFrames() { last_ = Range(); }
 
 private:
-    int matchCorners(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset, Range& range);
+    int findCornerRange(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset, Range& range);
     bool matchPixels(const PairMasks& masks, const Range& disparities, const Range& counting, Range& found);
     bool searchAround(const PairMasks& masks, const Range& corners, Range& found);
 

@@ -483,6 +483,12 @@ TEST(HDPStereo_ModelFiles, exceptions_name_the_file)
     HDPTreeMatcher::create()->save(other.name);
     for (const std::string& name : { foreign.name, other.name, foreign.name + ".none" })
         expectRejected([&] { DisparityPredictionModel::load(name); }, "filename: '" + name + "'");
+    const TemporaryFile number(".yml");
+    for (const char* text : { "%YAML:1.0\n---\na: 5\n", "%YAML:1.0\n---\n- 5\n" }) // no maps
+    {
+        std::ofstream(number.name.c_str()) << text;
+        expectRejected([&] { DisparityPredictionModel::load(number.name); }, "a model must be a map");
+    }
 }
 
 //! A matcher says that a model is too small before it works, and is as it was.

@@ -350,12 +350,18 @@ TEST(HDPStereo_PairModel, files)
     expectRejected([] { PairModel::load("no such file.yml"); }, "no such file.yml");
     expectRejected([&] { model.save("no such folder/model.yml"); }, "no such folder");
     const TemporaryFile other(".yml");
-    for (const char* text :
-         { "pairModel: [ 1", "%YAML:1.0\n---\nother: 1\n", "%YAML:1.0\n---\npairModel: { width: 1 }\n" })
+    for (const char* text : { "pairModel: [ 1", "%YAML:1.0\n---\nother: 1\n", "%YAML:1.0\n---\n- 1\n",
+                              "%YAML:1.0\n---\npairModel: { width: 1 }\n" })
     {
         std::ofstream(other.name.c_str()) << text;
         expectRejected([&] { PairModel::load(other.name); }, other.name);
     }
+
+    std::ofstream(other.name.c_str()) << "%YAML:1.0\n---\nother: 1\n";
+    const FileStorage fs(other.name, FileStorage::READ);
+    PairModel unchanged = model;
+    expectRejected([&] { unchanged.read(fs["other"]); }, "must be a map");
+    EXPECT_EQ(textOf(model), textOf(unchanged));
 
     // Every field is needed.
     const std::string text = textOf(model);

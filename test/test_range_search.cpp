@@ -140,6 +140,24 @@ TEST(HDPStereo_RangeSearch, fine_texture_and_small_images)
         }
 }
 
+//! Lower than a cell of the corners' grid would be
+TEST(HDPStereo_RangeSearch, long_and_low_images)
+{
+    RNG rng(6);
+    for (const Size& size : { Size(6000, 22), Size(2000, 26), Size(60, 3000) })
+    {
+        Mat canvas(size + Size(8, 0), CV_32F);
+        rng.fill(canvas, RNG::UNIFORM, -1, 1);
+        cv::GaussianBlur(canvas, canvas, Size(), 1.2);
+        canvas.convertTo(canvas, CV_8U, 300, 128);
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 0);
+        match(*matcher, canvas.colRange(0, size.width).clone(), canvas.colRange(8, size.width + 8).clone());
+        EXPECT_LE(foundRange(*matcher).start, 8) << size;
+        EXPECT_GT(foundRange(*matcher).end, 8) << size;
+        EXPECT_LT(foundRange(*matcher).size(), 40) << size;
+    }
+}
+
 TEST(HDPStereo_RangeSearch, nothing_to_find)
 {
     const Size size(320, 240);

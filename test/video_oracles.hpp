@@ -63,14 +63,14 @@ inline int squareSum(const Mat& image, int x, int y, int radius)
     return sum;
 }
 
-//! The last frame's cells where the warp leads: in pixels, which are half cells
+//! The last frame's cells where the warp leads, or at the same place if it is unknown: in pixels, which are half cells
 inline Mat warpedGrey(const Mat& before, const hdp::FrameWarp& warp)
 {
     Mat warped(before.size(), CV_8U);
     for (int y = 0; y < before.rows; ++y)
         for (int x = 0; x < before.cols; ++x)
         {
-            const Point from = movedFrom(warp, 2 * x, 2 * y);
+            const Point from = isKnown(warp, 2 * x, 2 * y) ? movedFrom(warp, 2 * x, 2 * y) : Point(2 * x, 2 * y);
             double sum = 0;
             for (int k = 0; k < 4; ++k)
                 sum += before.at<uchar>(std::min((from.y + k / 2) / 2, before.rows - 1),

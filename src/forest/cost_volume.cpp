@@ -50,12 +50,12 @@ void CostVolume::create(const DisparityForest& forest)
         if (chunksOf(tree.interval) > usualChunks_)
             chunks += (size_t)tree.size * chunksOf(tree.interval);
     }
-    provideCosts();
+    allocateCosts();
 }
 
-void CostVolume::provideCosts()
+void CostVolume::allocateCosts()
 {
-    if (chunks > UINT_MAX) // Candidates::firstChunk
+    if (chunks > UINT_MAX) // Candidates::firstChunk has 32 bits
         CV_Error(Error::StsOutOfRange, "numDisparities is too large for images of this size: more than 2^36 costs");
     grown(costs, chunks * chunk);
 }
@@ -88,7 +88,7 @@ void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, int candi
     uniform_ = { 0, (ushort)(numDisparities - 1) };
     usualChunks_ = chunksOf(uniform_);
     chunks = (size_t)size.area() * usualChunks_;
-    provideCosts();
+    allocateCosts();
     const Row memory = { std::vector<int>(size.width), std::vector<uchar>(size.width * chunk) };
     parallelForRows(size, memory, [&](int y, Row& row) {
         std::iota(row.pixels.begin(), row.pixels.end(), y * size.width);

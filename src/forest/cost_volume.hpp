@@ -58,7 +58,7 @@ struct CV_EXPORTS CostVolume
     void fill(const TwoLayerCost& cost, const Size& size, int numDisparities);
 
 private:
-    void provideCosts();
+    void allocateCosts();
 
     DisparityInterval uniform_; // the candidates of all pixels
     // Pixels of usual trees have so many chunks each, in the order of the pixels, and the others more, behind them, in

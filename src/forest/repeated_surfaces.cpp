@@ -89,17 +89,18 @@ public:
     {
     }
 
-    int prefer()
+    //! See preferLargestSurfaces(). Returns the number of pixels in areas.
+    int preferLargest()
     {
         if (!looksRepeated())
             return 0;
         joinRuns();
         const std::vector<int> repeated = findRepeated();
-        for (int i : repeated)
-            for (int a = firsts_[i]; a < firsts_[i + 1]; ++a)
-                count(i, a);
-        for (int i : repeated)
-            raiseOthers(i);
+        for (int pixel : repeated)
+            for (int run = firsts_[pixel]; run < firsts_[pixel + 1]; ++run)
+                countSupport(pixel, run);
+        for (int pixel : repeated)
+            raiseOthers(pixel);
         return (int)repeated.size();
     }
 
@@ -154,7 +155,7 @@ private:
         keepLarge(joined, minPixels);
     }
 
-    //! A pixel's runs with the next ones in the row and in the column that are of the same surface
+    //! Joins a pixel's runs with the next ones of the same surface in its row and in its column.
     void joinNext(int pixel, int farthest, Sets& joined) const
     {
         const int x = pixel % width_, y = pixel / width_;
@@ -220,7 +221,7 @@ private:
     }
 
     //! A run of a pixel with several ones, and what is beside it
-    void count(int pixel, int run)
+    void countSupport(int pixel, int run)
     {
         const int gaps[] = { run > firsts_[pixel] ? runs_[run].centre - runs_[run - 1].centre : 0,
                              run + 1 < firsts_[pixel + 1] ? runs_[run + 1].centre - runs_[run].centre : 0 };
@@ -306,7 +307,7 @@ private:
 int preferLargestSurfaces(const CensusCost& own, CostVolume& volume)
 {
     CV_DbgAssert(volume.isUniform);
-    return RepeatedSurfaces(own, volume).prefer();
+    return RepeatedSurfaces(own, volume).preferLargest();
 }
 
 }}} // namespace cv::stereo::hdp

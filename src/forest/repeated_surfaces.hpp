@@ -9,14 +9,14 @@
 namespace cv { namespace stereo { namespace hdp {
 
 /** Regular patterns, as of a fence or a facade. Several candidates of a pixel fit, a period apart, and noise or the
-surface behind would decide between them. Only where the pattern ends, less of them do: what is a period off has no
+surface behind would decide between them. Only where the pattern ends, fewer of them do: what is a period off has no
 match for the last period. So the right surface is the largest one.
 
 A run is what fits of a pixel's candidates without a clearly higher cost in between. Runs of neighbouring pixels that
-differ by little are one surface, which goes on beyond small gaps. An area are the pixels that have several surfaces,
-together with those that share one of these. A surface's size are its pixels in the area, and beside it by up to a
-period, that repeat in the left image a period to the left or to the right, with some contrast in between. In each pixel
-of an area, all candidates but those of its largest surface get higher costs; the lowest one wins a tie.
+differ by little are one surface, which goes on beyond small gaps. An area is the pixels that have several surfaces,
+together with those that share one of these. A surface's size is the number of its pixels in the area, and beside it by
+up to a period, that repeat in the left image a period to the left or to the right, with some contrast in between. In
+each pixel of an area, all candidates but those of its largest surface get higher costs; the lowest one wins a tie.
 @param own The census of the layer, for its grey levels.
 @param volume The costs, to which those are added; all pixels have the same candidates.
 @return Number of pixels in areas; small ones are noise, and change nothing, as does a volume of which a sample of

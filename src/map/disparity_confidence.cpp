@@ -31,31 +31,31 @@ HDP_TUNABLE(int, maxDifference, 8, "pixels",
 HDP_TUNABLE(float, halvingDifference, 0.25f, "pixels", "a mean difference by which the confidence is halved");
 
 // Pixels
-const int stripeColumns = 64; // whose distances a thread finds together: fewer share cache lines
-const int distanceBlock = 32; // of a row, whose distances are found together
+const int stripeColumns = 64; // of a task: narrower ones would write to the same lines of the cache
+const int distanceBlock = 32; // of a row, whose distances are found at once
 
 //! Distances to the nearest pixel at a step in the same column, at most farFromSteps, CV_8UC1
 Mat distancesInColumns(const Mat& disparity)
 {
     Mat bordered, distances(disparity.size(), CV_8U);
     copyMakeBorder(disparity, bordered, 1, 1, 1, 1, BORDER_REPLICATE);
-    const ushort noStep = (ushort)maxStep;
+    const ushort ofSurface = (ushort)maxStep;
     const uchar far = (uchar)farFromSteps;
     parallel_for_(Range(0, (disparity.cols + stripeColumns - 1) / stripeColumns), [&](const Range& stripes) {
         const int begin = stripes.start * stripeColumns, end = std::min(stripes.end * stripeColumns, disparity.cols);
-        const std::vector<uchar> none(disparity.cols, far);
+        const std::vector<uchar> farRow(disparity.cols, far);
         for (int y = 0; y < disparity.rows; ++y)
         {
             const ushort *const upper = bordered.ptr<ushort>(y), *const own = bordered.ptr<ushort>(y + 1),
                                 *const lower = bordered.ptr<ushort>(y + 2);
-            const uchar* const above = y > 0 ? distances.ptr(y - 1) : none.data();
+            const uchar* const above = y > 0 ? distances.ptr(y - 1) : farRow.data();
             uchar* const row = distances.ptr(y);
             HDP_VECTORIZED for (int x = begin; x < end; ++x)
             {
                 const ushort d = own[x + 1], inRow = std::max(difference(d, own[x]), difference(d, own[x + 2])),
                              inColumn = std::max(difference(d, upper[x + 1]), difference(d, lower[x + 1]));
                 const ushort farther = std::min((ushort)(above[x] + 1), (ushort)far);
-                row[x] = (uchar)(std::max(inRow, inColumn) > noStep ? 0 : farther);
+                row[x] = (uchar)(std::max(inRow, inColumn) > ofSurface ? 0 : farther);
             }
         }
         for (int y = disparity.rows - 2; y >= 0; --y)

@@ -56,7 +56,8 @@ CV_EXPORTS void outputDisparity(const Mat& finest, const OutputPlan& plan, Outpu
 //! size
 CV_EXPORTS Mat movedIntoRanges(const Mat& finest, const OutputPlan& plan, Size size, const PixelRanges& ranges);
 
-/** Why the pixels of a layer have their disparities, see HDPTreeMatcher::Reason: MATCHED, OCCLUDED or OUTSIDE, CV_8UC1.
+/** Whether the right image shows the pixels of a layer: REASON_MATCHED, REASON_OCCLUDED or REASON_OUTSIDE, see
+HDPTreeMatcher::Reason, CV_8UC1.
 @param disparity,limits Of the layer: pixels without data hide none.
 @param plan Where the layer lies in the image.
 @param width Of the image. */

@@ -17,7 +17,7 @@ HDP_TUNABLE(int, minShare, 30, "percent of the window",
 HDP_TUNABLE(int, minDistance, 5, "pixels",
             "in front of what the median left: nearer ones are rather noise of a surface");
 HDP_TUNABLE(int, maxDifference, 1, "pixels", "inside the structure: 0 fails by rounding, more joins noise");
-HDP_TUNABLE(int, columns, 64, "pixels", "that are looked at together: hardly a group has any");
+HDP_TUNABLE(int, groupColumns, 64, "pixels", "that are tested at once: most groups have none, and are left out");
 
 //! Whether enough pixels around this one have its disparity
 bool isInStructure(const Mat& disparity, int y, int x)
@@ -44,9 +44,9 @@ void restoreThinStructures(const Mat& unfiltered, Mat& disparity)
     parallelForRows(disparity.size(), [&](int y) {
         const ushort* before = unfiltered.ptr<ushort>(y);
         ushort* row = disparity.ptr<ushort>(y);
-        for (int begin = 0; begin < disparity.cols; begin += columns)
+        for (int begin = 0; begin < disparity.cols; begin += groupColumns)
         {
-            const int end = std::min(begin + columns, disparity.cols);
+            const int end = std::min(begin + groupColumns, disparity.cols);
             ushort isAnyNearer = 0;
             HDP_VECTORIZED for (int x = begin; x < end; ++x) isAnyNearer |=
                 (ushort)((ushort)(std::max(before[x], row[x]) - row[x]) >= minRise);

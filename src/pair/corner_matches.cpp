@@ -43,13 +43,14 @@ HDP_DISPATCH(correlate)
 HDP_DISPATCH(cutWindow)
 HDP_DISPATCH(trackingSums)
 
-//! Whether all windows that are matched around pixels have data: CV_8UC1, 255 where, else 0; empty for an empty mask
+//! 255 where the windows around a pixel, and the pixels beside them that gradients need, have data, else 0: CV_8UC1,
+//! empty for an empty mask
 Mat windowsWithData(const Mat& mask)
 {
     if (mask.empty())
         return Mat();
     Mat has = pixelsWithData(mask);
-    const int width = CornerMatching::trackWidth + 1, height = CornerMatching::trackHeight + 2;
+    const int width = CornerMatching::trackWidth + 3, height = CornerMatching::trackHeight + 2; // odd, both
     erode(has, has, Mat::ones(height, width, CV_8U), Point(-1, -1), 1, BORDER_REPLICATE);
     return has;
 }
@@ -60,11 +61,12 @@ void findCorners(const Mat& image, const Mat& has, int spacing, SearchWindows& w
 {
     const int margin = CornerMatching::searchSide / 2 + CornerMatching::searchRadius;
     const Rect inside(margin, margin, image.cols - 2 * margin, image.rows - 2 * margin);
-    const int cell = std::max(cvCeil(std::sqrt((double)inside.area() / maxCorners)), spacing);
+    const int usual = std::max(cvCeil(std::sqrt((double)inside.area() / maxCorners)), spacing);
+    const int cell = std::min(usual, std::min(inside.width, inside.height)); // a strip has one row of cells
     const Size grid(inside.width / cell, inside.height / cell);
     const int radius = CornerMatching::tensorSide / 2, width = inside.width;
     windows.tensors.create(inside.height, 3 * width, CV_32S);
-    parallelFor(inside.height, std::vector<int>(3 * image.cols), [&](int y, std::vector<int>& columns) {
+    parallelFor(grid.height * cell, std::vector<int>(3 * image.cols), [&](int y, std::vector<int>& columns) {
         if (y % cell % cornerStep == 0)
             dispatched::structureTensors(image.ptr<ushort>(inside.y + y - radius) + inside.x - radius, image.step1(),
                                          width, columns.data(), windows.tensors.ptr<int>(y));
@@ -85,6 +87,7 @@ void findCorners(const Mat& image, const Mat& has, int spacing, SearchWindows& w
     }
 }
 
+//! Sums and scales of all search windows of an image
 void measureWindows(const Mat& image, SearchWindows& windows)
 {
     const int reach = CornerMatching::searchSide - 1, width = image.cols - reach, height = image.rows - reach;
@@ -96,7 +99,7 @@ void measureWindows(const Mat& image, SearchWindows& windows)
     });
 }
 
-//! Whether no candidate that is not beside the best one is nearly as good
+//! Whether all candidates are clearly worse than the best one, but for those beside it
 bool isUnique(const std::vector<float>& values, int columns, int best)
 {
     const double rival = 1 - (1 - values[best]) * (1 + rivalCorrelation) - rivalDistance;
@@ -107,8 +110,12 @@ bool isUnique(const std::vector<float>& values, int columns, int best)
     return true;
 }
 
-//! rows: offset of the rows that are searched; correlations: memory for those of a corner, by rows, then by columns
-void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, const Range& disparities, int rows,
+/** Matches a corner by the highest correlation in the columns of the disparities and in the rows around its own, moved
+by rowOffset. There is no match if the window is bare, if the correlation is low, if another place is nearly as good, or
+if these rows are beyond the image.
+@param disparities At least SearchArea::minColumns from the first one on are searched.
+@param correlations Memory for those of a corner, by rows, then by columns. */
+void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, const Range& disparities, int rowOffset,
                std::vector<float>& correlations, CornerMatch& match)
 {
     match.isValid = false;
@@ -116,11 +123,11 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     const Point first = match.left - Point(side / 2, side / 2);
     const int minColumns = SearchArea::minColumns, width = windows.sums.cols;
     const int end = std::min(first.x + 1 - disparities.start, width);
-    const int most = std::max(disparities.end, disparities.start + minColumns);
-    const int x0 = clamped(first.x + 1 - most, 0, width - minColumns), count = end - x0;
-    if (count <= 0)
+    const int endDisparity = std::max(disparities.end, disparities.start + minColumns);
+    const int x0 = clamped(first.x + 1 - endDisparity, 0, width - minColumns), count = end - x0;
+    const int y0 = first.y + rowOffset - CornerMatching::searchRadius;
+    if (count <= 0 || y0 < 0 || y0 + areaRows > windows.sums.rows)
         return;
-    const int y0 = clamped(first.y + rows - CornerMatching::searchRadius, 0, windows.sums.rows - areaRows);
     const int columns = std::max(count, minColumns);
     const ushort* const window = left.ptr<ushort>(first.y) + first.x;
     int memory[2 * CornerMatching::searchSide], sum;
@@ -136,7 +143,7 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
                               columns };
     correlations.resize(areaRows * columns);
     dispatched::correlate(window, left.step1(), sum, scale, area, correlations.data());
-    for (int row = columns; row <= areaRows * columns; row += columns) // disparities before the first one
+    for (int row = columns; row <= areaRows * columns; row += columns) // columns of disparities before the first one
         std::fill(correlations.begin() + row - (columns - count), correlations.begin() + row, -1.f);
     const int best = (int)(std::max_element(correlations.begin(), correlations.end()) - correlations.begin());
     if (correlations[best] < minCorrelation || !isUnique(correlations, columns, best))
@@ -146,6 +153,8 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     match.isValid = true;
 }
 
+//! The method of Lucas and Kanade: moves a window of the right image until it fits the left one, both of equal mean and
+//! variance. Invalid if bare, lost, beyond the image, or unlike
 void track(const Mat& left, const Mat& right, CornerMatch& match)
 {
     match.isValid = false;
@@ -184,7 +193,8 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
         if (rightVariance <= 0)
             return;
         const double gain = std::sqrt(variance / rightVariance);
-        // Rounding may make it less than 0.
+        // The mean of (L - gain * R)^2, both without their means: 2 (variance - covariance), as their variances are
+        // equal then. Rounding may make it less than 0.
         residual = std::max(2 * (variance - gain * ((double)other.lr * n - sum * other.r)) / ((double)n * n), 0.);
         if (iteration == iterations)
             break;
@@ -205,14 +215,14 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
     match.isValid = true;
 }
 
-//! Matches corners that have been found. mask, windows: of the right image
-void matchCorners(const Mat& left, const Mat& right, const Mat& mask, const Range& disparities, int rows,
+//! Finds the match of each corner. mask, windows: of the right image; rowOffset: see findMatch()
+void matchCorners(const Mat& left, const Mat& right, const Mat& mask, const Range& disparities, int rowOffset,
                   const SearchWindows& windows, std::vector<CornerMatch>& matches)
 {
     const Mat rightHas = windowsWithData(mask);
     parallelFor((int)matches.size(), std::vector<float>(), [&](int i, std::vector<float>& correlations) {
         CornerMatch& match = matches[i];
-        findMatch(left, right, windows, disparities, rows, correlations, match);
+        findMatch(left, right, windows, disparities, rowOffset, correlations, match);
         if (match.isValid && !rightHas.empty())
             match.isValid = rightHas.ptr((int)match.y)[(int)match.x] != 0;
     });
@@ -234,20 +244,21 @@ void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows
     for (const CornerMatch& match : matches)
         if (match.isValid)
             offsets.push_back(match.y - match.left.y);
-    const int rows = offsets.empty() ? 0 : cvRound(medianOf(offsets));
+    const int rowOffset = offsets.empty() ? 0 : cvRound(medianOf(offsets));
     measureWindows(left, windows);
-    const int margin = CornerMatching::searchSide / 2, rowMargin = margin + CornerMatching::searchRadius;
-    const Rect inside(margin, rowMargin, right.cols - 2 * margin, right.rows - 2 * rowMargin);
+    const int margin = CornerMatching::searchSide / 2;
+    const Rect inside(margin, margin, right.cols - 2 * margin, right.rows - 2 * margin);
     const Range all(-left.cols, left.cols);
     parallelFor((int)matches.size(), std::vector<float>(), [&](int i, std::vector<float>& correlations) {
-        CornerMatch &match = matches[i], back;
+        CornerMatch& match = matches[i];
+        CornerMatch back;
         if (!match.isValid)
             return;
         back.left = Point(cvRound(match.x), cvRound(match.y));
         match.isValid = inside.contains(back.left);
         if (!match.isValid)
             return;
-        findMatch(right, left, windows, all, -rows, correlations, back);
+        findMatch(right, left, windows, all, -rowOffset, correlations, back);
         match.isValid = back.isValid && std::abs(back.x - match.left.x) <= 1 && std::abs(back.y - match.left.y) <= 1;
     });
 }
@@ -263,7 +274,8 @@ void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMat
 namespace {
 
 //! Finds and tracks matches where rows may be off by more than findCornerMatches() sees: if there are too few for a
-//! model, those of rows farther away are believed if they are far more.
+//! model, rows farther away are tried, below and above by turns. Their matches take the place of these if they are far
+//! more.
 void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities, int spacing,
                        int maxRowOffset, SearchWindows& windows, std::vector<CornerMatch>& matches)
 {
@@ -273,7 +285,7 @@ void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks
     };
     findCornerMatches(left, right, masks, disparities, spacing, windows, matches);
     trackCornerMatches(left, right, matches);
-    if (count(matches) >= moreMatches * CornerMatching::minMatches) // half as many match by chance
+    if (count(matches) >= moreMatches * CornerMatching::minMatches) // fewer may be by chance
         return;
     const int step = SearchArea::rows, farthest = std::min(maxRowOffset, left.rows / 8) + CornerMatching::searchRadius;
     std::vector<CornerMatch> others = matches; // of the same corners
@@ -292,10 +304,10 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
                    const Range& disparities, int maxRowOffset, int finer, CoarseMatches& coarse)
 {
     const Size size = left[0].size();
-    int usual = 0;
-    while ((size.width >> usual) * (size.height >> usual) > maxCoarseArea)
-        ++usual;
-    const int layer = std::max(usual - finer, 0);
+    int usualLayer = 0;
+    while ((size.width >> usualLayer) * (size.height >> usualLayer) > maxCoarseArea)
+        ++usualLayer;
+    const int layer = std::max(usualLayer - finer, 0);
     coarse.layer = layer;
     coarse.matches.clear();
     buildPyramid(left, layer + 1, coarse.left);
@@ -305,7 +317,8 @@ void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, 
         return;
     const Range ofLayer(disparities.start >> layer, layerDisparities(disparities.end, layer, true));
     const PairMasks coarseMasks = { dataOfLayer(masks.left, layer), dataOfLayer(masks.right, layer) };
-    findMatchesOfRows(coarseLeft, coarseRight, coarseMasks, ofLayer, std::max(minSpacing >> std::max(usual, finer), 1),
+    const int halvings = std::max(usualLayer, finer); // small images have no finer layers: corners are nearer instead
+    findMatchesOfRows(coarseLeft, coarseRight, coarseMasks, ofLayer, std::max(minSpacing >> halvings, 1),
                       maxRowOffset >> layer, coarse.windows, coarse.matches);
 }
 

@@ -41,7 +41,7 @@ struct SearchWindows
     Mat tensors;      // memory of the search for corners
 };
 
-//! Some of them
+//! The part of a right image that a window is compared with
 struct SearchArea
 {
     const ushort* pixels;
@@ -78,7 +78,8 @@ struct RightSums
 CV_EXPORTS void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities,
                                   int spacing, SearchWindows& windows, std::vector<CornerMatch>& matches);
 
-//! Makes those of findCornerMatches(), tracked or not, invalid that are others from right to left, over all columns.
+//! Makes matches of findCornerMatches(), tracked or not, invalid that a search from the right image back to the left
+//! one, over all columns, does not confirm to within a pixel.
 CV_EXPORTS void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows,
                                   std::vector<CornerMatch>& matches);
 

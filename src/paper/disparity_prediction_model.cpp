@@ -101,6 +101,8 @@ public:
 
     void read(const FileNode& fn) CV_OVERRIDE
     {
+        if (!fn.isMap())
+            CV_Error(Error::StsParseError, "a model must be a map");
         const FileNode name = fn["name"], version = fn["version"], layers = fn["layers"];
         if (!name.isString() || (String)name != getDefaultName())
             CV_Error(Error::StsParseError, "name must be " + getDefaultName());
@@ -108,13 +110,14 @@ public:
             CV_Error(Error::StsParseError, format("version must be %d", fileVersion));
         if (!layers.isSeq())
             CV_Error(Error::StsParseError, "layers must be a sequence of mixtures");
-        // A file that ends between two layers is well-formed.
+        // A file that was cut off between two layers can be read: their number reveals it.
         if (!fn["layerCount"].isInt() || (int)fn["layerCount"] != (int)layers.size())
             CV_Error(Error::StsParseError, "layerCount must be the number of layers");
-        std::vector<GaussianMixture> read;
+        std::vector<GaussianMixture> mixtures;
         for (const FileNode layer : layers)
-            append({ readNumbers(layer, "means"), readNumbers(layer, "sigmas"), readNumbers(layer, "weights") }, read);
-        layers_.swap(read);
+            append({ readNumbers(layer, "means"), readNumbers(layer, "sigmas"), readNumbers(layer, "weights") },
+                   mixtures);
+        layers_.swap(mixtures);
     }
 
 private:

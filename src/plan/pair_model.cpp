@@ -117,7 +117,7 @@ PairModel::PairModel()
       isLightChanged(false), rowError(0), noise(0), noiseLayer(0), black(0), white(0), bits(8), brightness(1),
       isGrey(false), leftBlockStart(0), leftBlockStep(0), rightBlockStart(0), rightBlockStep(0)
 {
-    light[0] = 1;
+    light[LightModel::gain] = 1; // changes nothing
 }
 
 PairModel PairModel::tile(int firstColumn, int firstRow, int columns, int rowCount) const
@@ -164,6 +164,8 @@ void PairModel::write(FileStorage& fs) const { visitFields(*this, Writer{ fs });
 
 void PairModel::read(const FileNode& fn)
 {
+    if (!fn.isMap())
+        CV_Error(Error::StsParseError, "PairModel: it must be a map");
     PairModel model;
     visitFields(model, Reader{ fn });
     checkPairModel(model);
@@ -188,7 +190,7 @@ PairModel PairModel::load(const String& filename)
         const FileStorage fs(filename, FileStorage::READ);
         if (!fs.isOpened())
             CV_Error(Error::StsObjectNotFound, "cannot read it");
-        if (!fs["pairModel"].isMap())
+        if (!fs.root().isMap() || !fs["pairModel"].isMap())
             CV_Error(Error::StsParseError, "pairModel is missing");
         model.read(fs["pairModel"]);
     }

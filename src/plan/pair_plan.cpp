@@ -204,10 +204,16 @@ VolumePenalties planVolume(const MatcherParameters& p, const LayerPlan& layer)
 
 RangePenalties planRange(const MatcherParameters& p)
 {
-    const auto penalty = [](double bits) { return std::min(cvRound(2 * bits), +RangePenalties::largest); };
-    const double p1 = rangeP1 * p.P1; // of a pixel, and so of any surface that is another one
-    return { penalty(p1 / 2),     penalty(rangeP2 * p.P2), penalty(p1),
-             p.gamma * edgeGamma, rangePriorDistance,      rangeMaxPrior };
+    const auto halfBits = [](double bits) { return std::min(cvRound(2 * bits), +RangePenalties::largest); };
+    const double ofPixel = rangeP1 * p.P1; // for a step of a pixel
+    RangePenalties penalties;
+    penalties.small = halfBits(ofPixel / 2); // candidates are half a pixel apart
+    penalties.large = halfBits(rangeP2 * p.P2);
+    penalties.leastLarge = halfBits(ofPixel); // another surface is nowhere cheaper than that step
+    penalties.gamma = p.gamma * edgeGamma;
+    penalties.priorDistance = rangePriorDistance;
+    penalties.maxPrior = rangeMaxPrior;
+    return penalties;
 }
 
 //! A pass before another one would gain nothing on coarser layers.

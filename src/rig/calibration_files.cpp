@@ -263,7 +263,8 @@ Camera readZedCamera(const CalibrationText& text, const std::string& side, const
     return camera;
 }
 
-//! As the vendor's open drivers give them to cv::stereoRectify, which knows the sign of the translation by itself
+//! The vendor's open drivers give cv::stereoRectify a positive baseline, of which it takes either sign.
+//! StereoCalibration has the translation from left to right coordinates, which is negative, in metres.
 StereoCalibration readZed(const CalibrationText& text, Size imageSize)
 {
     if (imageSize.empty())
@@ -274,11 +275,11 @@ StereoCalibration readZed(const CalibrationText& text, Size imageSize)
         const std::string ofMode = "STEREO/" + name + "_" + mode.name;
         return text.number(text.has(ofMode) || !text.has("STEREO/" + name) ? ofMode : "STEREO/" + name);
     };
-    const Vec3d rotation(stereo("RX"), stereo("CV"), stereo("RZ"));
-    const Vec3d position(text.number("STEREO/BASELINE"), stereo("TY"), stereo("TZ"));
+    const Vec3d rotation(stereo("RX"), stereo("CV"), stereo("RZ")); // CV: convergence, about y
+    const Vec3d millimetres(text.number("STEREO/BASELINE"), stereo("TY"), stereo("TZ"));
     Matx33d R;
     Rodrigues(rotation, R);
-    return join(text, left, right, R, -1e-3 * position, nameOf(text, "STEREO/RX, CV, RZ"),
+    return join(text, left, right, R, -1e-3 * millimetres, nameOf(text, "STEREO/RX, CV, RZ"),
                 nameOf(text, "STEREO/BASELINE, TY, TZ"));
 }
 

@@ -111,7 +111,7 @@ public:
                           OutputArray Q) const CV_OVERRIDE
     {
         const double f = focalLength_, B = baseline_;
-        const Point2d c = center_;
+        const Point2d c = principalPoint_;
         Mat(R_[0]).copyTo(R1);
         Mat(R_[1]).copyTo(R2);
         Mat(Matx34d(f, 0, c.x, 0, 0, f, c.y, 0, 0, 0, 1, 0)).copyTo(P1);
@@ -138,21 +138,22 @@ private:
     {
         const StereoCalibration& c = calibration_;
         Mat R1, R2, P1, P2, Q;
-        // Rotations depend on no distortion; the focal length by which all pixels are filled does.
-        const Mat straight = Mat::zeros(1, 4, CV_64F);
-        const bool fills = fieldOfView == 0 && !c.isFisheye;
-        stereoRectify(c.cameraMatrix1, fills ? c.distCoeffs1 : straight, c.cameraMatrix2,
-                      fills ? c.distCoeffs2 : straight, c.imageSize, c.R, c.T, R1, R2, P1, P2, Q, zeroDisparity,
-                      fills ? 0 : -1, size_);
+        // The rotations do not depend on the distortion. The focal length does, if all rectified pixels are to be
+        // filled.
+        const Mat noDistortion = Mat::zeros(1, 4, CV_64F);
+        const bool fillsImages = fieldOfView == 0 && !c.isFisheye;
+        stereoRectify(c.cameraMatrix1, fillsImages ? c.distCoeffs1 : noDistortion, c.cameraMatrix2,
+                      fillsImages ? c.distCoeffs2 : noDistortion, c.imageSize, c.R, c.T, R1, R2, P1, P2, Q,
+                      zeroDisparity, fillsImages ? 0 : -1, size_);
         if (P2.at<double>(0, 3) == 0)
             CV_Error(Error::StsBadArg, "calibration: R and T must be of cameras side by side, not one above the other");
         R_[0] = R1;
         R_[1] = R2;
-        center_ = Point2d(0.5 * (size_.width - 1), 0.5 * (size_.height - 1));
-        if (fills)
+        principalPoint_ = Point2d(0.5 * (size_.width - 1), 0.5 * (size_.height - 1));
+        if (fillsImages)
         {
             focalLength_ = P1.at<double>(0, 0);
-            center_ = Point2d(P1.at<double>(0, 2), P1.at<double>(1, 2));
+            principalPoint_ = Point2d(P1.at<double>(0, 2), P1.at<double>(1, 2));
         }
         else if (fieldOfView > 0)
             focalLength_ = 0.5 * size_.width / std::tan(0.5 * fieldOfView * CV_PI / 180);
@@ -160,13 +161,15 @@ private:
             focalLength_ = 0.5 * (c.cameraMatrix1.at<double>(0, 0) + c.cameraMatrix2.at<double>(0, 0)) * size_.width /
                            c.imageSize.width;
         const double most = 1e6;
-        if (!(focalLength_ > 1 && focalLength_ < most && std::abs(center_.x) < most && std::abs(center_.y) < most))
+        if (!(focalLength_ > 1 && focalLength_ < most && std::abs(principalPoint_.x) < most &&
+              std::abs(principalPoint_.y) < most))
             CV_Error(Error::StsBadArg,
-                     fills ? "fieldOfView must be given: with this distortion nothing else tells the size of what both "
-                             "cameras see. Is the calibration right?"
-                           : format("size must be larger, or fieldOfView smaller: the focal length would be %g pixels, "
-                                    "which must be between 1 and 10^6",
-                                    focalLength_));
+                     fillsImages
+                         ? "fieldOfView must be given: with this distortion nothing else tells the size of what both "
+                           "cameras see. Is the calibration right?"
+                         : format("size must be larger, or fieldOfView smaller: the focal length would be %g pixels, "
+                                  "which must be between 1 and 10^6",
+                                  focalLength_));
     }
 
     //! Where the pixels of a rectified image are in the raw one
@@ -174,7 +177,7 @@ private:
     {
         const StereoCalibration& c = calibration_;
         const Mat &K = camera ? c.cameraMatrix2 : c.cameraMatrix1, &D = camera ? c.distCoeffs2 : c.distCoeffs1;
-        const Matx33d rectified(focalLength_, 0, center_.x, 0, focalLength_, center_.y, 0, 0, 1);
+        const Matx33d rectified(focalLength_, 0, principalPoint_.x, 0, focalLength_, principalPoint_.y, 0, 0, 1);
         Mat x, y;
         if (c.isFisheye)
             fisheye::initUndistortRectifyMap(K, D, R_[camera], rectified, size_, CV_32FC1, x, y);
@@ -218,7 +221,7 @@ private:
     const double baseline_; // metres
     Matx33d R_[2];
     double focalLength_;
-    Point2d center_;                  // principal point
+    Point2d principalPoint_;
     Mat positions_[2], fractions_[2]; // for cv::remap: CV_16SC2, CV_16UC1
     Mat masks_[2];                    // CV_8UC1: 255 where there is a raw pixel
 };

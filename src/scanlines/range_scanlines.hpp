@@ -11,7 +11,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! Of aggregateRange(), in halves of a bit of the census
+//! In halves of a bit of the census
 struct RangePenalties
 {
     static const int largest = 190; // penalty: all costs of a direction are bytes

@@ -108,25 +108,26 @@ void weigh(const Matx44d& forward, const std::vector<TrackedPoint>& points, doub
         weights[i] = 1 / (1 + squaredError(forward, points[i]) / (scale * scale));
 }
 
-//! The motion that most points agree with, of those that a few of them have: outliers have no say. Returns the points'
-//! weights.
-std::vector<double> guessMotion(const std::vector<TrackedPoint>& points, double scale)
+//! RANSAC: of no motion, and of those that random samples of a few points have, takes the one that most points agree
+//! with. Returns the weights of all points for it.
+std::vector<double> weightsOfBestGuess(const std::vector<TrackedPoint>& points, double scale)
 {
-    RNG rng(points.size());
+    RNG rng(points.size()); // the same points give the same motion
     std::vector<double> best, weights;
     const std::vector<double> equal(guessPoints, 1.);
     std::vector<TrackedPoint> sample(guessPoints);
-    double highest = -1;
-    for (int i = 0; i < guesses && highest < goodGuess * points.size(); ++i)
+    double bestAgreement = -1;
+    for (int i = 0; i < guesses && bestAgreement < goodGuess * points.size(); ++i)
     {
         for (TrackedPoint& point : sample)
             point = points[rng.uniform(0, (int)points.size())];
         weigh(i == 0 ? Matx44d::eye() : matrixOf(solve(sample, equal)), points, scale, weights);
-        const double sum = std::accumulate(weights.begin(), weights.end(), 0.);
-        if (!(sum > highest))
-            continue;
-        highest = sum;
-        swap(best, weights);
+        const double agreement = std::accumulate(weights.begin(), weights.end(), 0.);
+        if (agreement > bestAgreement)
+        {
+            bestAgreement = agreement;
+            swap(best, weights);
+        }
     }
     return best;
 }
@@ -164,7 +165,7 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, doubl
         point.disparity /= disparityUnit;
     }
 
-    std::vector<double> weights = guessMotion(normed, tolerance / unit);
+    std::vector<double> weights = weightsOfBestGuess(normed, tolerance / unit);
     Matx44d forward = Matx44d::eye();
     for (; tolerance > minTolerance; tolerance *= toleranceFall)
     {

@@ -55,7 +55,7 @@ const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const std::vect
     return exposed;
 }
 
-//! Whether what is tracked at a pixel shows two surfaces, which move apart: outlines have much texture.
+//! Whether the square around a tracked pixel shows two surfaces. Outlines have texture, but no motion of their own.
 bool isAtStep(const FrameMemory& last, Point pixel)
 {
     const int maxStep = maxSourceDistance * subpixelScale / last.key.scale, r = trackedReach;
@@ -67,7 +67,8 @@ bool isAtStep(const FrameMemory& last, Point pixel)
     return false;
 }
 
-//! From the last frame to this one, in pixels of the layer. The camera probably moves on as it did.
+//! From the last frame to this one, in pixels of the layer. Points are looked for where the last motion leads, or, if
+//! that fails, around where they were; and once more where this motion leads, as some were not found.
 CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, std::vector<TrackedPoint>& points)
 {
     const std::vector<Mat>& before = last.grey;
@@ -93,7 +94,8 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
     return scaled(fitMotion(points, size, maxError), cell);
 }
 
-//! Whether this frame shows another scene: on the coarsest level, about as much changed as there is contrast.
+//! Whether this frame shows another scene: on the coarsest level, what was in the last frame changed by more than a
+//! share of the contrast.
 bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const FrameWarp* warp)
 {
     const int level = (int)greyNow.size() - 1, side = cell << level;
@@ -110,7 +112,8 @@ bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const Frame
                 if (!warp->isKnown(centre.x, centre.y))
                     continue;
                 at = (*warp)(centre.x, centre.y) / side;
-                at = Point(std::min(at.x, before.cols - 1), std::min(at.y, before.rows - 1));
+                at = Point(std::min(at.x, before.cols - 1),
+                           std::min(at.y, before.rows - 1)); // an odd last one is cut off
             }
             change += std::abs(now.ptr(y)[x] - before.ptr(at.y)[at.x]);
             contrast += std::abs(now.ptr(y)[x] - mean);
@@ -118,7 +121,7 @@ bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const Frame
     return 100 * change > cutShare * contrast;
 }
 
-//! The median of CV_8UC1
+//! The median of a CV_8UC1 image
 int medianLevel(const Mat& image)
 {
     int counts[256] = { 0 };
@@ -141,7 +144,8 @@ void findContrast(const Mat& image, VideoScratch& scratch)
     sums.convertTo(scratch.contrast, CV_8U, 1. / contrastCells, -0.48); // rounded down
 }
 
-//! The last frame as this one would show it if nothing moved but the camera: half a cell is the mean of two.
+//! The last frame as this one would show it if nothing moved but the camera: a place between cells has the mean of
+//! those that it touches. What was not in the last frame is taken from the same place.
 void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
 {
     static_assert(cell == 2, "Pixels are half cells.");
@@ -151,7 +155,9 @@ void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
     warped.create(before.size(), CV_8U);
     parallelForRows(before.size(), [&](int y) {
         uchar* const row = warped.ptr(y);
-        warp.forEachBlock(cell * y, [=](int x, const Point& from, int count) {
+        const Vec2s* const shifts = warp.ofRow(cell * y);
+        warp.forEachBlock(cell * y, [=](int x, const Point& place, int count) {
+            const Point from = shifts[x / FrameWarp::block][0] != FrameWarp::unknown ? place : Point(x, cell * y);
             const int fromY = std::min(from.y, lastY);
             const uchar *above = levels + fromY / cell * step, *below = levels + (fromY + 1) / cell * step;
             for (int k = x % cell; k < count && x + k < lastX + cell; k += cell)

@@ -37,16 +37,16 @@ struct FramePrediction
 };
 
 /** Finds how the camera moved since the last frame, where everything was then, and what may be taken from there. A
-frame is the first one if nothing is remembered, at another size, with disparities of another key, and if it shows
-another scene.
+frame is the first one if nothing is remembered, if its size or key is another one, or if it shows another scene.
 @param left The left image of the finest layer that is matched, see greyLevels().
 @param key What this layer's disparities will stand for. */
 CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
                              FramePrediction& prediction);
 
-/** Finds what each cell may take from the last frame, a TemporalSource (CV_8UC1): what looks different where the motion
-leads, by more than noise and by about the contrast, is something else. Both are means over the squares around a cell.
-The same place, if the camera moved, has to look the same as well, and no more different than where the motion leads.
+/** Finds what each cell may take from the last frame, a TemporalSource (CV_8UC1). It may be taken from where the motion
+leads unless the cell differs from that by more than noise and by more than a share of the contrast: differences are
+means over 3 x 3 cells, contrasts over 5 x 5. The same place, if the camera moved, has to look the same as well, and to
+differ no more than where the motion leads.
 @param before,now FrameMemory::grey[0] of the last frame and of this one.
 @param warp Where its pixels were; none if the camera stands still: what looks the same is at the same place then. */
 CV_EXPORTS void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch,
