@@ -29,8 +29,8 @@ void ScanlineScratch::Windows::prepare(size_t pairs)
     small.resize(columns + 16); // some more to read
     for (int run = 0; run < CandidateWindow::runs; ++run)
     {
-        distance[run].resize(columns);
         first[run].assign(columns, 0); // of the margins' candidates, too, the addresses are valid
+        distance[run].resize(columns);
         firstOfColumn[run].resize(2 * pairs);
     }
     for (std::vector<uchar>* ofColumn : { &slopes, &large, &least })

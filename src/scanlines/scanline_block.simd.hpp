@@ -220,7 +220,8 @@ public:
     template <bool isUpward, bool sums> CV_ALWAYS_INLINE void follow(int t, Carried& h, uchar* stored) const
     {
         const ByteLanes small = smallPenalty(t);
-        const ByteLanes toSide[2] = { largePenalty < isUpward ? 2 : 0 > (t), largePenalty < isUpward ? 4 : 2 > (t) };
+        const int firstToSide = isUpward ? 2 : 0;
+        const ByteLanes toSide[2] = { largePenalty<firstToSide>(t), largePenalty<firstToSide + 2>(t) };
         const ByteLanes toNext[2] = { largePenalty<3>(t), largePenalty<5>(t) };
         if (sums)
             h.side = h.side.permute(ByteLanes::load(ScanlineWindows::ofStep(intoSide_, t)));

@@ -111,9 +111,8 @@ bool isCut(const FrameMemory& last, const std::vector<Mat>& greyNow, const Frame
                 const Point centre(x * side + side / 2, y * side + side / 2);
                 if (!warp->isKnown(centre.x, centre.y))
                     continue;
-                at = (*warp)(centre.x, centre.y) / side;
-                at = Point(std::min(at.x, before.cols - 1),
-                           std::min(at.y, before.rows - 1)); // an odd last one is cut off
+                at = (*warp)(centre.x, centre.y) / side; // beyond, if an odd last row or column was left out
+                at = Point(std::min(at.x, before.cols - 1), std::min(at.y, before.rows - 1));
             }
             change += std::abs(now.ptr(y)[x] - before.ptr(at.y)[at.x]);
             contrast += std::abs(now.ptr(y)[x] - mean);
@@ -141,7 +140,7 @@ void findContrast(const Mat& image, VideoScratch& scratch)
     image.convertTo(levels, CV_16U, contrastCells);
     sumOverWindows(image, contrastSide, CV_16U, sums);
     absdiff(levels, sums, sums);
-    sums.convertTo(scratch.contrast, CV_8U, 1. / contrastCells, -0.48); // rounded down
+    sums.convertTo(scratch.contrast, CV_8U, 1. / contrastCells, -0.48); // rounded down: 24 / 25 becomes 0
 }
 
 //! The last frame as this one would show it if nothing moved but the camera: a place between cells has the mean of
