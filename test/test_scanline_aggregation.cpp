@@ -181,9 +181,9 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
                 &layer.windows, &layer.smoothness, usualPenalties, blunt,          sharp
             };
             const hdp::ScanlineStripe stripe = { Range(0, size.height), Range(0, size.height) };
-            std::vector<uchar> stored((size.height + 1) * hdp::ScanlineScratch::storedBytes(size.width));
+            scratch.stored.create(size.height + 1, (int)hdp::ScanlineScratch::storedBytes(size.width), CV_8U);
             Mat disparity(size, CV_16UC1), residual(size, CV_8UC1);
-            hdp::opt_emulated::aggregateStripe(problem, stripe, scratch, stored.data(), disparity, residual);
+            hdp::opt_emulated::aggregateStripe(problem, stripe, scratch, disparity, residual);
             expectIdentical(aggregate(layer, usualPenalties, buffers), Layer::beside(disparity, residual));
         }
 }

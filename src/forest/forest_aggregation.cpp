@@ -110,7 +110,7 @@ struct CandidateGroups
     {
         if (count == 1)
             return take(0, own);
-        parallelFor(count, [&](int g) { take(g, buffers.getRef()); });
+        parallelFor(count, buffers, take);
     }
 };
 
@@ -220,7 +220,9 @@ template <typename Aggregation> void aggregateTrees(const Aggregation& aggregati
         const DisparityTree& tree = forest.trees[t];
         if (CandidateGroups(candidatesOf(tree), tree.size).count > 1)
         {
-            aggregation.process(tree, buffers.getRef(), buffers);
+            AggregationScratch own = buffers.take();
+            aggregation.process(tree, own, buffers);
+            buffers.giveBack(std::move(own));
             work = taskWork;
             continue;
         }
@@ -233,8 +235,7 @@ template <typename Aggregation> void aggregateTrees(const Aggregation& aggregati
         work += (int64)tree.size * tree.interval.size();
     }
 
-    parallelFor((int)tasks.size(), [&](int i) {
-        AggregationScratch& scratch = buffers.getRef();
+    parallelFor((int)tasks.size(), buffers, [&](int i, AggregationScratch& scratch) {
         for (int t = tasks[i].start; t < tasks[i].end; ++t)
             aggregation.process(forest.trees[t], scratch, buffers);
     });

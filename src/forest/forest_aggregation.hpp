@@ -4,8 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
 #define OPENCV_HDPSTEREO_FOREST_AGGREGATION_HPP
 
-#include "opencv2/core/utils/tls.hpp"
 #include "cost_volume.hpp"
+#include "../base/parallel_for.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -48,7 +48,7 @@ struct AggregationScratch
     std::vector<short> means;
 };
 
-typedef TLSData<AggregationScratch> AggregationBuffers;
+typedef ScratchPool<AggregationScratch> AggregationBuffers;
 
 //! What winners are taken of: the candidates of each tree, their costs, and the disparity that a winner stands for
 class AggregationProblem

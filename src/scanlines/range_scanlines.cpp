@@ -57,8 +57,7 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
     int rows = 0;
     for (const ScanlineStripe& stripe : stripes)
         rows = std::max(rows, stripe.rows.size());
-    parallelFor((int)stripes.size(), [&](int i) {
-        RangeScratch& scratch = buffers.getRef();
+    parallelFor((int)stripes.size(), buffers, [&](int i, RangeScratch& scratch) {
         scratch.prepare(problem, rows);
         dispatched::aggregateRangeStripe(problem, stripes[i], scratch, disparity);
     });

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_RANGE_SCANLINES_HPP
 #define OPENCV_HDPSTEREO_RANGE_SCANLINES_HPP
 
-#include "opencv2/core/utils/tls.hpp"
+#include "../base/parallel_for.hpp"
 #include "../base/units.hpp"
 #include "../cost/census_cost.hpp"
 #include "scanline_stripes.hpp"
@@ -77,7 +77,7 @@ private:
     std::vector<uchar> bytes;
 };
 
-typedef TLSData<RangeScratch> RangeBuffers;
+typedef ScratchPool<RangeScratch> RangeBuffers;
 
 /** Semi-global matching over all candidates of a layer, those of the layer below, twice as large: from the left, from
 the right, from above and from below. Costs are computed where they are needed, so there is no volume of them. They

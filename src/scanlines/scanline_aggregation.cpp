@@ -75,13 +75,12 @@ void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageF
     const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, stripeHeight);
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);
-    buffers.resize(stripes.size());
-    // What is stored is as large as a thread needs it, not as the image would.
-    parallelFor((int)stripes.size(), Mat(), [&](int i, Mat& stored) {
-        const int storedRows = std::max((stripes[i].rows.end - stripes[i].reach.start + 1) / 2 * 2,
-                                        ScanlineScratch::blocks * ScanlineScratch::maxRows);
-        stored.create(storedRows, (int)ScanlineScratch::storedBytes(size.width), CV_8U);
-        dispatched::aggregateStripe(problem, stripes[i], buffers[i], stored.data, disparity, residual);
+    int storedRows = ScanlineScratch::blocks * ScanlineScratch::maxRows;
+    for (const ScanlineStripe& stripe : stripes)
+        storedRows = std::max(storedRows, (stripe.rows.end - stripe.reach.start + 1) / 2 * 2);
+    parallelFor((int)stripes.size(), buffers, [&](int i, ScanlineScratch& scratch) {
+        scratch.stored.create(storedRows, (int)ScanlineScratch::storedBytes(size.width), CV_8U);
+        dispatched::aggregateStripe(problem, stripes[i], scratch, disparity, residual);
     });
 }
 

@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_SCANLINE_AGGREGATION_HPP
 
 #include "candidate_windows.hpp"
+#include "../base/parallel_for.hpp"
 #include "../cost/census_cost.hpp"
 #include "scanline_stripes.hpp"
 #include "smoothness_weights.hpp"
@@ -76,7 +77,7 @@ struct ScanlineScratch
         void prepare(size_t pairs);
     };
 
-    //! What a sweep stores of a row for the other one: costs and sums of the columns of all steps
+    //! Bytes of a row of stored
     static size_t storedBytes(int width)
     {
         return (((size_t)width + 1) / 2 + maxRows - 1) * 2 * 2 * CandidateWindow::candidates;
@@ -89,6 +90,7 @@ struct ScanlineScratch
         return alignPtr(vertical.data(), (int)alignment) + margin * CandidateWindow::candidates;
     }
 
+    Mat stored;                  // by the first sweep for the other one: costs and sums of the columns of all steps
     std::vector<uchar> vertical; // CandidateWindow::candidates per column
     Windows windows[blocks];
     Block ofBlocks[blocks];
@@ -97,7 +99,7 @@ struct ScanlineScratch
     std::vector<uchar> orders[CandidateWindow::runs];
 };
 
-typedef std::vector<ScanlineScratch> ScanlineBuffers; // of the stripes
+typedef ScratchPool<ScanlineScratch> ScanlineBuffers;
 
 /** Aggregation of the census cost along scanlines, over the candidates of windows alone: semi-global matching from the
 left and from below, in a sweep upward, and from the right and from above, in one downward. The cost of candidate d is

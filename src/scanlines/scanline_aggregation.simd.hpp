@@ -11,10 +11,10 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! A stripe of aggregateScanlines(). stored: memory, ScanlineScratch::storedBytes() for each row from the first one of
-//! its reach to its last own one, one more if their number is odd; for ScanlineScratch::blocks * maxRows at least
+//! A stripe of aggregateScanlines(). scratch: stored has a row for each from the first one of its reach to its last own
+//! one, one more if their number is odd; ScanlineScratch::blocks * maxRows at least
 void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
-                     uchar* stored, Mat& disparity, Mat& residual);
+                     Mat& disparity, Mat& residual);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -31,12 +31,10 @@ class Sweep
 public:
     typedef ScanlineBlock Block;
 
-    //! stored: see aggregateStripe()
-    Sweep(const ScanlineProblem& problem, const ScanlineStripe& stripe, bool isUpward, ScanlineScratch& scratch,
-          uchar* stored)
+    Sweep(const ScanlineProblem& problem, const ScanlineStripe& stripe, bool isUpward, ScanlineScratch& scratch)
         : p_(problem), rows_(stripe.rows), reach_(stripe.reach), steps_(Block::countSteps(problem.size.width)),
-          stored_(stored), tables_{ { problem, isUpward, scratch.orders, scratch.windows[0] },
-                                    { problem, isUpward, scratch.orders, scratch.windows[1] } },
+          stored_(scratch.stored.data), tables_{ { problem, isUpward, scratch.orders, scratch.windows[0] },
+                                                 { problem, isUpward, scratch.orders, scratch.windows[1] } },
           blocks_{ { problem, isUpward, scratch.verticalOfColumns(), scratch.ofBlocks[0] },
                    { problem, isUpward, scratch.verticalOfColumns(), scratch.ofBlocks[1] } },
           windows_(nullptr), upperRow_(-1), enteredTables_(0)
@@ -189,12 +187,12 @@ private:
 } // namespace
 
 void aggregateStripe(const ScanlineProblem& problem, const ScanlineStripe& stripe, ScanlineScratch& scratch,
-                     uchar* stored, Mat& disparity, Mat& residual)
+                     Mat& disparity, Mat& residual)
 {
     scratch.prepare(problem.size.width, problem.numDisparities);
-    Sweep(problem, stripe, true, scratch, stored).upward();
+    Sweep(problem, stripe, true, scratch).upward();
     scratch.prepare(problem.size.width, problem.numDisparities);
-    Sweep(problem, stripe, false, scratch, stored).downward(disparity, residual);
+    Sweep(problem, stripe, false, scratch).downward(disparity, residual);
 }
 
 #endif
