@@ -110,46 +110,67 @@ bool isUnique(const std::vector<float>& values, int columns, int best)
     return true;
 }
 
-/** Matches a corner by the highest correlation in the columns of the disparities and in the rows around its own, moved
-by rowOffset. There is no match if the window is bare, if the correlation is low, if another place is nearly as good, or
-if these rows are beyond the image.
-@param disparities At least SearchArea::minColumns from the first one on are searched.
-@param correlations Memory for those of a corner, by rows, then by columns. */
-void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, const Range& disparities, int rowOffset,
-               std::vector<float>& correlations, CornerMatch& match)
+/** The windows that a corner's is compared with: those of the disparities, and of the rows around its own, moved by
+rowOffset. Empty if these rows are beyond the image.
+@param first The first pixel of the corner's window, as windows are told by theirs.
+@param windows How many the right image has. */
+Rect searchedWindows(const Point& first, const Range& disparities, int rowOffset, const Size& windows)
 {
-    match.isValid = false;
-    const int side = CornerMatching::searchSide, pixels = side * side, areaRows = SearchArea::rows;
-    const Point first = match.left - Point(side / 2, side / 2);
-    const int minColumns = SearchArea::minColumns, width = windows.sums.cols;
-    const int end = std::min(first.x + 1 - disparities.start, width);
+    const int minColumns = SearchArea::minColumns;
     const int endDisparity = std::max(disparities.end, disparities.start + minColumns);
-    const int x0 = clamped(first.x + 1 - endDisparity, 0, width - minColumns), count = end - x0;
-    const int y0 = first.y + rowOffset - CornerMatching::searchRadius;
-    if (count <= 0 || y0 < 0 || y0 + areaRows > windows.sums.rows)
-        return;
-    const int columns = std::max(count, minColumns);
+    const int x = clamped(first.x + 1 - endDisparity, 0, windows.width - minColumns);
+    const int end = std::min(first.x + 1 - disparities.start, windows.width);
+    const Rect searched(x, first.y + rowOffset - CornerMatching::searchRadius, end - x, SearchArea::rows);
+    return (searched & Rect(Point(), windows)) == searched ? searched : Rect();
+}
+
+/** Correlates the window of a corner with those of the right image.
+@param correlations Receives them by rows, then by columns, of which there are at least SearchArea::minColumns; -1 in
+those that are not searched.
+@return The columns; 0 if the corner's window is bare. */
+int correlateWindow(const Mat& left, const Mat& right, const SearchWindows& windows, const Point& first,
+                    const Rect& searched, std::vector<float>& correlations)
+{
+    const int side = CornerMatching::searchSide, pixels = side * side;
     const ushort* const window = left.ptr<ushort>(first.y) + first.x;
     int memory[2 * CornerMatching::searchSide], sum;
     float scale;
     dispatched::windowSums(window, left.step1(), 1, memory, &sum, &scale);
     if (scale == 0 || scale * minContrast * pixels > 1)
-        return;
-    const SearchArea area = { right.ptr<ushort>(y0) + x0,
-                              windows.sums.ptr<int>(y0) + x0,
-                              windows.scales.ptr<float>(y0) + x0,
+        return 0;
+    const int columns = std::max(searched.width, +SearchArea::minColumns), count = searched.height * columns;
+    const SearchArea area = { right.ptr<ushort>(searched.y) + searched.x,
+                              windows.sums.ptr<int>(searched.y) + searched.x,
+                              windows.scales.ptr<float>(searched.y) + searched.x,
                               right.step1(),
                               windows.sums.step1(),
                               columns };
-    correlations.resize(areaRows * columns);
+    correlations.resize(count);
     dispatched::correlate(window, left.step1(), sum, scale, area, correlations.data());
-    for (int row = columns; row <= areaRows * columns; row += columns) // columns of disparities before the first one
-        std::fill(correlations.begin() + row - (columns - count), correlations.begin() + row, -1.f);
+    for (int row = columns; row <= count; row += columns)
+        std::fill(correlations.begin() + row - (columns - searched.width), correlations.begin() + row, -1.f);
+    return columns;
+}
+
+/** Matches a corner by the highest correlation of its window, see searchedWindows(). There is no match if the window is
+bare, if the correlation is low, if another place is nearly as good, or if nothing is searched.
+@param correlations Memory for those of a corner. */
+void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, const Range& disparities, int rowOffset,
+               std::vector<float>& correlations, CornerMatch& match)
+{
+    match.isValid = false;
+    const Point centre(CornerMatching::searchSide / 2, CornerMatching::searchSide / 2), first = match.left - centre;
+    const Rect searched = searchedWindows(first, disparities, rowOffset, windows.sums.size());
+    if (searched.empty())
+        return;
+    const int columns = correlateWindow(left, right, windows, first, searched, correlations);
+    if (columns == 0)
+        return;
     const int best = (int)(std::max_element(correlations.begin(), correlations.end()) - correlations.begin());
     if (correlations[best] < minCorrelation || !isUnique(correlations, columns, best))
         return;
-    match.x = x0 + best % columns + side / 2;
-    match.y = y0 + best / columns + side / 2;
+    match.x = searched.x + best % columns + centre.x;
+    match.y = searched.y + best / columns + centre.y;
     match.isValid = true;
 }
 

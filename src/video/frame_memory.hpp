@@ -76,8 +76,9 @@ struct VideoScratch
     std::vector<TrackedPoint> points;
     Mat halved;               // of predictFrame(): the left image
     std::vector<Mat> exposed; // the same: its pyramid, by the last frame's exposure
-    // Of findSources(), per cell
-    Mat warped, change, unmovedChange, contrast, difference, sums[4];
+    // Of findSources(), per cell, and over windows around it
+    Mat warped, change, unmovedChange, contrast, difference;
+    Mat changes, unmovedChanges, contrasts, differences;
     Mat sources, shares, evidence, evidenceSums, choices; // of joinLastFrame(), per cell
 };
 

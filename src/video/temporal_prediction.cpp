@@ -136,7 +136,7 @@ int medianLevel(const Mat& image)
 //! How far each cell is from the mean around it
 void findContrast(const Mat& image, VideoScratch& scratch)
 {
-    Mat &levels = scratch.sums[0], &sums = scratch.sums[1];
+    Mat &levels = scratch.changes, &sums = scratch.contrasts; // which findSources() fills later
     image.convertTo(levels, CV_16U, contrastCells);
     sumOverWindows(image, contrastSide, CV_16U, sums);
     absdiff(levels, sums, sums);
@@ -208,28 +208,28 @@ void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, Video
         warpGrey(before, *warp, scratch.warped);
     absdiff(now, warp ? scratch.warped : before, scratch.change);
     findContrast(now, scratch);
-    sumOverWindows(scratch.change, changeSide, CV_16U, scratch.sums[0]);
-    sumOverWindows(scratch.contrast, contrastSide, CV_16U, scratch.sums[1]);
+    sumOverWindows(scratch.change, changeSide, CV_16U, scratch.changes);
+    sumOverWindows(scratch.contrast, contrastSide, CV_16U, scratch.contrasts);
     if (warp)
     {
         subtract(now, before, scratch.difference, noArray(), CV_16S);
-        sumOverWindows(scratch.difference, changeSide, CV_16S, scratch.sums[2]);
+        sumOverWindows(scratch.difference, changeSide, CV_16S, scratch.differences);
         absdiff(now, before, scratch.unmovedChange);
-        sumOverWindows(scratch.unmovedChange, changeSide, CV_16U, scratch.sums[3]);
+        sumOverWindows(scratch.unmovedChange, changeSide, CV_16U, scratch.unmovedChanges);
     }
     const int noise = changeCells * (minNoise + noiseFactor * medianLevel(scratch.change));
     const int maxChange = (int)(changeCells * stillness), share = contrastShare * changeCells;
     sources.create(now.size(), CV_8U);
     parallelForRows(now.size(), [&](int y) {
-        const ushort *changes = scratch.sums[0].ptr<ushort>(y), *contrasts = scratch.sums[1].ptr<ushort>(y);
+        const ushort *changes = scratch.changes.ptr<ushort>(y), *contrasts = scratch.contrasts.ptr<ushort>(y);
         const int cells = now.cols, maxNoise = noise; // local, as stores may alias all else
         uchar* const ofRow = sources.ptr(y);
         HDP_VECTORIZED for (int x = 0; x < cells; ++x) ofRow[x] =
             (changes[x] <= maxNoise) | (100 * contrastCells * changes[x] <= share * contrasts[x]);
         if (!warp)
             return; // 1 is SAME_PLACE
-        const short* differences = scratch.sums[2].ptr<short>(y);
-        const ushort* unmovedChanges = scratch.sums[3].ptr<ushort>(y);
+        const short* differences = scratch.differences.ptr<short>(y);
+        const ushort* unmovedChanges = scratch.unmovedChanges.ptr<ushort>(y);
         HDP_VECTORIZED for (int x = 0; x < cells; ++x)
         {
             const int isSame = (std::abs(differences[x]) <= maxChange) & (unmovedChanges[x] <= changes[x]);
