@@ -56,22 +56,14 @@ public:
         if (!pairPlan.followsVideo)
             rangeSearch_.forgetFrames();
 
-        const bool mayMiss = inputs_.hasMasks() || left.depth() == CV_32F;
-        const FloatLevels given = { pairModel_.black, pairModel_.white };
-        const auto complete = [&] {
-            completePair(left, right, inputs_.leftMask, inputs_.rightMask, pairModel_.empty() ? nullptr : &given,
-                         pair_);
-        };
-        if (mayMiss)
-            clock_.run("missing pixels", complete);
-        else
-            complete(); // nothing is to be done
+        const struct ImageRelease // which may be the caller's
+        {
+            CompletePair& pair;
+            ~ImageRelease() { pair.left = pair.right = Mat(); }
+        } release = { pair_ };
+        completeImages(left, right);
         if (pairPlan.looksForRange)
-            clock_.run("disparity range", [&] {
-                const bool isFrame = pairPlan.followsVideo;
-                const Range found = rangeSearch_.find(pair_.left, pair_.right, pair_.masks, p_.maxRowOffset, isFrame);
-                pairPlan = makePlan(withRange(p_, found.start, found.size()));
-            });
+            pairPlan = makePlan(withFoundRange(pairPlan.followsVideo));
         if (inputs_.hasRanges() || inputs_.hasPrior())
             clock_.run("known disparities", [&] { takeKnown(inputs_, pairPlan, known_); });
         else
@@ -88,7 +80,6 @@ public:
         clock_.run("output", [&] {
             outputDisparity(finest, pairPlan.output, output_, disparity, pair_.masks.left, known_.ranges);
         });
-        pair_.left = pair_.right = Mat(); // which may be the caller's
         result_.isMatched = true;
         result_.model = pairPlan.given.isGiven
                             ? pairModel_
@@ -283,6 +274,29 @@ private:
         if (layer < 0)
             CV_Error(Error::StsOutOfRange, format("layer must be >= 0, not %d", layer));
         return result_.isMatched && layer >= result_.plan.finest().layer && layer <= result_.plan.top().layer;
+    }
+
+    //! The images and their masks, what is missing filled, in pair_
+    void completeImages(const Mat& left, const Mat& right)
+    {
+        const FloatLevels given = { pairModel_.black, pairModel_.white };
+        const auto complete = [&] {
+            completePair(left, right, inputs_.leftMask, inputs_.rightMask, pairModel_.empty() ? nullptr : &given,
+                         pair_);
+        };
+        if (inputs_.hasMasks() || left.depth() == CV_32F)
+            clock_.run("missing pixels", complete);
+        else
+            complete(); // nothing is to be done
+    }
+
+    //! The parameters with the range that is found in the pair
+    MatcherParameters withFoundRange(bool isFrame)
+    {
+        Range found;
+        clock_.run("disparity range",
+                   [&] { found = rangeSearch_.find(pair_.left, pair_.right, pair_.masks, p_.maxRowOffset, isFrame); });
+        return withRange(p_, found.start, found.size());
     }
 
     //! From the images to the disparities of the finest layer. CONTRADICTED: the pair was matched as the next frame of

@@ -190,15 +190,13 @@ private:
         shared_.forest = DisparityForest();
         shared_.forestLayer = -1;
         result_.searchRatio = 1;
-        clock_.run("disparity prediction", [&] {
+        if (plan_.prefersLastFrame)
+            clock_.run("disparity prediction", [&] { predictFromLastFrame(); });
+        clock_.run("cost aggregation", [&] {
             shared_.volume.fill(TwoLayerCost(own_.census, in_.below), in_.images.guide.size(), plan_.numDisparities);
             excludeBeyondRanges();
-            if (!plan_.prefersLastFrame)
-                return;
-            predictFromLastFrame();
-            preferPredicted(shared_.predicted, shared_.volume);
-        });
-        clock_.run("cost aggregation", [&] {
+            if (plan_.prefersLastFrame)
+                preferPredicted(shared_.predicted, shared_.volume);
             weighEdges(guide(), own_.edgeWeights);
             scanVolume(own_.edgeWeights);
         });

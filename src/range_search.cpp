@@ -98,7 +98,7 @@ int RangeSearch::findCornerRange(const Mat& left, const Mat& right, const PairMa
 }
 
 //! Matches all pixels, one layer below that of the corners. disparities: that are searched; counting: those of them
-//! that may be found; found: receives their range, if there are any, which is returned. All are in pixels of the image.
+//! that may be found. Returns whether any are; found then receives their range. All are in pixels of the image.
 bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, const Range& counting, Range& found)
 {
     const int layer = std::max(coarse_.layer - 1, 0), scale = 1 << layer;
@@ -123,7 +123,7 @@ bool RangeSearch::matchPixels(const PairMasks& masks, const Range& disparities, 
         {
             const float disparity = disparity_.at<float>(y, x);
             if (disparity >= searched.start && disparity * scale >= counting.start &&
-                disparity * scale <= counting.end && confidence_.at<uchar>(y, x) >= minConfidence)
+                disparity * scale < counting.end && confidence_.at<uchar>(y, x) >= minConfidence)
                 disparities_.push_back(disparity);
         }
     if (disparities_.empty())

@@ -17,8 +17,8 @@ CV_EXPORTS Range supportedDisparities(const std::vector<CornerMatch>& matches, i
 /** The range of disparities of pairs whose caller does not know it, of any sign. Corners are matched over the whole
 width of a coarse layer, in both directions; if they are too few, those of finer ones. What they span is enlarged by as
 much and more, and all pixels of the layer below are matched over that, once more where disparities are found at its
-ends: bare surfaces and near things have no corners. The disparities that stand the left-right check there, with a
-margin, are the range. */
+ends: bare surfaces and near things have no corners. The disparities that stand the left-right check there and are
+confident, with a margin, are the range. */
 class CV_EXPORTS RangeSearch
 {
 public:

@@ -865,9 +865,23 @@ inline Mat_<int> scanlineCosts(const Mat_<uchar>& costs, const Mat& weights, con
     return all;
 }
 
-//! aggregateVolume(), CV_16UC1
+//! What is added to the k-th of count candidates for the tip of its sum and of those beside it. unit: of costs, per bit
+inline double tipOffset(const int* sum, int count, int k, int unit)
+{
+    if (count <= 2)
+        return 0;
+    // At an end the next slope goes on behind it, or one that leaves the tip there.
+    const int after = k + 1 < count ? sum[k + 1] - sum[k] : 0, before = k > 0 ? sum[k - 1] - sum[k] : 0;
+    const int beyondFirst = std::max(after, sum[2] - sum[1]);
+    const int beyondLast = std::max(before, sum[count - 3] - sum[count - 2]);
+    const int left = k > 0 ? before : beyondFirst, right = k + 1 < count ? after : beyondLast;
+    return fraction(left, right, 8 * 4 * unit, 14 * 4 * unit);
+}
+
+/** aggregateVolume(), CV_16UC1. own: CV_16UC2, those of the candidates that winners' ends are taken of, if not of
+intervals. */
 inline Mat volumeDisparity(const Mat_<uchar>& costs, const Mat& weights, const Mat& intervals,
-                           const hdp::VolumePenalties& penalties)
+                           const hdp::VolumePenalties& penalties, const Mat& own = Mat())
 {
     Mat_<int> sums(costs.size(), 0);
     for (const Point& step : { Point(-1, 0), Point(1, 0), Point(0, -1), Point(0, 1) })
@@ -880,18 +894,16 @@ inline Mat volumeDisparity(const Mat_<uchar>& costs, const Mat& weights, const M
         if (count <= 0)
             continue;
         const int* sum = sums[p] + first;
-        const int k = (int)(std::min_element(sum, sum + count) - sum); // the first one
-        double offset = 0;
-        if (count > 2)
+        const int winner = (int)(std::min_element(sum, sum + count) - sums[p]); // the first one
+        Range ends(first, first + count);
+        if (!own.empty())
         {
-            // At an end the next slope goes on behind it, or one that leaves the tip there.
-            const int after = k + 1 < count ? sum[k + 1] - sum[k] : 0, before = k > 0 ? sum[k - 1] - sum[k] : 0;
-            const int beyondFirst = std::max(after, sum[2] - sum[1]);
-            const int beyondLast = std::max(before, sum[count - 3] - sum[count - 2]);
-            const int left = k > 0 ? before : beyondFirst, right = k + 1 < count ? after : beyondLast;
-            offset = fraction(left, right, 8 * 4 * 8, 14 * 4 * 8);
+            const Range ofPixel(own.at<Vec2w>(pixel)[0], own.at<Vec2w>(pixel)[1] + 1);
+            const Range common = ends & ofPixel;
+            ends = common.start <= winner && winner < common.end ? common : ends;
         }
-        disparity.at<ushort>(pixel) = (ushort)(16 * (first + k) + cvRound(16 * offset));
+        const double offset = tipOffset(sums[p] + ends.start, ends.size(), winner - ends.start, 8);
+        disparity.at<ushort>(pixel) = (ushort)(16 * winner + cvRound(16 * offset));
     }
     return disparity;
 }
@@ -992,17 +1004,16 @@ private:
         Mat disparity(weights.size(), CV_16UC1);
         for (int p = 0; p < sums.rows; ++p)
         {
-            const int* sum = sums[p];
-            const int k = (int)(std::min_element(sum, sum + candidates) - sum), last = candidates - 1;
-            const int after = k < last ? sum[k + 1] - sum[k] : 0, before = k > 0 ? sum[k - 1] - sum[k] : 0;
-            double offset = 0;
-            if (candidates > 2)
+            const Point pixel(p % weights.cols, p / weights.cols);
+            const int k = (int)(std::min_element(sums[p], sums[p] + candidates) - sums[p]);
+            Range ends(0, candidates);
+            if (!intervals.empty())
             {
-                const int rise = k > 0 ? before : std::max(after, sum[2] - sum[1]);
-                const int descent = k < last ? after : std::max(before, sum[last - 2] - sum[last - 1]);
-                offset = fraction(rise, descent, 8 * 4 * 2, 14 * 4 * 2);
+                const Range own(intervals.at<Vec2w>(pixel)[0], intervals.at<Vec2w>(pixel)[1] + 1);
+                ends = own.start <= k && k < own.end ? own : ends;
             }
-            disparity.at<ushort>(p / weights.cols, p % weights.cols) = (ushort)((16 * k + cvRound(16 * offset)) / 2);
+            const double offset = tipOffset(sums[p] + ends.start, ends.size(), k - ends.start, 2);
+            disparity.at<ushort>(pixel) = (ushort)((16 * k + cvRound(16 * offset)) / 2);
         }
         return disparity;
     }

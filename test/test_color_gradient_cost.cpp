@@ -6,8 +6,7 @@
 #include "matching_costs.hpp"
 #include "oracles.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using hdp::ColorGradientCost;
 using hdp::ColorGradientParams;
@@ -106,5 +105,4 @@ TEST(HDPStereo_ColorGradientCostInput, many_pixels_at_once)
     expectManyAtOnce(cost, size);
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

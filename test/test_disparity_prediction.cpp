@@ -7,8 +7,7 @@
 
 #include <fstream>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 typedef std::vector<double> Numbers;
 
@@ -403,5 +402,4 @@ TEST(HDPStereo_PixelIntervals, assigned_from_the_pixel_above)
     }
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -10,8 +10,7 @@
 #include "systems.hpp"
 #include "synthetic_pair.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int sceneCount = 11;
 const char* const scenes[sceneCount] = { "Aloe",       "Baby1", "Bowling1", "Cloth1", "Cloth3", "Flowerpots",
@@ -105,5 +104,4 @@ TEST_P(HDPStereo_SlowMiddlebury, error_like_the_authors_program)
 
 INSTANTIATE_TEST_CASE_P(/**/, HDPStereo_SlowMiddlebury, testing::ValuesIn(published));
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

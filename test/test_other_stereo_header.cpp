@@ -12,8 +12,7 @@
 
 #include "test_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 TEST(HDPStereo_DropIn, header_of_the_other_stereo_module)
 {
@@ -26,5 +25,4 @@ TEST(HDPStereo_DropIn, header_of_the_other_stereo_module)
 #endif
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -377,6 +377,7 @@ TEST(HDPStereo_CalibrationText, names_the_line_that_is_not_understood)
         if (*c.line)
             expectRejected([&] { CalibrationText("file", c.text); }, c.line);
     expectRejected([] { CalibrationText("file", std::string("a: 1\0", 5)); }, "byte 0");
+    expectRejected([] { CalibrationText("file", std::string("[a]\nb=1 \0c", 10)); }, "byte 0");
 }
 
 }} // namespace opencv_test

@@ -126,6 +126,29 @@ TEST(HDPStereo_VolumeScanlines, formula_for_any_number_of_disparities)
         }
 }
 
+//! What is excluded costs the most, and is no neighbour of what is not.
+TEST(HDPStereo_VolumeScanlines, excluded_candidates)
+{
+    RNG rng(64);
+    std::vector<short> buffers;
+    for (bool isFull : { true, false })
+        for (int numDisparities : { 7, 33, 64 })
+        {
+            SCOPED_TRACE(testing::Message() << numDisparities << " disparities, " << isFull);
+            const Size size(27, 13);
+            Layer layer(rng, size, numDisparities, 40, isFull);
+            const Mat own = patchyIntervals(rng, size, numDisparities);
+            hdp::excludeCandidates(own, layer.volume);
+            for (int p = 0; p < size.area(); ++p)
+                for (int d = 0; d < numDisparities; ++d)
+                    if (d < own.ptr<Vec2w>()[p][0] || d > own.ptr<Vec2w>()[p][1])
+                        layer.costs(p, d) = UCHAR_MAX;
+            const Mat expected =
+                oracle::volumeDisparity(layer.costs, layer.weights, layer.intervals, usualPenalties, own);
+            expectIdentical(expected, layer.aggregate(usualPenalties, buffers));
+        }
+}
+
 TEST(HDPStereo_VolumeScanlines, candidates_of_half_a_pixel)
 {
     RNG rng(63);

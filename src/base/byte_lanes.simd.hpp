@@ -61,8 +61,14 @@ struct ByteLanes
                          v_load_halves(low[1] + offset, high[1] + offset));
     }
     //! An order for permute() that changes the first or the last group alone, as bytes say; the other one has 0 .. 15.
-    static CV_ALWAYS_INLINE ByteLanes first(const uchar* bytes) { return ByteLanes(v_load(bytes), laneNumbers()); }
-    static CV_ALWAYS_INLINE ByteLanes last(const uchar* bytes) { return ByteLanes(laneNumbers(), v_load(bytes)); }
+    static CV_ALWAYS_INLINE ByteLanes orderOfFirst(const uchar* bytes)
+    {
+        return ByteLanes(v_load(bytes), laneNumbers());
+    }
+    static CV_ALWAYS_INLINE ByteLanes orderOfLast(const uchar* bytes)
+    {
+        return ByteLanes(laneNumbers(), v_load(bytes));
+    }
     //! The group at bytes, then the first one of before
     static CV_ALWAYS_INLINE ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes& before)
     {
@@ -86,8 +92,8 @@ struct ByteLanes
     {
         return v_load_halves(low[0] + offset, high[0] + offset);
     }
-    static CV_ALWAYS_INLINE ByteLanes first(const uchar* bytes) { return v_load(bytes); }
-    static CV_ALWAYS_INLINE ByteLanes last(const uchar* bytes) { return v_load(bytes); }
+    static CV_ALWAYS_INLINE ByteLanes orderOfFirst(const uchar* bytes) { return v_load(bytes); }
+    static CV_ALWAYS_INLINE ByteLanes orderOfLast(const uchar* bytes) { return v_load(bytes); }
     static CV_ALWAYS_INLINE ByteLanes shiftInFirst(const uchar* bytes, const ByteLanes&) { return v_load(bytes); }
     static CV_ALWAYS_INLINE ByteLanes shiftInLast(const ByteLanes&, const uchar* bytes) { return v_load(bytes); }
     CV_ALWAYS_INLINE void storeFirst(uchar* bytes) const { v_store(bytes, v); }

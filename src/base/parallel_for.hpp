@@ -39,8 +39,8 @@ private:
     std::vector<Scratch> idle_;
 };
 
-//! f(i, scratch) for each i of 0 .. count - 1, by all threads; each has its own scratch, which others had before. parts:
-//! how many of these are done by themselves, about
+//! f(i, scratch) for each i of 0 .. count - 1, by all threads; each has its own scratch, which others had before.
+//! parts: how many of these are done by themselves, about
 template <typename Scratch, typename F>
 void parallelFor(int count, ScratchPool<Scratch>& pool, const F& f, double parts = -1)
 {

@@ -21,6 +21,7 @@ uchar CostVolume::lowestOf(const Candidates& own) const
 void CostVolume::create(const DisparityForest& forest)
 {
     size = forest.links.size();
+    intervals = Mat();
     numDisparities = 1;
     uniform_ = forest.trees[0].interval;
     isUniform = !uniform_.empty();
@@ -82,6 +83,7 @@ void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, int candi
         std::vector<uchar> costs; // of a chunk of each pixel
     };
     size = layerSize;
+    intervals = Mat();
     steps = cost.steps();
     numDisparities = candidatesOfAll;
     isUniform = true;
@@ -103,6 +105,7 @@ void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, int candi
 
 void excludeCandidates(const Mat& intervals, CostVolume& volume)
 {
+    volume.intervals = intervals;
     parallelForRows(volume.size, [&](int y) {
         for (int x = 0; x < volume.size.width; ++x)
         {

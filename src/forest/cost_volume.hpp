@@ -30,10 +30,11 @@ struct CV_EXPORTS CostVolume
     }
 
     Size size;
-    int numDisparities = 0;             // all candidates are less
+    int numDisparities = 0;             // the largest candidate + 1
     int steps = 1;                      // candidates per pixel of disparity
     bool isUniform = false;             // whether all pixels have the same candidates
     std::vector<Candidates> candidates; // of pixel y * width + x, unless they are the same, see of()
+    Mat intervals;                      // of these, from excludeCandidates(); empty: all
     size_t chunks = 0;                  // of costs
     std::vector<uchar> costs;           // that of disparity interval.first + k at [start() + k]; it only ever grows
 
@@ -65,7 +66,7 @@ private:
     // the order of the trees, where scanlines wait for them: all are usual if that takes at most twice the memory.
     int usualChunks_ = 0;
     std::vector<int> pixels_;      // in the order of the trees, if all have the same candidates
-    std::vector<unsigned> starts_; // by tree: in these pixels; or else its first chunk, if it is not usual
+    std::vector<unsigned> starts_; // by tree: its first one of pixels_; or, if these are not used, its first chunk
 };
 
 //! Excludes the candidates that pixels do not have, by the largest cost. intervals: DisparityInterval, of the layer.

@@ -36,6 +36,8 @@ public:
         const int step = std::max(tree.size / samples, 1), candidates = interval_.size();
         count_ = (tree.size + step - 1) / step;
         costs_.resize(count_ * candidates);
+        for (std::vector<float>* values : { &x_, &y_, &disparity_ })
+            values->reserve(count_);
         for (int group = 0, sample = 0; group < groups; ++group)
         {
             lowest_[group] = 0;

@@ -48,6 +48,32 @@ void removeSpeckles(Mat& disparity, const OutputPlan& plan, short invalid, Mat& 
     filterSpeckles(disparity, invalid, plan.speckleWindowSize, unit * range, speckles);
 }
 
+//! That of the image, in units of a disparity map, without the added columns
+Mat mapOfImage(const Mat& finest, const OutputPlan& plan, const Size& size, OutputBuffers& buffers)
+{
+    Mat extended = enlarge(finest, plan.finestLayer, size + Size(plan.extension, 0), buffers.enlarged);
+    if (plan.isWhole)
+    {
+        convert(extended, CV_16U, 1. / unit, 0, buffers.whole);
+        convert(buffers.whole, CV_16U, unit, 0, buffers.whole);
+        extended = buffers.whole;
+    }
+    return extended.colRange(plan.extension, extended.cols);
+}
+
+short invalidDisparity(const OutputPlan& plan) { return (short)((plan.minDisparity - 1) * unit); }
+
+//! Moves disparities into the ranges of their pixels, or to invalid if these are empty.
+void moveIntoRanges(const PixelRanges& ranges, short invalid, Mat& fixedPoint)
+{
+    if (ranges.isEmpty())
+        return;
+    max(fixedPoint, ranges.smallest, fixedPoint);
+    min(fixedPoint, ranges.largest, fixedPoint);
+    if (ranges.hasEmpty)
+        fixedPoint.setTo(Scalar(invalid), ranges.smallest > ranges.largest);
+}
+
 } // namespace
 
 void upsampleDisparity(const Mat& upper, Size size, Mat& disparity)
@@ -83,35 +109,17 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
                      const PixelRanges& ranges)
 {
     const bool missesAny = !mask.empty() || ranges.hasEmpty, isChecked = plan.disp12MaxDiff > 0,
-               isFiltered = plan.speckleWindowSize > 0,
-               isChanged = missesAny || isChecked || isFiltered || !ranges.isEmpty();
+               isFiltered = plan.speckleWindowSize > 0, isFloat = disparity.depth() == CV_32F;
     std::vector<Rejected>& rejected = buffers.rejected;
     rejected.clear();
-    const Size extendedSize = disparity.size() + Size(plan.extension, 0);
-    Mat extended = enlarge(finest, plan.finestLayer, extendedSize, buffers.enlarged);
-    if (plan.isWhole)
-    {
-        convert(extended, CV_16U, 1. / unit, 0, buffers.whole);
-        convert(buffers.whole, CV_16U, unit, 0, buffers.whole);
-        extended = buffers.whole;
-    }
-    const Mat map = extended.colRange(plan.extension, extended.cols);
-    const bool isFloat = disparity.depth() == CV_32F;
-    if (isFloat && !isChanged)
+    const Mat map = mapOfImage(finest, plan, disparity.size(), buffers);
+    if (isFloat && !missesAny && !isChecked && !isFiltered && ranges.isEmpty())
         return convert(map, CV_32F, 1. / unit, plan.minDisparity, disparity);
-    Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
-    convert(map, CV_16S, 1, (double)plan.minDisparity * unit, fixedPoint);
-    if (!isChanged)
-        return;
 
-    const short invalid = (short)((plan.minDisparity - 1) * unit);
-    if (!ranges.isEmpty())
-    {
-        max(fixedPoint, ranges.smallest, fixedPoint);
-        min(fixedPoint, ranges.largest, fixedPoint);
-    }
-    if (ranges.hasEmpty)
-        fixedPoint.setTo(Scalar(invalid), ranges.smallest > ranges.largest);
+    Mat& fixedPoint = isFloat ? buffers.fixedPoint : disparity; // what the filters take
+    const short invalid = invalidDisparity(plan);
+    convert(map, CV_16S, 1, (double)plan.minDisparity * unit, fixedPoint);
+    moveIntoRanges(ranges, invalid, fixedPoint);
     if (!mask.empty())
         fixedPoint.setTo(Scalar(invalid), mask == 0);
     const auto addRejected = [&](HDPTreeMatcher::Reason reason) {
@@ -136,13 +144,13 @@ void outputDisparity(const Mat& finest, const OutputPlan& plan, OutputBuffers& b
 
 Mat movedIntoRanges(const Mat& finest, const OutputPlan& plan, Size size, const PixelRanges& ranges)
 {
-    OutputPlan unfiltered = plan;
-    unfiltered.disp12MaxDiff = unfiltered.speckleWindowSize = 0;
     OutputBuffers buffers;
-    Mat found(size, CV_32F), moved(size, CV_32F);
-    outputDisparity(finest, unfiltered, buffers, found);
-    outputDisparity(finest, unfiltered, buffers, moved, Mat(), ranges);
-    return abs(moved - found);
+    Mat found, moved, distance;
+    convert(mapOfImage(finest, plan, size, buffers), CV_16S, 1, (double)plan.minDisparity * unit, found);
+    moved = found.clone();
+    moveIntoRanges(ranges, invalidDisparity(plan), moved);
+    subtract(moved, found, distance, noArray(), CV_32F);
+    return abs(distance / unit);
 }
 
 void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const CostLimits& limits, Mat& reasons)

@@ -24,7 +24,7 @@ struct OutputPlan
     int disp12MaxDiff, speckleWindowSize, speckleRange; // as of cv::StereoMatcher; <= 0: no filter
 };
 
-//! What outputDisparity() has rejected for a reason, and for those before
+//! All pixels that are invalid after outputDisparity() has rejected some for a reason
 struct Rejected
 {
     HDPTreeMatcher::Reason reason;

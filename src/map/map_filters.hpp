@@ -10,8 +10,8 @@ namespace cv { namespace stereo { namespace hdp {
 
 // Filters of a disparity map, in the order in which they run. Each is in a file of its own.
 
-//! Median of size x size pixels, 3, 5 or 7, borders replicated: several times faster than cv::medianBlur, which does
-//! not share the work on a column of the window. disparity: CV_16UC1; filtered: another Mat.
+//! Median of size x size pixels, 3, 5 or 7, borders replicated: faster than cv::medianBlur, which does not
+//! share the work on a column of the window. disparity: CV_16UC1; filtered: another Mat.
 CV_EXPORTS void medianDisparity(const Mat& disparity, int size, Mat& filtered);
 
 /** Gives back what the median removed although it is more than noise: a pixel takes its disparity from before the
@@ -23,7 +23,7 @@ CV_EXPORTS void restoreThinStructures(const Mat& unfiltered, Mat& disparity);
 one of its two surfaces. A weighted median @cite Ma2013WM of two surfaces is such a vote.
 
 A step is where disparities of 3 x 3 pixels differ by more than 2 pixels; halfway between the nearest and the farthest
-one is the border of the two surfaces. Each pixel of the window around that is on a surface, or less than a pixel beyond
+one is the border of the two surfaces. Each pixel of the window around that is on a surface, or at most a pixel beyond
 its end, votes for it by max(36 - difference, 0), where difference is the largest one of a channel from that of the
 pixel in the middle. The window has 16 columns, of which 7 are on the left of the pixel, all of them inside of the
 image, and every third one of 13 rows, the nearest ones of the image. A pixel whose surface has fewer votes than the

@@ -30,10 +30,12 @@ shown are
 - pixels that map to no column of the right image;
 - pixels whose disparity is not that of the column's winner: of those that map to it, the one with the lowest residual;
 - up to three pixels between two gaps that are no shorter;
-- what is left of the surface at the border of the right image: the last run of four pixels without steps that is shown,
-  if it begins in the first three columns, or if it is nearer than what is before it, nearer pixels hide three quarters
-  of that from the right image, or it maps to no column, and no more than one pixel in eight is visible in columns that
-  are not blank.
+- what is left of the surface at the border of the right image: the last run of four pixels without steps, all of them
+  winners of their columns, that
+  - begins in the first three columns of the right image;
+  - or has at most one winner among seven pixels before it;
+  - or is nearer than what is before it, of which at most one pixel in eight is visible in columns that are not blank,
+    and three quarters map to columns of nearer pixels, or to none.
 
 The surface at the border is continued to the left border, half as steep as its first columns are.
 @param disparity CV_16UC1, a disparity map; changed.

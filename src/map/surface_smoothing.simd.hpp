@@ -11,7 +11,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 //! Squared slopes of a row of grey levels, borders replicated, in 1 / SlopeScale::perNoise^2 of the squared noise
 void squareSlopes(const ushort* levels, int width, const SlopeScale& scale, ushort* squares);
 
-/** Precisions of a row. It adds up the windows itself: sumOverWindows() would take 2 % of FAST more.
+/** Precisions of a row. It adds up the windows itself, as sumOverWindows() takes longer.
 @param squares Rows of squareSlopes() one after the other, those of the window around the row in any order.
 @param sums Memory of width + precisionSide elements.
 @param disparity Of the row; USHRT_MAX has a precision of zero. */

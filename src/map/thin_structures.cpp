@@ -17,7 +17,7 @@ HDP_TUNABLE(int, minShare, 30, "percent of the window",
 HDP_TUNABLE(int, minDistance, 5, "pixels",
             "in front of what the median left: nearer ones are rather noise of a surface");
 HDP_TUNABLE(int, maxDifference, 1, "pixels", "inside the structure: 0 fails by rounding, more joins noise");
-HDP_TUNABLE(int, groupColumns, 64, "pixels", "that are tested at once: most groups have none, and are left out");
+const int groupColumns = 64; // that are tested at once: most groups have none, and are left out
 
 //! Whether enough pixels around this one have its disparity
 bool isInStructure(const Mat& disparity, int y, int x)

@@ -26,7 +26,7 @@ const int maxWindow = 31;
 HDP_TUNABLE(double, toleratedNoise, 0.45, "standard deviations of the noise",
             "what differs by less is not darker: more loses texture, less takes noise for it");
 
-HDP_TUNABLE(double, rangeP2, 1.3, "P2",
+HDP_TUNABLE(double, allCandidatesP2, 1.3, "P2",
             "the large penalty of scanlines over all candidates: more drags surfaces across borders, less keeps noise");
 
 // Means over trees
@@ -34,7 +34,7 @@ HDP_TUNABLE(double, meanGamma, 0.2, "gamma of the trees' sums",
             "of means that scanlines get, on the first two layers: these carry costs farther by themselves, "
             "and more blurs borders; less on coarser layers, where each step goes farther");
 HDP_TUNABLE(double, meanP1, 0.5, "P1",
-            "means are smoother than costs: more flattens slanted surfaces, less keeps noise");
+            "of the top layer, as means are smoother than costs: more flattens slanted surfaces, less keeps noise");
 HDP_TUNABLE(double, edgeGamma, 0.7, "gamma of the trees' sums",
             "of the large penalty: more drags surfaces across edges, less breaks textured ones");
 HDP_TUNABLE(double, refinementGamma, 0.25, "gamma of the trees' sums",
@@ -197,7 +197,7 @@ TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size
 //! For means of trees, for costs with what the last frame predicts, which are as smooth, and for costs as they are
 VolumePenalties planVolume(const MatcherParameters& p, const LayerPlan& layer)
 {
-    const int scale = CostVolume::scale, large = cvRound(scale * rangeP2 * p.P2);
+    const int scale = CostVolume::scale, large = cvRound(scale * allCandidatesP2 * p.P2);
     const int steps = layer.seesBelow ? 2 : 1; // candidates per pixel of disparity
     return { cvRound(scale * meanP1 * p.P1 / steps), std::min(large, +VolumePenalties::largest), p.gamma * edgeGamma };
 }
@@ -208,7 +208,7 @@ RangePenalties planRange(const MatcherParameters& p)
     const double ofPixel = rangeP1 * p.P1; // for a step of a pixel
     RangePenalties penalties;
     penalties.small = halfBits(ofPixel / 2); // candidates are half a pixel apart
-    penalties.large = halfBits(rangeP2 * p.P2);
+    penalties.large = halfBits(allCandidatesP2 * p.P2);
     penalties.leastLarge = halfBits(ofPixel); // another surface is nowhere cheaper than that step
     penalties.gamma = p.gamma * edgeGamma;
     penalties.priorDistance = rangePriorDistance;
@@ -286,6 +286,27 @@ int censusTolerance(const LayerPlan& layer, const LayerNoise& noise, bool isPred
     return clamped(tolerance, least, +CensusCost::mostTolerance);
 }
 
+//! What is known of the range of disparities; empty: nothing
+Range knownRange(Size size, const PairModel& model, const PairInputs& inputs)
+{
+    return model.empty() ? rangeOf(inputs, size.width)
+                         : Range(model.minDisparity, model.minDisparity + model.numDisparities);
+}
+
+//! The parameters without those that depend on others. known: the range where they have none, a single disparity if
+//! that is empty
+MatcherParameters completed(MatcherParameters p, const Range& known, const PairInputs& inputs)
+{
+    if (p.numDisparities == 0)
+        p = known.empty() ? withRange(p, 0, 1) : withRange(p, known.start, known.size());
+    if (!p.usePrediction) // there are no layers, and the plain tree algorithm matches the image
+        p.aggregation = M::AGGREGATION_TREES;
+    // The layer above was matched within them, and support points take as long as without.
+    if (inputs.limit(Range(p.minDisparity, p.minDisparity + p.numDisparities)))
+        p.disparityPrior = M::PRIOR_UPPER_LAYER;
+    return p;
+}
+
 } // namespace
 
 int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int maxLayers)
@@ -306,20 +327,11 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
               const PairInputs& inputs)
 {
     PairPlan plan;
-    MatcherParameters p = parameters;
-    if (p.numDisparities == 0)
-    {
-        const Range ofModel(model.minDisparity, model.minDisparity + model.numDisparities);
-        const Range known = model.empty() ? rangeOf(inputs, size.width) : ofModel;
-        plan.looksForRange = known.empty();
-        p = known.empty() ? withRange(p, 0, 1) : withRange(p, known.start, known.size());
-    }
-    if (!p.usePrediction) // there are no layers, and the plain tree algorithm matches the image
-        p.aggregation = M::AGGREGATION_TREES;
+    const Range known = parameters.numDisparities > 0 ? Range() : knownRange(size, model, inputs);
+    plan.looksForRange = parameters.numDisparities == 0 && known.empty();
+    const MatcherParameters p = completed(parameters, known, inputs);
     checkCombinations(p, size, inputs.hasPrior());
     plan.hasRanges = inputs.limit(Range(p.minDisparity, p.minDisparity + p.numDisparities));
-    if (plan.hasRanges) // the layer above was matched within them, and support points take as long as without
-        p.disparityPrior = M::PRIOR_UPPER_LAYER;
     plan.size = size;
     plan.numDisparities = p.numDisparities;
     plan.treeStrategy = p.treeStrategy;
@@ -356,7 +368,7 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
     {
         // With what the last frame predicts, the layer above has its disparities from many frames.
         if (video.predictsDisparities && layer.method == RANGE_SCANLINES)
-            layer.rangePenalties.maxPrior = RangePenalties::maxMaxPrior;
+            layer.rangePenalties.maxPrior = RangePenalties::mostPrior;
         if (video.predictsDisparities && layer.method == WINDOW_SCANLINES)
             layer.smoothness.least = SmoothnessWeight::one;
         if (layer.cost.isCensus)

@@ -93,7 +93,7 @@ struct LayerPlan
 struct PairPlan
 {
     Size size;              // of the images
-    int numDisparities = 0; // the same
+    int numDisparities = 0; // of the images, given or found
     PyramidPlan pyramids;
     AlignmentPlan alignment;
     GivenPair given;               // what is not looked for in the pair, but known

@@ -59,7 +59,7 @@ public:
     void readIni(std::istream& lines)
     {
         std::string line, section;
-        for (line_ = 1; std::getline(lines, line); ++line_)
+        while (nextLine(lines, line))
         {
             line = trimmed(withoutComment(line, "#;"));
             const size_t equals = line.find('=');
@@ -79,9 +79,8 @@ public:
     void readYaml(std::istream& lines)
     {
         std::string line;
-        for (line_ = 1; std::getline(lines, line); ++line_)
+        while (nextLine(lines, line))
             readLine(line);
-        --line_;
         if (depth_ > 0)
             fail("is the last one, and a list has no closing bracket");
     }
@@ -105,10 +104,18 @@ private:
             fail("has '" + path + "' for the second time");
     }
 
-    void readLine(const std::string& line)
+    bool nextLine(std::istream& lines, std::string& line)
     {
+        if (!std::getline(lines, line))
+            return false;
+        ++line_;
         if (line.find('\0') != std::string::npos)
             fail("has a byte 0: this is no text");
+        return true;
+    }
+
+    void readLine(const std::string& line)
+    {
         std::string content = trimmed(withoutComment(line, "#"));
         if (content.empty() || content == "---" || content == "..." || line[0] == '%')
             return;

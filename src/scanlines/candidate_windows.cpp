@@ -12,8 +12,7 @@ namespace {
 
 HDP_TUNABLE(int, neighborhood, 3, "pixels of the upper layer",
             "in which the surface beyond a discontinuity is: in more there is often a third one");
-HDP_TUNABLE(int, maxStripes, 16, "stripes", "for as many threads: more filter the rows between them twice");
-HDP_TUNABLE(int, minStripeHeight, 16, "rows", "for the same reason");
+const int maxStripes = 16, minStripeHeight = 16; // rows; for as many threads: more filter the rows between them twice
 
 HDP_DISPATCH(findOthersOfRow)
 HDP_DISPATCH(predictRow)
@@ -28,7 +27,7 @@ void findOtherSurfaces(const Mat& upper, const Mat& unfiltered, Mat& others)
     // Not Mat::ones(): the first thread with an expression sets them up, in OpenCV, which ThreadSanitizer does not see.
     const Mat kernel(2 * neighborhood + 1, 2 * neighborhood + 1, CV_8U, Scalar(1));
     others.create(size, CV_16U);
-    const int stripes = std::max(1, std::min<int>(maxStripes, size.height / minStripeHeight));
+    const int stripes = std::max(1, std::min(maxStripes, size.height / minStripeHeight));
     parallel_for_(Range(0, stripes), [&](const Range& range) {
         const Range rows(size.height * range.start / stripes, size.height * range.end / stripes);
         Mat min[2], max[2]; // of the disparities around each pixel

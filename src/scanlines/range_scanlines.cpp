@@ -47,7 +47,7 @@ void aggregateRange(const CensusCost& below, const ImageFrame& frame, int candid
 {
     CV_DbgAssert(std::max(std::max(penalties.small, penalties.large), penalties.leastLarge) <=
                      RangePenalties::largest &&
-                 penalties.maxPrior <= RangePenalties::maxMaxPrior && candidates <= RangeProblem::mostCandidates);
+                 penalties.maxPrior <= RangePenalties::mostPrior && candidates <= RangeProblem::mostCandidates);
     const Size size = weights.size();
     RangeProblem problem = { below, size, candidates, upper, weights, intervals, 0, {}, {}, {} };
     problem.prepare(penalties);

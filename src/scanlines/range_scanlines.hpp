@@ -15,7 +15,7 @@ namespace cv { namespace stereo { namespace hdp {
 struct RangePenalties
 {
     static const int largest = 190; // penalty: all costs of a direction are bytes
-    static const int maxMaxPrior = 15;
+    static const int mostPrior = 15;
 
     int small, large;  // for a step of one candidate and for a larger one between neighbours of one colour
     int leastLarge;    // for a larger one at any edge

@@ -244,7 +244,7 @@ public:
             for (int r = active.start; r < active.end; ++r)
                 rows_[r].winner = finishPixel(rows_[r], t - r);
             for (int r = active.start; r < active.end; ++r)
-                rows_[r].winners.set(t - r, rows_[r].sums, 0, rows_[r].winner, p_.candidates - 1);
+                setWinner(rows_[r], t - r);
         }
         for (int r = 0; r < height; ++r)
             rows_[r].winners.takeDisparities(width_, bit, 1, disparity.ptr<ushort>(rows.start + r));
@@ -266,6 +266,16 @@ private:
 
     //! The edges of a row to the right or to the row below, see weighEdges()
     const uchar* edges(int y, int below) const { return p_.weights.ptr(y) + below; }
+
+    CV_ALWAYS_INLINE void setWinner(const Row& row, int x) const
+    {
+        const DisparityInterval* const intervals = row.costRow.intervals;
+        const int last = p_.candidates - 1;
+        if (intervals)
+            row.winners.setWithin(x, row.sums, 0, row.winner, last, intervals[x].first, intervals[x].last);
+        else
+            row.winners.set(x, row.sums, 0, row.winner, last);
+    }
 
     void enterBlock(const Range& rows, const ScanlineStripe& stripe)
     {

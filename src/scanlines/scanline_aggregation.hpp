@@ -69,10 +69,9 @@ struct ScanlineScratch
     //! Of a block
     struct Block
     {
-        std::vector<uchar> edges; // large penalties, two per pixel
-        // The winners: their lanes, their sums with those of the lanes before and behind, and their costs
-        std::vector<uchar> winners, winnerCosts;
-        std::vector<unsigned> winnerSums;
+        std::vector<uchar> edges;                // large penalties, two per pixel
+        std::vector<uchar> winners, winnerCosts; // their lanes and costs
+        std::vector<uchar> winnerSums; // of the lane before, of the winner's, of the one behind, and of another
 
         void prepare(size_t pairs);
     };

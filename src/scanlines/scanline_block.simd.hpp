@@ -20,7 +20,7 @@ const int maxContrast = 23;
 class WindowCosts
 {
 public:
-    static const int hasLimits = 4; // a layout of the costs: the number of planes, and this if they are limited
+    static const int limitsBit = 4; // a layout of the costs: the number of planes, and this if they are limited
 
     WindowCosts(const CensusCost& cost, int width)
         : cost_(cost), planeStride_(cost.planeStride()), lastColumn_(width - 1)
@@ -41,7 +41,7 @@ public:
     //! Those of the candidates at both columns of a step, and ScanlinePenalties::max
     template <int layout> CV_ALWAYS_INLINE void of(const ScanlineWindows& windows, int step, ByteLanes (&cost)[2]) const
     {
-        const int planes = layout & (hasLimits - 1);
+        const int planes = layout & (limitsBit - 1);
         const uchar* left[groups];
         OneRun low;
         for (int r = 0; r < groups; ++r)
@@ -66,7 +66,7 @@ public:
             cost[0] = costs<planes, 0>(left, both);
             cost[1] = costs<planes, 1>(left, both);
         }
-        if (layout & hasLimits)
+        if (layout & limitsBit)
             limit(windows, step, cost);
         const ByteLanes prior = ByteLanes::load(windows.prior(step));
         cost[0] = prior + cost[0];
@@ -166,13 +166,13 @@ public:
     ScanlineBlock(const ScanlineProblem& problem, bool isUpward, uchar* vertical, ScanlineScratch::Block& scratch)
         : p_(problem), width_(problem.size.width), pairs_((width_ + 1) / 2), costs_(*problem.cost, width_),
           vertical_(vertical), tables_(nullptr), small_(nullptr), intoSide_(nullptr), intoNext_(nullptr),
-          entersUpperRow_(false), isUpward_(isUpward)
+          changesWindows_(false), isUpward_(isUpward)
     {
         for (int r = 0; r < groups; ++r)
         {
             const size_t row = r * (2 * (size_t)pairs_ + 2 * margin) + margin;
             winners_[r] = scratch.winners.data() + row;
-            sums_[r] = scratch.winnerSums.data() + row;
+            sums_[r] = scratch.winnerSums.data() + 4 * row;
             winnerCosts_[r] = scratch.winnerCosts.data() + row;
             edges_[r] = scratch.edges.data() + 2 * row;
         }
@@ -181,21 +181,21 @@ public:
     /** Enters a block of rows.
     @param y The upper one of them. Those below the image repeat its last row.
     @param tables Of the row of windows that the block lies in.
-    @param entersUpperRow Whether the block entered before lies in another one, so candidates have to be permuted. */
-    void enter(int y, const ScanlineWindows& tables, bool entersUpperRow)
+    @param changesWindows Whether the block entered before lies in another one, so candidates have to be permuted. */
+    void enter(int y, const ScanlineWindows& tables, bool changesWindows)
     {
         tables_ = &tables;
         small_ = tables.small();
         intoSide_ = tables.intoSide();
         intoNext_ = tables.intoNext();
-        entersUpperRow_ = entersUpperRow;
+        changesWindows_ = changesWindows;
         const int forward = isUpward_ ? -1 : 1, lastRow = p_.size.height - 1;
         for (int r = 0; r < groups; ++r)
         {
             const int inBlock = y + groups - 1 - r, row = std::min(inBlock, lastRow);
             const int edgeRow = std::max(std::min(row, row + forward), 0); // its edges below lead to the next row
             costs_.enterRow(r, row);
-            tables.weighEdges(p_.weights->ptr(row), p_.weights->ptr(edgeRow), edges_[r]);
+            tables.edgePenalties(p_.weights->ptr(row), p_.weights->ptr(edgeRow), edges_[r]);
             if (isUpward_ && inBlock > lastRow) // with large penalties of 0, nothing comes from there
                 std::memset(edges_[r], 0, 2 * (size_t)width_);
         }
@@ -205,7 +205,7 @@ public:
     void storeCosts(const Range& steps, uchar* stored) const
     {
         typedef void (ScanlineBlock::*Method)(const Range&, uchar*) const;
-        const int limited = WindowCosts::hasLimits;
+        const int limited = WindowCosts::limitsBit;
         static const Method methods[][3] = {
             { &ScanlineBlock::storeCosts<1>, &ScanlineBlock::storeCosts<2>, &ScanlineBlock::storeCosts<3> },
             { &ScanlineBlock::storeCosts<limited + 1>, &ScanlineBlock::storeCosts<limited + 2>,
@@ -257,7 +257,7 @@ private:
         }
     }
 
-    //! large(p, q) of a step's edges, see ScanlineWindows::weighEdges(): number `at` from the pixel left of them on
+    //! large(p, q) of a step's edges, see ScanlineWindows::edgePenalties(): number `at` from the pixel left of them on
     template <int at> CV_ALWAYS_INLINE ByteLanes largePenalty(int step) const
     {
         const uchar* edges[groups];
@@ -319,9 +319,10 @@ private:
     {
         uchar *const lowest = verticalAt(0, t, column), *const highest = verticalAt(groups - 1, t, column);
         before = isUpward ? ByteLanes::shiftInFirst(lowest, before) : ByteLanes::shiftInLast(before, highest);
-        if (entersUpperRow_)
-            before = before.permute(isUpward ? ByteLanes::first(ScanlineWindows::ofStep(intoNext_, t))
-                                             : ByteLanes::last(ScanlineWindows::ofStep(intoNext_, t - groups + 1)));
+        if (changesWindows_)
+            before =
+                before.permute(isUpward ? ByteLanes::orderOfFirst(ScanlineWindows::ofStep(intoNext_, t))
+                                        : ByteLanes::orderOfLast(ScanlineWindows::ofStep(intoNext_, t - groups + 1)));
         const ByteLanes direction = advance(before, cost, small, large);
         if (isUpward)
             before.storeLast(highest);
@@ -360,18 +361,9 @@ private:
             const int x = 2 * (t - r) + column;
             winners_[r][x] = (uchar)lane[r];
             const int winner = r * Window::candidates + lane[r];
-            std::memcpy(&sums_[r][x], sums + winner, sizeof(unsigned));
+            std::memcpy(sums_[r] + 4 * x, sums + winner, 4);
             winnerCosts_[r][x] = costs[winner];
         }
-    }
-
-    //! How far to the right an unsigned is to be shifted for the byte in place i of its memory
-    static int shiftOfByte(int i)
-    {
-        const unsigned one = 1;
-        uchar first;
-        std::memcpy(&first, &one, 1);
-        return 8 * (first == 1 ? i : 3 - i); // a constant for the compiler
     }
 
     //! A row's disparities, with winnerFraction(), and residuals
@@ -381,14 +373,12 @@ private:
         const int last = p_.validCandidates() - 1, maxDisparity = p_.maxDisparity;
         const short *firstOfLow = tables_->firstOfColumn(0), *firstOfHigh = tables_->firstOfColumn(1);
         const uchar *winners = winners_[group], *costs = winnerCosts_[group];
-        const unsigned* sums = sums_[group];
-        const int toBefore = shiftOfByte(0), toSum = shiftOfByte(1), toAfter = shiftOfByte(2);
+        const uchar* const sums = sums_[group];
         HDP_VECTORIZED for (int x = 0; x < width_; ++x)
         {
             const int lane = winners[x], low = firstOfLow[x], high = firstOfHigh[x] - Window::runLength;
             const int whole = lane + (lane < Window::runLength ? low : high);
-            const int before = sums[x] >> toBefore & 255, sum = sums[x] >> toSum & 255,
-                      after = sums[x] >> toAfter & 255;
+            const int before = sums[4 * x], sum = sums[4 * x + 1], after = sums[4 * x + 2];
             // Whether there are candidates on both sides: the lane is not at the end of a run, or the runs are one
             const int isInner =
                 ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
@@ -405,11 +395,10 @@ private:
     WindowCosts costs_;
     // The scratch memory, from column 0 on
     uchar* const vertical_;
-    uchar *winners_[groups], *winnerCosts_[groups], *edges_[groups];
-    unsigned* sums_[groups];
+    uchar *winners_[groups], *winnerCosts_[groups], *sums_[groups], *edges_[groups];
     const ScanlineWindows* tables_;
     const uchar *small_, *intoSide_, *intoNext_; // of the first step
-    bool entersUpperRow_;                        // whether tables_ are not those of the block before
+    bool changesWindows_;                        // whether tables_ are not those of the block before
     const bool isUpward_;
 };
 

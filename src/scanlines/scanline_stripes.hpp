@@ -15,8 +15,8 @@ struct ScanlineStripe
     Range rows, reach;
 };
 
-/** The stripes of an image, or what a tile of it has of them; an even number of them, so that also two threads have as
-much to do.
+/** The stripes of an image, or what a tile of it has of them: one, or an even number of them, so that also two threads
+have as much to do.
 @param height Rows of it that are there.
 @param rows About as many in a stripe. */
 CV_EXPORTS std::vector<ScanlineStripe> stripesOf(const ImageFrame& frame, int height, int rows);

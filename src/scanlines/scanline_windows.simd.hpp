@@ -39,7 +39,7 @@ public:
         }
     }
 
-    //! Enters a row of windows, and its weights. before: that of the sweep before, if there is one
+    //! Enters a row of windows, and its weights. before: the one entered before it, if there is one
     void enter(const Window* row, const uchar* weights, const Window* before)
     {
         enterColumns(row);
@@ -68,7 +68,7 @@ public:
     @param row Weights of the row's edges, of which those to the right are read.
     @param toNext Weights of those between it and the next row, which are those below of the upper one.
     @param edges Receives two penalties per pixel. */
-    void weighEdges(const uchar* row, const uchar* toNext, uchar* edges) const
+    void edgePenalties(const uchar* row, const uchar* toNext, uchar* edges) const
     {
         const uchar *const slopes = slopes_, *const large = large_, *const least = least_;
         const ushort noise = (ushort)p_.penalties.edgeNoise;

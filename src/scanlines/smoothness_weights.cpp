@@ -18,8 +18,6 @@ HDP_TUNABLE(double, typical, 7.3, "natural logarithms per logarithm",
 HDP_TUNABLE(double, leastShare, 0.001, "share of neighbours",
             "that may be apart where none are: more makes flat scenes rough, less drags surfaces across borders");
 
-const int stripeHeight = 64; // rows that are in the caches at once: fewer find the rows between stripes more often
-
 // Units of the tables: residuals in the sum of a window, parts of what is in them
 const int sumBits = 7, stepUnit = 256, evidenceUnit = 4096, productUnit = stepUnit * evidenceUnit;
 
@@ -72,29 +70,24 @@ void findTerms(const ushort* upper, const ushort* below, const uchar* residual, 
 
 void weighSmoothness(const Mat& upper, const Mat& residual, int bits, const SmoothnessPlan& plan, Mat& weights)
 {
+    const Size size = upper.size();
+    Mat matched(size, CV_8U), breaks(size, CV_8U), matchedSums, breakSums;
+    parallelForRows(size, [&](int y) {
+        findTerms(upper.ptr<ushort>(y), upper.ptr<ushort>(std::min(y + 1, size.height - 1)), residual.ptr(y),
+                  size.width, bits, matched.ptr(y), breaks.ptr(y));
+    });
+    sumOverWindows(matched, sideOf(plan.radius), CV_16U, matchedSums);
+    sumOverWindows(breaks, sideOf(plan.radius), CV_16U, breakSums);
     const std::vector<ushort> steps = stepCosts(plan.radius), inverse = inverseEvidence(plan.radius, bits);
-    const int unit = productUnit / SmoothnessWeight::one, cols = upper.cols;
-    weights.create(upper.size(), CV_8U);
-    const int stripes = (upper.rows + stripeHeight - 1) / stripeHeight;
-    parallelFor(stripes, [&](int i) {
-        const Range rows(i * stripeHeight, std::min((i + 1) * stripeHeight, upper.rows));
-        const Range seen(std::max(rows.start - plan.radius, 0), std::min(rows.end + plan.radius, upper.rows));
-        Mat matched(seen.size(), cols, CV_8U), breaks(seen.size(), cols, CV_8U), matchedSums, breakSums;
-        for (int y = seen.start; y < seen.end; ++y)
-            findTerms(upper.ptr<ushort>(y), upper.ptr<ushort>(std::min(y + 1, upper.rows - 1)), residual.ptr(y), cols,
-                      bits, matched.ptr(y - seen.start), breaks.ptr(y - seen.start));
-        sumOverWindows(matched, rows - seen.start, sideOf(plan.radius), CV_16U, matchedSums);
-        sumOverWindows(breaks, rows - seen.start, sideOf(plan.radius), CV_16U, breakSums);
-        for (int y = rows.start; y < rows.end; ++y)
+    const int unit = productUnit / SmoothnessWeight::one;
+    weights.create(size, CV_8U);
+    parallelForRows(size, [&](int y) {
+        const ushort *matchedSum = matchedSums.ptr<ushort>(y), *breakSum = breakSums.ptr<ushort>(y);
+        uchar* const weight = weights.ptr(y);
+        for (int x = 0; x < size.width; ++x)
         {
-            const ushort* const matchedSum = matchedSums.ptr<ushort>(y - rows.start);
-            const ushort* const breakSum = breakSums.ptr<ushort>(y - rows.start);
-            uchar* const weight = weights.ptr(y);
-            for (int x = 0; x < cols; ++x)
-            {
-                const int product = steps[breakSum[x]] * inverse[matchedSum[x] >> sumBits];
-                weight[x] = (uchar)clamped(product / unit, plan.least, plan.most);
-            }
+            const int product = steps[breakSum[x]] * inverse[matchedSum[x] >> sumBits];
+            weight[x] = (uchar)clamped(product / unit, plan.least, plan.most);
         }
     });
 }

@@ -28,7 +28,7 @@ struct VolumeProblem
     static const int maxScanlines = 64; // that are followed side by side
     // before and behind the candidates of a pixel, for the first and the last one to have neighbours
     static const int margin = CostVolume::chunk;
-    //! Memory for a pixel, by disparity: an interval may begin at the last one.
+    //! Memory for a pixel, by disparity, and a chunk more, as an interval may begin at the last one
     int lineLength() const { return margin + volume.numDisparities + CostVolume::chunk + margin; }
     //! Memory for scanlines that are followed side by side: two pixels of each, the sums of one, and a
     //! line for the padding
@@ -43,7 +43,8 @@ where disparities that are not candidates of q are left out. L = C where there i
 The winner has the lowest sum of the directions, the lowest disparity if there are several; its sum and those of both
 candidates beside it give the sub-pixel part, see winnerFraction(), whose limits are costs of 8 and 14 in each
 direction. Of the first candidate and of the last one, the fraction may lie towards the others: the sum beyond it is
-that of the slope between those next to it, or that which leaves the fraction at 0. Pixels without candidates get 0.
+that of the slope between those next to it, or that which leaves the fraction at 0. First and last are those of
+volume.intervals, if it has some and the winner lies in its pixel's. Pixels without candidates get 0.
 @param volume The costs C.
 @param weights w, CV_8UC2, see weighEdges().
 @param sums Memory to work in: those of the directions so far, in the order of the volume; it only ever grows.

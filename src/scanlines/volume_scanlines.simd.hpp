@@ -145,6 +145,8 @@ private:
         const uchar *const weights = p_.weights, *const costs = volume.costs.data();
         short *const sums = p_.sums, *const total = total_;
         ushort* const disparity = p_.disparity;
+        CV_DbgAssert(volume.intervals.empty() || volume.intervals.isContinuous());
+        const DisparityInterval* const intervals = volume.intervals.ptr<DisparityInterval>(); // or none
         const ptrdiff_t lineLength = lineLength_;
         const int scanlines = scanlines_, length = length_;
         const WordLanes small = WordLanes::repeat(p_.small);
@@ -181,7 +183,10 @@ private:
                     large = enter(own, large, last[k], before + k * lineLength);
                 const int winner =
                     step<role, vectors>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
-                if (role == LAST)
+                if (role == LAST && intervals)
+                    winners.setWithin(k, total, interval.first, winner, interval.size() - 1, intervals[pixel].first,
+                                      intervals[pixel].last);
+                else if (role == LAST)
                     winners.set(k, total, interval.first, winner, interval.size() - 1);
             }
             if (role == LAST)

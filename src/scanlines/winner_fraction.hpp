@@ -58,6 +58,18 @@ struct Winners
         slope[i] = (short)std::max(std::max(before, after) - sum, 1);
     }
 
+    //! The same for a winner that lies in [ownFirst, ownLast], and for others: costs beyond these are not those of
+    //! candidates.
+    template <typename Sum>
+    CV_ALWAYS_INLINE void setWithin(int i, const Sum* sums, int first, int k, int last, int ownFirst, int ownLast) const
+    {
+        const int begin = std::max(ownFirst - first, 0), end = std::min(ownLast - first, last);
+        if (begin <= k && k <= end)
+            set(i, sums + begin, first + begin, k - begin, end - begin);
+        else
+            set(i, sums, first, k, last);
+    }
+
     //! Disparities of a map. bit: what a bit of the census costs in one direction; halving: 1 if there are two
     //! candidates per pixel of disparity, else 0
     CV_ALWAYS_INLINE void takeDisparities(int count, int bit, int halving, ushort* disparity) const

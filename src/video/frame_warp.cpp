@@ -25,7 +25,7 @@ struct BlockRow
         for (int j = 0; j < count; ++j)
             centres[j] = std::min(j * block + block / 2, width - 1);
     }
-    int y; // of the blocks' centres
+    int y = 0; // of the blocks' centres
     std::vector<int> centres, atX, atY;
     std::vector<int> lastStep;  // the sum of both coordinates' changes
     std::vector<ushort> before; // what the last frame has at (atX, atY)
