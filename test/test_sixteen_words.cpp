@@ -43,8 +43,15 @@ TEST(HDPStereo_SixteenWords, operations)
         expectLanes(first.max(second), [&](int k) { return std::max(a[k], b[k]); });
         expectLanes(first.min(second), [&](int k) { return std::min(a[k], b[k]); });
         expectLanes(first.difference(second), [&](int k) { return std::abs(a[k] - b[k]); });
-        expectLanes(first.plus(second), [&](int k) { return a[k] + b[k]; });
-        expectLanes(first.minus(second), [&](int k) { return a[k] - b[k]; });
+        expectLanes(first + second, [&](int k) { return a[k] + b[k]; });
+        expectLanes(first - second, [&](int k) { return a[k] - b[k]; });
+        expectLanes(first.whereNotGreater(first, second, second), [&](int k) { return std::min(a[k], b[k]); });
+        expectLanes(first.whereNotGreater(second, first, second), [&](int k) { return std::max(a[k], b[k]); });
+        EXPECT_EQ(*std::min_element(a, a + 16), first.minimum());
+        short stored[16];
+        first.store(stored);
+        expectLanes(first, [&](int k) { return stored[k]; });
+        expectLanes(Words::load(stored), [&](int k) { return a[k]; });
         expectLanes(first.whereEqual(first, second), [&](int k) { return a[k] == b[k] ? a[k] : 0; });
     }
 }

@@ -62,11 +62,11 @@ template <int channels> inline ushort voteAt(const VoteRows& rows, int x, ushort
     HDP_UNROLLED for (int r = 0; r < VoteRows::rows; ++r)
     {
         const SixteenWords change = differenceOf<channels>(rows, r, start, colour).min(likeness);
-        const SixteenWords votes = likeness.minus(change);
+        const SixteenWords votes = likeness - change;
         const SixteenWords disparity =
             SixteenWords::load(rows.disparity(VoteRows::rowStep * (r - VoteRows::rows / 2)) + start);
-        majority = majority.plus(votes.whereEqual(disparity, disparity.max(nearFirst).min(nearLast)))
-                       .minus(votes.whereEqual(disparity, disparity.max(farFirst).min(farLast)));
+        majority = majority + votes.whereEqual(disparity, disparity.max(nearFirst).min(nearLast)) -
+                   votes.whereEqual(disparity, disparity.max(farFirst).min(farLast));
     }
     const int nearVotes = majority.sum(); // less those for the other one
     const ushort own = rows.disparity(0)[x];

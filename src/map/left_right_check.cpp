@@ -4,25 +4,30 @@
 #include "../precomp.hpp"
 #include "left_right_check.hpp"
 
-#include "left_right_check.simd.hpp"
-#include "map/left_right_check.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_DISPATCH(visibilityRow)
-
 //! A Visibility per pixel, CV_8UC1. disparity: CV_16SC1 or CV_16UC1 (T); maxDiff: of a visible pixel, in pixels;
-//! invalid: see visibilityRow()
+//! invalid: that of pixels that map to no column, or a value that none has
 template <typename T> Mat checkLeftRight(const Mat& disparity, int maxDiff, int invalid)
 {
-    const int maxDifference = (int)std::min<int64>((int64)maxDiff * subpixelScale, INT_MAX);
+    static_assert(subpixelScale == 1 << 4, "divided by a shift, so that negative ones are rounded as others");
+    const int maxDifference = (int)std::min<int64>((int64)maxDiff * subpixelScale, INT_MAX), width = disparity.cols;
     Mat visibility(disparity.size(), CV_8U);
-    const int width = disparity.cols;
     parallelForRows(disparity.size(), std::vector<int>(2 * width + 1), [&](int y, std::vector<int>& memory) {
-        dispatched::visibilityRow(disparity.ptr<T>(y), width, invalid, maxDifference, memory.data(), &memory[width],
-                                  visibility.ptr(y));
+        const T* const row = disparity.ptr<T>(y);
+        int *const columns = memory.data(), *const nearest = columns + width, end = width;
+        HDP_VECTORIZED for (int x = 0; x < end; ++x)
+        {
+            // As cvRound(disparity / 16.), for vectors: of two that are equally near the even one
+            const int own = row[x], rounded = (own + subpixelScale / 2 - 1 + ((own >> 4) & 1)) >> 4;
+            const int column = x + 1 - rounded;
+            columns[x] = ((column > 0) & (column <= end) & (own != invalid)) ? column : 0;
+        }
+        testVisibility(row, columns, width, width, maxDifference, nearest, visibility.ptr(y));
     });
     return visibility;
 }

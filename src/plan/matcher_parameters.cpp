@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "matcher_parameters.hpp"
+#include "named_values.hpp"
 
 #include "../forest/disparity_forest.hpp"
 #include "../scanlines/scanline_aggregation.hpp"
@@ -76,46 +77,9 @@ template <typename Parameters, typename Visitor> void visitParams(Parameters& p,
     visit("useNonLocalRefinement", p.useNonLocalRefinement);
 }
 
-struct Checker
-{
-    template <typename T> void operator()(const char* name, T value, bool isValid = true, const char* valid = "") const
-    {
-        if (isValid)
-            return;
-        std::ostringstream message;
-        message << name << " must be " << valid << ", not " << value;
-        CV_Error(Error::StsOutOfRange, message.str());
-    }
-};
-
-struct Writer
-{
-    FileStorage& fs;
-
-    template <typename T> void operator()(const char* name, T value, bool = true, const char* = "") const
-    {
-        fs << name << value;
-    }
-};
-
-struct Reader
-{
-    const FileNode& fn;
-
-    template <typename T> void operator()(const char* name, T& value, bool = true, const char* = "") const
-    {
-        const FileNode node = fn[name];
-        if (node.empty())
-            return;
-        if (!node.isInt() && !(std::is_same<T, double>::value && node.isReal()))
-            CV_Error(Error::StsParseError, format("%s must be a number", name));
-        value = saturate_cast<T>((double)node);
-    }
-};
-
 void checkParams(const M::Params& params)
 {
-    visitParams(params, Checker());
+    visitParams(params, hdp::ValueChecker{ "" });
     if (!params.treeStrategy)
         CV_Error(Error::StsNullPtr, "treeStrategy must not be empty");
 }
@@ -189,7 +153,7 @@ HDPTreeMatcher::Params::Params(int preset)
 
 void HDPTreeMatcher::Params::write(FileStorage& fs) const
 {
-    visitParams(*this, Writer{ fs });
+    visitParams(*this, hdp::ValueWriter{ fs });
     CV_Assert(treeStrategy);
     fs.startWriteStruct("treeStrategy", FileNode::MAP);
     fs << "strategy" << treeStrategy->getDefaultName();
@@ -206,7 +170,7 @@ void HDPTreeMatcher::Params::write(FileStorage& fs) const
 void HDPTreeMatcher::Params::read(const FileNode& fn)
 {
     Params params(PRESET_PAPER);
-    visitParams(params, Reader{ fn });
+    visitParams(params, hdp::ValueReader{ fn, "", true });
     params.treeStrategy = readStrategy(fn["treeStrategy"], treeStrategy);
     if (!fn["predictionModel"].empty())
     {
@@ -221,23 +185,23 @@ namespace hdp {
 
 void checkParameters(const MatcherParameters& parameters)
 {
-    visitRange(parameters, Checker());
+    visitRange(parameters, ValueChecker{ "" });
     checkParams(parameters);
 }
 
 void writeParameters(const MatcherParameters& parameters, FileStorage& fs)
 {
-    visitRange(parameters, Writer{ fs });
+    visitRange(parameters, ValueWriter{ fs });
     parameters.write(fs);
 }
 
 MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ownStrategy)
 {
     MatcherParameters parameters;
-    visitRange(parameters, Reader{ fn });
+    visitRange(parameters, ValueReader{ fn, "", true });
     parameters.treeStrategy = ownStrategy; // for files that name it
     parameters.read(fn);
-    visitRange(parameters, Checker());
+    visitRange(parameters, ValueChecker{ "" });
     return parameters;
 }
 

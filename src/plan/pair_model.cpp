@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "pair_model.hpp"
+#include "named_values.hpp"
 
 #include "../base/units.hpp"
 #include "../pair/image_levels.hpp"
@@ -28,7 +29,9 @@ bool areNumbers(const std::vector<double>& numbers, int count, double most)
     return (int)numbers.size() == count && std::all_of(numbers.begin(), numbers.end(), isValid);
 }
 
-//! Calls visit(name, value, whether it is valid, what is) for all fields.
+const char* const prefix = "PairModel: "; // of messages
+
+//! See named_values.hpp.
 template <typename Model, typename Visit> void visitFields(Model& m, const Visit& visit)
 {
     const auto isStep = [](double step) { return std::isfinite(step) && step >= 0; };
@@ -60,51 +63,6 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("rows", m.rows, areNumbers(m.rows, RowModel::terms, DBL_MAX), "5 finite numbers");
     visit("light", m.light, areNumbers(m.light, LightModel::terms, maxLight), "10 numbers of -10^6..10^6");
 }
-
-struct Checker
-{
-    template <typename T> void operator()(const char* name, const T&, bool isValid, const char* expected) const
-    {
-        if (!isValid)
-            CV_Error(Error::StsOutOfRange, format("PairModel: %s must be %s", name, expected));
-    }
-};
-
-struct Writer
-{
-    FileStorage& fs;
-
-    template <typename T> void operator()(const char* name, const T& value, bool, const char*) const
-    {
-        fs << name << value;
-    }
-};
-
-struct Reader
-{
-    const FileNode& fn;
-
-    static double numberOf(const FileNode& node, const char* name)
-    {
-        if (!node.isInt() && !node.isReal())
-            CV_Error(Error::StsParseError, format("PairModel: %s must be a number", name));
-        return (double)node;
-    }
-
-    template <typename T> void operator()(const char* name, T& value, bool, const char*) const
-    {
-        value = saturate_cast<T>(numberOf(fn[name], name));
-    }
-    void operator()(const char* name, std::vector<double>& numbers, bool, const char*) const
-    {
-        const FileNode node = fn[name];
-        if (!node.isSeq())
-            CV_Error(Error::StsParseError, format("PairModel: %s must be a sequence of numbers", name));
-        numbers.clear();
-        for (const FileNode& number : node)
-            numbers.push_back(numberOf(number, name));
-    }
-};
 
 //! In 0 .. side - 1, as a column that begins a block
 int blockStart(int column) { return (column % BlockGrid::side + BlockGrid::side) % BlockGrid::side; }
@@ -160,14 +118,14 @@ PairModel PairModel::enlarged(int times, int largeWidth, int largeHeight) const
     return model;
 }
 
-void PairModel::write(FileStorage& fs) const { visitFields(*this, Writer{ fs }); }
+void PairModel::write(FileStorage& fs) const { visitFields(*this, ValueWriter{ fs }); }
 
 void PairModel::read(const FileNode& fn)
 {
     if (!fn.isMap())
         CV_Error(Error::StsParseError, "PairModel: it must be a map");
     PairModel model;
-    visitFields(model, Reader{ fn });
+    visitFields(model, ValueReader{ fn, prefix, false });
     checkPairModel(model);
     *this = model;
 }
@@ -207,7 +165,7 @@ void checkPairModel(const PairModel& model)
 {
     if (model.empty())
         return;
-    visitFields(model, Checker());
+    visitFields(model, ValueChecker{ prefix });
     // Tiles are moved by minDisparity, and rows are followed from there, see alignRow().
     const double moved = std::abs((double)model.minDisparity);
     const Point2d corner(0.5 * (model.width + model.addedColumns) + moved, 0.5 * model.height);

@@ -43,7 +43,8 @@ void ScanlineScratch::Block::prepare(size_t pairs)
     edges.resize(2 * columns + 16); // some more to read
     winners.resize(columns);
     winnerCosts.resize(columns);
-    winnerSums.resize(4 * columns);
+    for (std::vector<uchar>& sums : winnerSums)
+        sums.resize(columns);
 }
 
 void ScanlineScratch::prepare(int width, int numDisparities)

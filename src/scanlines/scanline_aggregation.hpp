@@ -71,7 +71,7 @@ struct ScanlineScratch
     {
         std::vector<uchar> edges;                // large penalties, two per pixel
         std::vector<uchar> winners, winnerCosts; // their lanes and costs
-        std::vector<uchar> winnerSums; // of the lane before, of the winner's, of the one behind, and of another
+        std::vector<uchar> winnerSums[3];        // of the lane before, of theirs, and of the one behind
 
         void prepare(size_t pairs);
     };

@@ -172,7 +172,9 @@ public:
         {
             const size_t row = r * (2 * (size_t)pairs_ + 2 * margin) + margin;
             winners_[r] = scratch.winners.data() + row;
-            sums_[r] = scratch.winnerSums.data() + 4 * row;
+            before_[r] = scratch.winnerSums[0].data() + row;
+            sums_[r] = scratch.winnerSums[1].data() + row;
+            after_[r] = scratch.winnerSums[2].data() + row;
             winnerCosts_[r] = scratch.winnerCosts.data() + row;
             edges_[r] = scratch.edges.data() + 2 * row;
         }
@@ -354,14 +356,16 @@ private:
     {
         unsigned lane[groups];
         sum.findMinimum(lane);
-        uchar sums[lanes + 4];
+        uchar sums[lanes + 2]; // the first and the last one of any value
         sum.store(sums + 1);
         for (int r = 0; r < groups; ++r)
         {
             const int x = 2 * (t - r) + column;
             winners_[r][x] = (uchar)lane[r];
             const int winner = r * Window::candidates + lane[r];
-            std::memcpy(sums_[r] + 4 * x, sums + winner, 4);
+            before_[r][x] = sums[winner];
+            sums_[r][x] = sums[winner + 1];
+            after_[r][x] = sums[winner + 2];
             winnerCosts_[r][x] = costs[winner];
         }
     }
@@ -373,12 +377,12 @@ private:
         const int last = p_.validCandidates() - 1, maxDisparity = p_.maxDisparity;
         const short *firstOfLow = tables_->firstOfColumn(0), *firstOfHigh = tables_->firstOfColumn(1);
         const uchar *winners = winners_[group], *costs = winnerCosts_[group];
-        const uchar* const sums = sums_[group];
+        const uchar *const befores = before_[group], *const sums = sums_[group], *const afters = after_[group];
         HDP_VECTORIZED for (int x = 0; x < width_; ++x)
         {
             const int lane = winners[x], low = firstOfLow[x], high = firstOfHigh[x] - Window::runLength;
             const int whole = lane + (lane < Window::runLength ? low : high);
-            const int before = sums[4 * x], sum = sums[4 * x + 1], after = sums[4 * x + 2];
+            const int before = befores[x], sum = sums[x], after = afters[x];
             // Whether there are candidates on both sides: the lane is not at the end of a run, or the runs are one
             const int isInner =
                 ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
@@ -395,7 +399,7 @@ private:
     WindowCosts costs_;
     // The scratch memory, from column 0 on
     uchar* const vertical_;
-    uchar *winners_[groups], *winnerCosts_[groups], *sums_[groups], *edges_[groups];
+    uchar *winners_[groups], *winnerCosts_[groups], *before_[groups], *sums_[groups], *after_[groups], *edges_[groups];
     const ScanlineWindows* tables_;
     const uchar *small_, *intoSide_, *intoNext_; // of the first step
     bool changesWindows_;                        // whether tables_ are not those of the block before

@@ -7,7 +7,7 @@
 #include "../base/vectorized.hpp"
 #include "winner_fraction.hpp"
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "../base/byte_lanes.simd.hpp"
+#include "../base/sixteen_words.simd.hpp"
 #endif
 
 namespace cv { namespace stereo { namespace hdp {
@@ -24,53 +24,6 @@ void aggregateColumns(const VolumeProblem& problem, const Range& columns, short*
 
 namespace {
 
-//! A vector of 16-bit numbers: universal intrinsics under names that all versions of OpenCV have in common
-struct WordLanes
-{
-#if HDP_LANES_AVX2
-    typedef v_int16x16 Vector;
-    static WordLanes repeat(int word) { return v256_setall_s16((short)word); }
-    static WordLanes load(const short* words) { return v256_load(words); }
-    static WordLanes load(const uchar* bytes) { return v_reinterpret_as_s16(v256_load_expand(bytes)); }
-#else
-    typedef v_int16x8 Vector;
-    static WordLanes repeat(int word) { return v_setall_s16((short)word); }
-    static WordLanes load(const short* words) { return v_load(words); }
-    static WordLanes load(const uchar* bytes) { return v_reinterpret_as_s16(v_load_expand(bytes)); }
-#endif
-    static const int count = sizeof(Vector) / sizeof(short);
-    Vector v;
-
-    WordLanes(const Vector& vector) : v(vector) {}
-    void store(short* words) const { v_store(words, v); }
-
-    WordLanes operator+(const WordLanes& b) const { return v_add_wrap(v, b.v); }
-    WordLanes operator-(const WordLanes& b) const { return v_sub_wrap(v, b.v); }
-    WordLanes min(const WordLanes& b) const { return v_min(v, b.v); }
-    WordLanes max(const WordLanes& b) const { return v_max(v, b.v); }
-    //! The lowest lane, if none is negative
-    int minimum() const
-    {
-#if HDP_LANES_AVX2
-        const __m128i half = _mm_min_epi16(_mm256_castsi256_si128(v.val), _mm256_extracti128_si256(v.val, 1));
-        return _mm_cvtsi128_si32(_mm_minpos_epu16(half)) & 0xffff;
-#elif HDP_LANES_SSE4
-        return _mm_cvtsi128_si32(_mm_minpos_epu16(v.val)) & 0xffff;
-#else
-        return v_reduce_min(v);
-#endif
-    }
-    //! Those of b where a is greater than limit, and its own elsewhere
-    WordLanes replaced(const WordLanes& a, const WordLanes& limit, const WordLanes& b) const
-    {
-#if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 9 // as in ByteLanes
-        return v_select(a.v > limit.v, b.v, v);
-#else
-        return v_select(v_gt(a.v, limit.v), b.v, v);
-#endif
-    }
-};
-
 /** Follows a block of scanlines side by side, pixel by pixel: so one does not wait for the minimum of another.
 
 A cost is at most 255, and L(p, d) - C(p, d) at most large(p, q), so L is at most 255 + VolumePenalties::largest = 1055,
@@ -80,6 +33,9 @@ Behind the last candidate, to the end of the vector, and before and behind the v
 class LineBlock
 {
 public:
+    typedef SixteenWords Words; // of a chunk of the volume
+    static_assert((int)Words::count == (int)CostVolume::chunk, "Pixels have whole ones.");
+
     //! The pixels of a direction: number i of scanline k is first + i * along + k * across. The edge to it from the
     //! one before is number 2 * pixel + edge.
     struct Direction
@@ -106,7 +62,7 @@ public:
     {
         std::fill(total_ + lineLength_, padding_, (short)0);
         std::fill(padding_, padding_ + margin, +none);
-        for (int k = 0; k < WordLanes::count; ++k)
+        for (int k = 0; k < Words::count; ++k)
             lanes_[k] = (short)k;
     }
 
@@ -114,7 +70,7 @@ public:
     {
         if (!p_.volume.isUniform)
             return follow<role, OWN>(direction);
-        switch (vectorsOf(p_.volume.of(0).interval)) // of 32, 64 and 128 candidates, and of up to 48
+        switch (p_.volume.of(0).chunks()) // of 32, 64 and 128 candidates, and of up to 48
         {
         case 2:
             return follow<role, 2>(direction);
@@ -130,11 +86,6 @@ public:
     }
 
 private:
-    static int vectorsOf(const DisparityInterval& candidates)
-    {
-        return (int)alignSize(candidates.size(), WordLanes::count) / WordLanes::count;
-    }
-
     template <int role, int vectors> void follow(const Direction& direction)
     {
         const bool isUniform = vectors != OWN;
@@ -149,7 +100,7 @@ private:
         const DisparityInterval* const intervals = volume.intervals.ptr<DisparityInterval>(); // or none
         const ptrdiff_t lineLength = lineLength_;
         const int scanlines = scanlines_, length = length_;
-        const WordLanes small = WordLanes::repeat(p_.small);
+        const Words small = Words::repeat(p_.small);
         short *before = before_, *here = here_;
         LastPixel last[VolumeProblem::maxScanlines];
         ushort whole[VolumeProblem::maxScanlines];
@@ -176,7 +127,7 @@ private:
                 const size_t start = isUniform ? (size_t)pixel * stride : candidates.start();
                 int large = p_.large[weights[i > 0 ? 2 * pixel + direction.edge : 0]];
                 const Pixel own = {
-                    interval.first, interval.size(), (vectors > 0 ? vectors : vectorsOf(interval)) * WordLanes::count,
+                    interval.first, interval.size(), (vectors > 0 ? vectors : candidates.chunks()) * Words::count,
                     costs + start,  sums + start,    role == LAST ? total : sums + start
                 };
                 if (!isUniform && !last[k].reaches(own))
@@ -248,35 +199,35 @@ private:
 
     //! L of a pixel, from that of the pixel before; in the last direction, returns the first of the lowest sums.
     template <int role, int vectors>
-    CV_ALWAYS_INLINE int step(const Pixel& own, const WordLanes& small, int large, const short* before, short* here,
+    CV_ALWAYS_INLINE int step(const Pixel& own, const Words& small, int large, const short* before, short* here,
                               LastPixel& last) const
     {
-        const WordLanes least = WordLanes::repeat(last.minimum), jump = WordLanes::repeat(last.minimum + large),
-                        noCandidate = WordLanes::repeat(none);
+        const Words least = Words::repeat(last.minimum), jump = Words::repeat(last.minimum + large),
+                    noCandidate = Words::repeat(none);
         before += own.first;
         here += own.first;
-        WordLanes minimum = noCandidate, lowestSum = WordLanes::repeat(SHRT_MAX), position = lowestSum;
-        const int count = vectors > 0 ? vectors * WordLanes::count : own.count;
+        Words minimum = noCandidate, lowestSum = Words::repeat(SHRT_MAX), position = lowestSum;
+        const int count = vectors > 0 ? vectors * Words::count : own.count;
         const short* const padding = padding_ - own.size;
-        for (int d = 0; d < count; d += WordLanes::count)
+        for (int d = 0; d < count; d += Words::count)
         {
-            const WordLanes beside = WordLanes::load(before + d - 1).min(WordLanes::load(before + d + 1)) + small;
-            const WordLanes best = WordLanes::load(before + d).min(beside).min(jump);
-            WordLanes l = WordLanes::load(own.costs + d) + (best - least);
-            if (vectors <= 0 || d == count - WordLanes::count)
-                l = l.max(WordLanes::load(padding + d));
+            const Words beside = Words::load(before + d - 1).min(Words::load(before + d + 1)) + small;
+            const Words best = Words::load(before + d).min(beside).min(jump);
+            Words l = Words::load(own.costs + d) + (best - least);
+            if (vectors <= 0 || d == count - Words::count)
+                l = l.max(Words::load(padding + d));
             l.store(here + d);
             minimum = minimum.min(l);
-            const WordLanes sum = role == FIRST ? l : WordLanes::load(own.sums + d) + l;
+            const Words sum = role == FIRST ? l : Words::load(own.sums + d) + l;
             sum.store(own.into + d);
             if (role != LAST)
                 continue;
-            position = position.replaced(lowestSum, sum, WordLanes::repeat(d));
+            position = position.whereNotGreater(lowestSum, sum, Words::repeat(d));
             lowestSum = lowestSum.min(sum);
         }
         if (vectors == OWN)
         {
-            for (int d = 0; d < margin; d += WordLanes::count)
+            for (int d = 0; d < margin; d += Words::count)
             {
                 noCandidate.store(here - margin + d);
                 noCandidate.store(here + count + d);
@@ -288,12 +239,13 @@ private:
         if (role != LAST)
             return 0;
         // Where the lowest sum is higher than that of all: no position
-        const WordLanes lowest = WordLanes::repeat(lowestSum.minimum());
-        return (position + WordLanes::load(lanes_)).replaced(lowestSum, lowest, WordLanes::repeat(SHRT_MAX)).minimum();
+        const Words lowest = Words::repeat(lowestSum.minimum());
+        const Words number = position + Words::load(lanes_);
+        return number.whereNotGreater(lowestSum, lowest, Words::repeat(SHRT_MAX)).minimum();
     }
 
     static const int margin = VolumeProblem::margin;
-    short lanes_[WordLanes::count]; // 0, 1, ..
+    short lanes_[Words::count]; // 0, 1, ..
     const VolumeProblem& p_;
     const int scanlines_, length_, lineLength_;
     short *const before_, *const here_; // L of a pixel of each scanline, by disparity
