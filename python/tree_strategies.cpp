@@ -58,7 +58,7 @@ public:
             PyErr_SetString(PyExc_NotImplementedError, "a TreeStrategy must define mayJoin()");
             throw py::error_already_set();
         }
-        return override(weight, a, b).cast<bool>();
+        return toBool(override(weight, a, b), "mayJoin");
     }
 
     bool ordersByWeight() const CV_OVERRIDE { return answer("ordersByWeight", TreeStrategy::ordersByWeight()); }
@@ -79,7 +79,15 @@ private:
     {
         const InRule rule;
         const py::function override = py::get_override(static_cast<const TreeStrategy*>(this), name);
-        return override ? override().cast<bool>() : byDefault;
+        return override ? toBool(override(), name) : byDefault;
+    }
+
+    static bool toBool(const py::object& answered, const char* name)
+    {
+        py::detail::make_caster<bool> bool_;
+        if (answered.is_none() || !bool_.load(answered, true)) // None is a forgotten return
+            throw py::type_error(std::string(name) + "() must return a bool");
+        return py::detail::cast_op<bool>(bool_);
     }
 };
 

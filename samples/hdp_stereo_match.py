@@ -94,7 +94,7 @@ def write_disparity(filename, disparity):
 def color_picture(disparity):
     '''From blue (far) to orange (near); black where there is no disparity.'''
     known = ~np.isnan(disparity)
-    low, high = np.percentile(disparity[known], (1, 99))
+    low, high = np.percentile(disparity[known], (1, 99)) if known.any() else (0, 1)
     levels = np.clip((disparity - low) / max(high - low, 1), 0, 1) * 150 + 20
     picture = cv.applyColorMap(np.nan_to_num(levels).astype(np.uint8), cv.COLORMAP_TURBO)
     picture[~known] = 0
@@ -119,10 +119,14 @@ def write_point_cloud(filename, disparity, image, focal, baseline):
     print('written %s (%d points)' % (filename, len(vertices)))
 
 
+def first_disparity(matcher):
+    return matcher.getFindings().minDisparity if hasattr(matcher, 'getFindings') else matcher.getMinDisparity()
+
+
 def compute(matcher, left, right):
     '''Disparities in pixels, NaN where there is none.'''
     disparity = matcher.compute(left, right).astype(np.float32) / 16
-    disparity[disparity < matcher.getMinDisparity()] = np.nan
+    disparity[disparity < first_disparity(matcher)] = np.nan
     return disparity
 
 
@@ -144,7 +148,7 @@ def main():
     parser.add_argument('right', nargs='?', help='right image')
     parser.add_argument('--preset', choices=PRESETS, default='fast', help='set of parameters (default: fast)')
     parser.add_argument('--min-disparity', type=int, default=0, help='smallest disparity in pixels (default: 0)')
-    parser.add_argument('--num-disparities', type=int, help='number of disparities (default: a fifth of the width)')
+    parser.add_argument('--num-disparities', type=int, help='number of disparities (default: a fifth of the width); 0: found in the pair')
     parser.add_argument('--output', help='disparity: .png (16 bit, times 256, 0 = none) or .pfm (float, inf = none)')
     parser.add_argument('--picture', help='disparity in colors')
     parser.add_argument('--point-cloud', help='colored points: .ply; needs --focal and --baseline')
@@ -172,27 +176,26 @@ def main():
     num_disparities = args.num_disparities
     if num_disparities is None:
         num_disparities = max((left.shape[1] // 5 + 15) // 16 * 16, 16)
-    has_sgbm = args.compare and left.shape[1] > args.min_disparity + num_disparities
-    if args.compare and not has_sgbm:
-        print('without cv.StereoSGBM, which takes images that are wider than the disparities')
 
     try:
         matcher = HDPTreeMatcher.create(args.min_disparity, num_disparities, PRESETS[args.preset])
         matchers = {args.preset: matcher}
         pairs = {args.preset: (left, right)}
-        if has_sgbm:
+        disparities = {args.preset: compute(matcher, left, right)}
+        findings = matcher.getFindings()
+        first, count = findings.minDisparity, findings.numDisparities
+        if args.compare and left.shape[1] <= first + count:
+            print('without cv.StereoSGBM, which takes images that are wider than the disparities')
+        elif args.compare:
             pairs['sgbm'] = in_8_bit(left, right)
-            matchers['sgbm'] = cv.StereoSGBM.create(
-                args.min_disparity, (num_disparities + 15) // 16 * 16, blockSize=3, P1=8 * 27, P2=32 * 27,
-                mode=cv.StereoSGBM_MODE_SGBM_3WAY)
-        disparities = {name: compute(m, *pairs[name]) for name, m in matchers.items()}
+            matchers['sgbm'] = cv.StereoSGBM.create(first, (count + 15) // 16 * 16, blockSize=3, P1=8 * 27,
+                                                    P2=32 * 27, mode=cv.StereoSGBM_MODE_SGBM_3WAY)
+            disparities['sgbm'] = compute(matchers['sgbm'], *pairs['sgbm'])
     except (cv.error, ValueError) as e:
         sys.exit('error: %s' % getattr(e, 'err', e))
 
-    print('images %d x %d, disparities %d to %d' % (left.shape[1], left.shape[0], args.min_disparity,
-                                                  args.min_disparity + num_disparities - 1))
+    print('images %d x %d, disparities %d to %d' % (left.shape[1], left.shape[0], first, first + count - 1))
     times = time_in_turns(matchers, pairs, args.runs) if args.compare else {}
-    findings = matcher.getFindings()
     for stage, milliseconds in zip(findings.stages, findings.stageTimes):
         print('%-24s%10.1f ms' % (stage, milliseconds))
     for name, disparity in disparities.items():

@@ -53,8 +53,6 @@ public:
         };
         PairPlan pairPlan = makePlan(p_);
         clock_.restart();
-        if (!pairPlan.followsVideo)
-            rangeSearch_.forgetFrames();
 
         const struct ImageRelease // which may be the caller's
         {
@@ -62,8 +60,11 @@ public:
             ~ImageRelease() { pair.left = pair.right = Mat(); }
         } release = { pair_ };
         completeImages(left, right);
+        const bool keepsRange = pairPlan.looksForRange && pairPlan.followsVideo;
         if (pairPlan.looksForRange)
             pairPlan = makePlan(withFoundRange(pairPlan.followsVideo));
+        if (!keepsRange)
+            rangeSearch_.forgetFrames();
         if (inputs_.hasRanges() || inputs_.hasPrior())
             clock_.run("known disparities", [&] { takeKnown(inputs_, pairPlan, known_); });
         else
@@ -350,7 +351,7 @@ private:
     VideoFindings predict(const Mat& left, const PairPlan& plan)
     {
         const int finest = plan.finest().layer, scale = 1 << finest;
-        const FrameKey key = { scale, plan.pyramids.minDisparity / (double)scale,
+        const FrameKey key = { plan.size, scale, plan.pyramids.minDisparity / (double)scale,
                                largestDisparity(plan.numDisparities, finest) };
         predictFrame(left, key, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, predictsDisparities(lastFrame_, prediction_) };

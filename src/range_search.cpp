@@ -164,7 +164,6 @@ bool RangeSearch::searchAround(const PairMasks& masks, const Range& corners, Ran
 Range RangeSearch::find(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset, bool isFrame)
 {
     const Range last = isFrame && left.size() == lastSize_ ? last_ : Range();
-    last_ = Range();
     Range corners, found;
     const int support = findCornerRange(left, right, masks, maxRowOffset, corners);
     const bool isFound = support >= minSupport && searchAround(masks, corners, found);

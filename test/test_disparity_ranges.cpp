@@ -41,6 +41,13 @@ TEST(HDPStereo_DisparityRanges, an_empty_map_limits_nothing)
             matcher->setDisparityRange(isSmallest ? limits : Mat(), isSmallest ? Mat() : limits);
             other->setDisparityRange(isSmallest ? inFloats : none, isSmallest ? none : inFloats);
             expectIdentical(match(*other, pair.left, pair.right).clone(), match(*matcher, pair.left, pair.right));
+            // It does not say either which disparities there are.
+            for (HDPTreeMatcher* const m : { matcher.get(), other.get() })
+                m->setNumDisparities(0);
+            expectIdentical(match(*other, pair.left, pair.right).clone(), match(*matcher, pair.left, pair.right));
+            EXPECT_LT(matcher->getFindings().numDisparities, 100);
+            for (HDPTreeMatcher* const m : { matcher.get(), other.get() })
+                m->setNumDisparities(30);
         }
     }
 }

@@ -14,7 +14,7 @@ const int disparities = 48;
 
 FrameKey usualKey()
 {
-    const FrameKey key = { 1, 0, (disparities - 1) * subpixelScale };
+    const FrameKey key = { Size(), 1, 0, (disparities - 1) * subpixelScale };
     return key;
 }
 

@@ -223,6 +223,9 @@ TEST(HDPStereo_RangeSearch, a_video_keeps_its_range)
     const Mat blank(left.size(), left.type(), Scalar::all(80));
     match(*matcher, blank, blank);
     EXPECT_EQ(first, foundRange(*matcher)) << "a frame in which nothing is found";
+    expectRejected([&] { match(*matcher, blank.rowRange(0, 90), blank.rowRange(0, 90)); }, "numDisparities");
+    match(*matcher, blank, blank);
+    EXPECT_EQ(first, foundRange(*matcher)) << "what fails changes nothing";
     match(*matcher, left.colRange(100, left.cols), right.colRange(0, right.cols - 100));
     EXPECT_LT(foundRange(*matcher).start, -50) << "another size";
     matcher->clear();
@@ -245,6 +248,16 @@ TEST(HDPStereo_RangeSearch, a_single_pair_ends_a_video)
     matcher->setNumDisparities(truthEnd);
     match(*matcher, left, right);
     matcher->setUseTemporalPrediction(true);
+    matcher->setNumDisparities(0);
+    match(*matcher, left, right);
+    EXPECT_EQ(alone, foundRange(*matcher));
+
+    // So does a frame whose range is known.
+    matcher->clear();
+    match(*matcher, left, moved);
+    ASSERT_NE(alone, foundRange(*matcher));
+    matcher->setNumDisparities(truthEnd);
+    match(*matcher, left, right);
     matcher->setNumDisparities(0);
     match(*matcher, left, right);
     EXPECT_EQ(alone, foundRange(*matcher));

@@ -405,6 +405,24 @@ TEST(HDPStereo_TemporalPrediction, begins_anew)
     expectAnew([&](HDPTreeMatcher& m) { EXPECT_ANY_THROW(match(m, first.left, first.right.rowRange(0, 50))); }, false);
 }
 
+//! Layers of images of different sizes may have the same one.
+TEST(HDPStereo_TemporalPrediction, begins_anew_with_another_size_of_images)
+{
+    SyntheticVideo video(frameSize, 10.3, 4);
+    const SyntheticFrame first = video.render(0, someBoards()), second = video.render(1, someBoards());
+    const auto matchPart = [](HDPTreeMatcher& m, const SyntheticFrame& frame, int lost) {
+        const Range columns(0, frame.left.cols / 2 * 2 - lost);
+        return match(m, frame.left.colRange(columns), frame.right.colRange(columns)).clone();
+    };
+    const auto createHalf = [](const Ptr<HDPTreeMatcher>& matcher) {
+        change(*matcher, [](Params& p) { p.finestLayer = 1; });
+        return matcher;
+    };
+    const Ptr<HDPTreeMatcher> matcher = createHalf(createTemporal());
+    matchPart(*matcher, first, 2);
+    expectIdentical(matchPart(*createHalf(createSingle()), second, 1), matchPart(*matcher, second, 1));
+}
+
 TEST(HDPStereo_TemporalPrediction, needs_the_census)
 {
     const Ptr<HDPTreeMatcher> matcher = createTemporal(HDPTreeMatcher::PRESET_PAPER);

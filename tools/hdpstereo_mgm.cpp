@@ -207,7 +207,7 @@ struct DisparityRange
 {
     int min, max;
     bool isUnknown;
-    Mat mins, maxs; // of each pixel of the left image, NaN where there is no limit; empty if not given
+    Mat mins, maxs; // of each pixel of the left image; empty if not given
 };
 
 //! -m or -M, NaN where there is no limit
@@ -238,7 +238,7 @@ static String limitOf(const Call& call, const char* name)
     return text == "nan" || text == "NaN" ? String() : text;
 }
 
-//! -m and -M, and the range of all: that of their numbers, and where there is none -r and -R
+//! -m and -M, where these are no numbers -r and -R, or the other one if that is beyond; and the range of all
 static void readPixelRanges(const Call& call, Size size, DisparityRange& range)
 {
     range.mins = readLimits(call, "m", size);
@@ -246,16 +246,17 @@ static void readPixelRanges(const Call& call, Size size, DisparityRange& range)
     for (int y = 0; y < size.height; y++)
         for (int x = 0; x < size.width; x++)
         {
-            const float least = range.mins.at<float>(y, x), most = range.maxs.at<float>(y, x);
+            float &least = range.mins.at<float>(y, x), &most = range.maxs.at<float>(y, x);
             if (least > most)
                 fail(format("-m must be nowhere above -M, but at (%d, %d) they are %g and %g", x, y, least, most));
+            if (cvIsNaN(least))
+                least = cvIsNaN(most) ? (float)range.min : std::min((float)range.min, most);
+            if (cvIsNaN(most))
+                most = std::max((float)range.max, least);
         }
-    Mat mins = range.mins.clone(), maxs = range.maxs.clone(), limits;
-    patchNaNs(mins, range.min);
-    patchNaNs(maxs, range.max);
-    vconcat(mins, maxs, limits);
     double lowest, highest;
-    minMaxLoc(limits, &lowest, &highest);
+    minMaxLoc(range.mins, &lowest, nullptr);
+    minMaxLoc(range.maxs, nullptr, &highest);
     range.min = cvFloor(toDisparity("-m", lowest));
     range.max = cvCeil(toDisparity("-M", highest));
 }
@@ -323,7 +324,7 @@ static void match(HDPTreeMatcher& matcher, const Mat& left, const Mat& right, Ma
     if (matcher.getDisp12MaxDiff() > 0)
         rejectOutside(right, disparity);
     confidence.convertTo(confidence, CV_32F, 1. / 255);
-    confidence.setTo(0, disparity != disparity);
+    confidence.setTo(0, ~(disparity == disparity)); // OpenCV may have NaN != NaN false
 }
 
 //! -r and -R, or what is found in the pair

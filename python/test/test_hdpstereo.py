@@ -772,6 +772,9 @@ class Strategies(Test):
         def ordering(order):
             return type('Ordering', (MinimumSpanningTree,), {'orderEdges': lambda self, weights, edges: order(edges)})()
 
+        def joining(answer):
+            return type('Joining', (TreeStrategy,), {'mayJoin': lambda *arguments: answer})()
+
         matcher = HDPTreeMatcher(0, 32, HDPTreeMatcher.PRESET_TREE)
         uses_matcher = type('Uses', (TreeStrategy,), {'mayJoin': lambda *arguments: matcher.getParams()})()
         expected = matcher.compute(LEFT, RIGHT)
@@ -780,6 +783,8 @@ class Strategies(Test):
                 (KeyError, "'a tree'", Failing()),
                 (KeyError, "'a tree'", FailingInParallel()),
                 (NotImplementedError, 'a TreeStrategy must define mayJoin()', TreeStrategy()),
+                (TypeError, 'mayJoin() must return a bool', joining('yes')),
+                (TypeError, 'mayJoin() must return a bool', joining(None)),
                 (RuntimeError, 'a tree strategy must not use a matcher', uses_matcher),
                 (ValueError, permutation, ordering(lambda edges: edges[1:])),
                 (ValueError, permutation, ordering(lambda edges: np.where(edges == edges[3], edges[4], edges))),

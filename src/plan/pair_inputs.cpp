@@ -8,6 +8,7 @@
 #include "../pair/image_pyramid.hpp"
 
 #include <cfloat>
+#include <cmath>
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -30,10 +31,12 @@ Mat toMask(InputArray array, const char* name)
     return mask.clone();
 }
 
-//! A map of the caller, or one like the other of the two if it is empty
-Mat toLimits(const Mat& map, const Mat& other, int unlimited)
+//! A map of the caller in floats; if it is empty and the other of the two is not, one of NaN
+Mat toLimits(const Mat& map, const Mat& other)
 {
-    return map.empty() && !other.empty() ? Mat(other.size(), other.type(), Scalar(unlimited)) : map;
+    Mat limits;
+    map.convertTo(limits, CV_32F);
+    return map.empty() && !other.empty() ? Mat(other.size(), CV_32F, Scalar(NAN)) : limits;
 }
 
 Mat withoutNaN(const Mat& map, float value)
@@ -67,12 +70,13 @@ void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inp
             CV_Error(Error::StsUnsupportedFormat,
                      format("%s must be CV_16SC1 or CV_32FC1, disparities in pixels, not %s",
                             &map == given ? "smallest" : "largest", typeOf(map).c_str()));
-    const Mat smallest = toLimits(given[0], given[1], -limit), largest = toLimits(given[1], given[0], limit - 1);
-    if (largest.type() != smallest.type() || largest.size() != smallest.size())
+    if (!given[0].empty() && !given[1].empty() &&
+        (given[1].type() != given[0].type() || given[1].size() != given[0].size()))
         CV_Error(Error::StsUnmatchedSizes,
                  format("largest must have the size and type of smallest, %d x %d and %s, not %d x %d and %s",
-                        smallest.cols, smallest.rows, typeOf(smallest).c_str(), largest.cols, largest.rows,
-                        typeOf(largest).c_str()));
+                        given[0].cols, given[0].rows, typeOf(given[0]).c_str(), given[1].cols, given[1].rows,
+                        typeOf(given[1]).c_str()));
+    const Mat smallest = toLimits(given[0], given[1]), largest = toLimits(given[1], given[0]);
     const int less = smallest.empty() ? 0 : countNonZero(largest < smallest);
     if (less > 0)
         CV_Error(Error::StsOutOfRange, format("largest must not be less than smallest, as it is in %d pixels", less));
@@ -81,8 +85,8 @@ void setRange(InputArray smallestArray, InputArray largestArray, PairInputs& inp
         CV_Error(Error::StsOutOfRange,
                  format("smallest must be below %d and largest at least %d, as they are not in %d pixels", limit,
                         -limit, beyond));
-    smallest.convertTo(inputs.smallest, CV_32F);
-    largest.convertTo(inputs.largest, CV_32F);
+    inputs.smallest = smallest;
+    inputs.largest = largest;
     if (inputs.hasRanges())
     {
         minMaxLoc(withoutNaN(inputs.smallest, -FLT_MAX), nullptr, &inputs.highestSmallest);

@@ -27,13 +27,15 @@ struct VideoFindings
 //! What the disparities of a map stand for; only maps of the same key are compared.
 struct FrameKey
 {
+    Size size;           // of the image
     int scale;           // pixels of the image in a side of a pixel
     double minDisparity; // that the map counts from, in pixels of its layer
     int maxDisparity;    // that the map may have, in its units
 
     bool operator==(const FrameKey& other) const
     {
-        return scale == other.scale && minDisparity == other.minDisparity && maxDisparity == other.maxDisparity;
+        return size == other.size && scale == other.scale && minDisparity == other.minDisparity &&
+               maxDisparity == other.maxDisparity;
     }
 };
 

@@ -162,9 +162,7 @@ Mat readImage(const String& path, int flags)
 
 Mat readMask(const String& path) { return readImage(path, IMREAD_GRAYSCALE | IMREAD_ANYDEPTH) != 0; }
 
-Mat readDisparity(const String& path) { return toDisparity(readImage(path, IMREAD_UNCHANGED), path); }
-
-Mat toDisparity(const Mat& image, const String& path)
+Mat toDisparity(const Mat& image, const Mat& mask, const String& path)
 {
     const float none = std::numeric_limits<float>::quiet_NaN();
     if (image.type() != CV_16UC1 && image.type() != CV_32FC1)
@@ -176,6 +174,8 @@ Mat toDisparity(const Mat& image, const String& path)
     else
         disparity.setTo(none, (disparity == std::numeric_limits<float>::infinity()) |
                                   (disparity == -std::numeric_limits<float>::infinity()));
+    if (!mask.empty())
+        disparity.setTo(none, ~mask);
     return disparity;
 }
 

@@ -67,11 +67,9 @@ cv::Mat readImage(const cv::String& path, int flags);
 //! 255 where a picture of any depth is not black, else 0
 cv::Mat readMask(const cv::String& path);
 
-//! A map as encodeDisparity() writes it: CV_32F in pixels, NaN where there is none
-cv::Mat readDisparity(const cv::String& path);
-
-//! The same of what is read already
-cv::Mat toDisparity(const cv::Mat& image, const cv::String& path);
+//! A map as encodeDisparity() writes it, and its mask, as readPicture() has read them: CV_32F in pixels, NaN where there
+//! is none
+cv::Mat toDisparity(const cv::Mat& image, const cv::Mat& mask, const cv::String& path);
 
 //! Colours in 8 bit, or grey levels in 16 bit or floats of a picture that has them
 cv::Mat readPicture(const cv::String& path);

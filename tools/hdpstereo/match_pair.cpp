@@ -288,7 +288,7 @@ void matchPair(const CommandLineParser& parser)
     Mat leftMask, rightMask, left = readPicture(parser.get<String>("@left"), leftMask),
                              right = readPicture(parser.get<String>("@right"), rightMask);
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.cols);
-    if (!rectifier.apply(left, right, *matcher))
+    if (!rectifier.apply(left, right, leftMask, rightMask, *matcher))
         MaskFiles(parser).apply(leftMask, rightMask, *matcher);
     const Matx44d Q = parser.has("point-cloud") ? readQ(parser, rectifier.rig(), left.size()) : Matx44d();
     const Mat truth = parser.has("truth") ? readTruth(parser.get<String>("truth"), left.size()) : Mat();

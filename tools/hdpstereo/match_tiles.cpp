@@ -105,15 +105,22 @@ int timesHalved(Size size, double pixels)
     return times;
 }
 
-//! --num-disparities=0: that of --findings, or of the reduced pair
+//! --num-disparities=0: that of --findings, of --smallest and --largest if they limit all pixels, or of the reduced pair
 void takeRange(const CommandLineParser& parser, const WindowedPair& pair, double pixels, HDPTreeMatcher& matcher)
 {
     int times = 0, first, count;
+    double smallest, largest;
     if (parser.has("findings"))
     {
         const PairModel model = PairModel::load(parser.get<String>("findings"));
         first = model.minDisparity;
         count = model.numDisparities;
+    }
+    else if (pair.limitsAll(smallest, largest))
+    {
+        const double end = pair.size().width - 1; // beyond the images there is nothing
+        first = cvFloor(std::min(std::max(smallest, -end), end));
+        count = cvCeil(std::min(std::max(largest, (double)first), end)) + 1 - first;
     }
     else
     {

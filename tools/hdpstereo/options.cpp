@@ -116,7 +116,10 @@ Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width)
 {
     const Ptr<HDPTreeMatcher> matcher = createPlainMatcher(parser, width);
     const auto mapOf = [&](const char* option) {
-        return parser.has(option) ? readDisparity(parser.get<String>(option)) : Mat();
+        const String path = parser.get<String>(option);
+        Mat mask;
+        const Mat map = path.empty() ? Mat() : readPicture(path, mask);
+        return path.empty() ? Mat() : toDisparity(map, mask, path);
     };
     setKnownDisparities(parser, mapOf("smallest"), mapOf("largest"), mapOf("prior"), *matcher);
     return matcher;

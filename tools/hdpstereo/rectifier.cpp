@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include "rectifier.hpp"
+#include "windows.hpp"
 
 using namespace cv;
 using cv::stereo::HDPTreeMatcher;
@@ -22,28 +23,34 @@ Rectifier::Rectifier(const CommandLineParser& parser)
             requireFile(path);
 }
 
-bool Rectifier::apply(Mat& left, Mat& right, HDPTreeMatcher& matcher)
+bool Rectifier::apply(Mat& left, Mat& right, const Mat& leftMask, const Mat& rightMask, HDPTreeMatcher& matcher)
 {
     if (first_.empty())
         return false;
+    const bool isUsual = leftMask.empty() && rightMask.empty();
     if (!rig_ || rig_->getSize() != left.size())
     {
         const Ptr<StereoRig> rig =
             StereoRig::create(cv::stereo::readStereoCalibration(first_, second_, left.size(), unit_), fieldOfView_);
-        setMasks(*rig, matcher);
+        setMasks(leftMask, rightMask, *rig, matcher);
         rig_ = rig;
     }
+    else if (!isUsual || !areMasksUsual_)
+        setMasks(leftMask, rightMask, *rig_, matcher);
+    areMasksUsual_ = isUsual;
     rig_->rectify(left, right, left, right);
     return true;
 }
 
-void Rectifier::setMasks(StereoRig& rig, HDPTreeMatcher& matcher) const
+void Rectifier::setMasks(const Mat& left, const Mat& right, StereoRig& rig, HDPTreeMatcher& matcher) const
 {
     const Size size = rig.getSize();
     Mat raw[2], masks[2];
     for (int i = 0; i < 2; i++)
     {
-        raw[i] = rawMasks_[i].empty() ? Mat(size, CV_8U, Scalar(255)) : readMask(rawMasks_[i]);
+        raw[i] = joinMasks(rawMasks_[i].empty() ? Mat() : readMask(rawMasks_[i]), i == 0 ? left : right);
+        if (raw[i].empty())
+            raw[i] = Mat(size, CV_8U, Scalar(255));
         if (raw[i].size() != size)
             CV_Error(Error::StsUnmatchedSizes,
                      format("--%s-mask must have the size of the raw images, %d x %d, not %d x %d",

@@ -12,9 +12,11 @@ class Rectifier
 public:
     explicit Rectifier(const cv::CommandLineParser& parser);
 
-    //! Also gives the matcher the masks of what no raw pixel reaches; --left-mask and --right-mask are of raw images.
-    //! Does nothing, and returns false, without --calibration.
-    bool apply(cv::Mat& left, cv::Mat& right, cv::stereo::HDPTreeMatcher& matcher);
+    //! Also gives the matcher the masks of what no raw pixel reaches, or none that has data; --left-mask, --right-mask
+    //! and those of the files are of raw images, and may be empty. Does nothing, and returns false, without
+    //! --calibration.
+    bool apply(cv::Mat& left, cv::Mat& right, const cv::Mat& leftMask, const cv::Mat& rightMask,
+               cv::stereo::HDPTreeMatcher& matcher);
 
     //! Of the last pair; empty without --calibration
     const cv::Ptr<cv::stereo::StereoRig>& rig() const { return rig_; }
@@ -23,10 +25,12 @@ public:
     void write(cv::FileStorage& fs) const;
 
 private:
-    void setMasks(cv::stereo::StereoRig& rig, cv::stereo::HDPTreeMatcher& matcher) const;
+    void setMasks(const cv::Mat& left, const cv::Mat& right, cv::stereo::StereoRig& rig,
+                  cv::stereo::HDPTreeMatcher& matcher) const;
 
     const cv::String first_, second_, rawMasks_[2];
     const double unit_, fieldOfView_;
+    bool areMasksUsual_ = false;         // those of pairs whose files have none
     cv::Ptr<cv::stereo::StereoRig> rig_; // for images of one size: another one is made when that changes
 };
 

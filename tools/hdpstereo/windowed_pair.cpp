@@ -5,8 +5,6 @@
 
 #include "files.hpp"
 
-#include <limits>
-
 #include "opencv2/imgproc.hpp"
 
 using namespace cv;
@@ -108,10 +106,28 @@ Mat WindowedPair::readMap(const File& map, const Rect& part)
     if (!map.windows)
         return Mat();
     Mat mask;
-    Mat disparity = toDisparity(map.windows->read(part, mask), map.path);
-    if (!mask.empty())
-        disparity.setTo(std::numeric_limits<float>::quiet_NaN(), ~mask);
-    return disparity;
+    const Mat image = map.windows->read(part, mask);
+    return toDisparity(image, mask, map.path);
+}
+
+bool WindowedPair::limitsAll(double& smallest, double& largest) const
+{
+    if (!smallest_.windows || !largest_.windows)
+        return false;
+    const int rows = 256;
+    for (int y = 0; y < size_.height; y += rows)
+    {
+        const Rect band = Rect(0, y, size_.width, rows) & Rect(Point(), size_);
+        const Mat least = readMap(smallest_, band), most = readMap(largest_, band);
+        if (!checkRange(least) || !checkRange(most)) // NaN
+            return false;
+        double first, last;
+        minMaxLoc(least, &first, nullptr);
+        minMaxLoc(most, nullptr, &last);
+        smallest = y == 0 ? first : std::min(smallest, first);
+        largest = y == 0 ? last : std::max(largest, last);
+    }
+    return true;
 }
 
 void WindowedPair::setKnownDisparities(const CommandLineParser& parser, const Rect& part, HDPTreeMatcher& matcher) const

@@ -31,6 +31,8 @@ public:
     PairPart read(const cv::Rect& part) const;
     //! Both images, halved some times
     PairPart reduced(int times) const;
+    //! Whether --smallest and --largest limit all pixels, and to which range
+    bool limitsAll(double& smallest, double& largest) const;
     //! Gives a matcher the ranges and the prior of a part.
     void setKnownDisparities(const cv::CommandLineParser& parser, const cv::Rect& part,
                              cv::stereo::HDPTreeMatcher& matcher) const;

@@ -9,8 +9,7 @@
 
 #include "evaluation/datasets.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace hdp_tools;
 
@@ -398,5 +397,4 @@ TEST(HDPStereo_Datasets, bad_roots)
     expectFailure([&] { findScenes(""); }, "is not a folder");
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -174,10 +174,13 @@ TEST(HDPStereo_Mgm, ranges_of_pixels)
             EXPECT_EQ(0, cv::countNonZero((disparity < least) | (disparity > most)));
         }
         const Mat disparity = match(options, "TESTLRRL=0");
-        EXPECT_EQ(0, cv::countNonZero(disparity != disparity)) << "it is looked for in the range";
+        EXPECT_EQ(0, cv::countNonZero(~(disparity == disparity))) << "it is looked for in the range";
         const Mat isRight = cv::abs(disparity - truth) <= 1;
         EXPECT_GT(cv::countNonZero(isRight(free)), 0.8 * free.area());
     }
+    // Where there is none, that of all holds, whatever others have.
+    const Mat narrow = match("-r -20 -R -12 -s none", "TESTLRRL=0")(free);
+    EXPECT_EQ(0, cv::countNonZero((narrow < -20) | (narrow > -12)));
     // These ranges say all; the right map is matched over that of all.
     least = truth - 3;
     most = truth + 3;

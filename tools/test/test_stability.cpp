@@ -9,8 +9,7 @@
 
 #include "evaluation/stability.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace hdp_tools;
 
@@ -284,5 +283,4 @@ TEST(HDPStereo_Stability, right_view_by_hand)
     expectIdentical(Mat_<float>({ 1, 6 }, { 2, 3, none, 0, none, none }), warped); // the nearer one of two
 }
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test

@@ -216,8 +216,10 @@ TEST(HDPStereo_Tiles, cut_all_that_is_known)
     mask(empty).setTo(0);
     folder.write("mask.png", mask);
     pair.truth.convertTo(prior, CV_32F);
-    writeTiff(folder.path("prior.tif"), prior);
-    writeTiff(folder.path("smallest.tif"), smallest);
+    prior.colRange(0, 300).setTo(-9999);
+    smallest.rowRange(300, 400).setTo(30000); // which no disparity would be above
+    writeTiff(folder.path("prior.tif"), prior, "-9999");
+    writeTiff(folder.path("smallest.tif"), smallest, "30000");
     const String out = folder.path("out.tif"), whole = folder.path("whole.tif"), mine = folder.path("rig.yml");
     const String masks = " --left-mask=" + folder.path("mask.png") + " --right-mask=" + folder.path("mask.png");
     const String known = " --prior=" + folder.path("prior.tif") + " --smallest=" + folder.path("smallest.tif");
@@ -257,13 +259,76 @@ TEST(HDPStereo_Tiles, cut_all_that_is_known)
             EXPECT_EQ(String::npos, result.output.find("tiles      1 of")) << result.output;
             const Mat map = cv::imread(out, IMREAD_UNCHANGED);
             EXPECT_EQ(0, cv::countNonZero((map < FLT_MAX) != mask));
-            EXPECT_EQ(0, cv::countNonZero(map < 4));
+            EXPECT_EQ(0, cv::countNonZero(map.rowRange(0, 300) < 4));
             EXPECT_LE(cv::countNonZero(cv::abs(expected - map) > 1), 2800);
         }
         // The reduced pair has no data there either.
         const Execution found = run(folder, tiles + holed + out);
         EXPECT_EQ(0, found.status) << found.errors;
     }
+}
+
+//! Ranges that limit all pixels are that of all tiles: a thing that few corners are on is not lost.
+TEST(HDPStereo_Tiles, find_the_range_in_those_of_pixels)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(700, 400), 32, 9);
+    folder.write("left.png", pair.left);
+    folder.write("right.png", pair.right);
+    Mat truth;
+    pair.truth.convertTo(truth, CV_32F);
+    const Rect box(100, 100, 60, 40);
+    Mat smallest = truth - 3, largest = truth + 3;
+    smallest(box).setTo(70);
+    largest(box).setTo(75);
+    writeTiff(folder.path("smallest.tif"), smallest);
+    writeTiff(folder.path("largest.tif"), largest);
+    const String out = folder.path("out.tif");
+    const Execution result =
+        run(folder, "hdpstereo --tiles --memory=96 --num-disparities=0 " + folder.path("left.png") + " " +
+                        folder.path("right.png") + " " + out + " --smallest=" + folder.path("smallest.tif") +
+                        " --largest=" + folder.path("largest.tif"));
+    ASSERT_EQ(0, result.status) << result.errors;
+    const Mat map = cv::imread(out, IMREAD_UNCHANGED);
+    EXPECT_EQ(0, cv::countNonZero(~((map >= smallest) & (map <= largest))));
+}
+
+//! Of raw pairs, too; a pair without is matched as before.
+TEST(HDPStereo_Tiles, no_data_of_raw_pairs)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 22);
+    const String chain = folder.path("camchain.yaml");
+    std::ofstream file(chain.c_str());
+    for (int camera = 0; camera < 2; ++camera)
+        file << "cam" << camera << ":\n  camera_model: pinhole\n  distortion_model: none\n  resolution: [160, 120]\n"
+             << "  intrinsics: [200, 200, 79.5, 59.5]\n";
+    file << "  T_cn_cnm1: [1, 0, 0, -0.2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
+    file.close();
+    const Rect empty(60, 40, 50, 30);
+    Mat left = sixteenBit(pair.left);
+    writeTiff(folder.path("left.tif"), left);
+    writeTiff(folder.path("right.tif"), sixteenBit(pair.right));
+    left(empty).setTo(300);
+    writeTiff(folder.path("holed.tif"), left, "300.0");
+    const String right = " " + folder.path("right.tif"), options = " --num-disparities=32 --calibration=" + chain;
+    const auto missingOf = [&](const String& name) {
+        const Mat map = cv::imread(folder.path(name), IMREAD_UNCHANGED);
+        return map.empty() ? -1 : (int)map.total() - cv::countNonZero(map == map);
+    };
+    EXPECT_EQ(
+        0, run(folder, "hdpstereo " + folder.path("holed.tif") + right + " " + folder.path("a.tif") + options).status);
+    folder.writeText("list.txt", folder.path("left.tif") + right + " b\n" + folder.path("holed.tif") + right + " c\n" +
+                                     folder.path("left.tif") + right + " d\n");
+    EXPECT_EQ(0, run(folder,
+                     "hdpstereo --batch --format=tif " + folder.path("list.txt") + " " + folder.path("maps") + options)
+                     .status);
+    const int atBorder = missingOf("maps/b.tif"); // that no raw pixel reaches
+    EXPECT_LE(atBorder, 160);
+    EXPECT_GE(missingOf("a.tif") - atBorder, empty.area());
+    EXPECT_LE(missingOf("a.tif") - atBorder, 1.2 * empty.area());
+    EXPECT_EQ(missingOf("a.tif"), missingOf("maps/c.tif"));
+    EXPECT_EQ(atBorder, missingOf("maps/d.tif"));
 }
 
 //! The files of images are not mapped into memory; what matches them has as much as it may.

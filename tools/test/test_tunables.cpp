@@ -9,11 +9,9 @@
 
 #ifdef __unix__
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
-const char* const programs[] = { "hdp_evaluate", "hdp_parameters", "hdp_robustness", "hdp_stability",
-                                 "hdp_video" };
+const char* const programs[] = { "hdp_evaluate", "hdp_parameters", "hdp_robustness", "hdp_stability", "hdp_video" };
 
 #ifdef HDPSTEREO_TUNABLE
 
@@ -109,7 +107,6 @@ TEST(HDPStereo_Tunables, not_of_this_build)
 
 #endif
 
-} // namespace
-} // namespace opencv_test
+}} // namespace opencv_test
 
 #endif // __unix__

@@ -72,7 +72,8 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     CV_PROP_RW int numDisparities; //!< the same, > 0
     CV_PROP_RW int addedColumns;   //!< that a negative minDisparity added on the left of the images, >= 0
 
-    //! Coefficients of HDPTreeMatcher::Findings::rows: 5 finite numbers, whose terms move pixels by at most 2^24 rows.
+    //! As HDPTreeMatcher::Findings::rows, of points counted as above: 5 finite numbers, whose terms move pixels by at
+    //! most 2^24 rows.
     CV_PROP_RW std::vector<double> rows;
     //! Whether the rows of the right image are moved by them
     CV_PROP_RW bool areRowsMoved;
