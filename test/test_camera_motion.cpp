@@ -175,7 +175,7 @@ TEST(HDPStereo_CameraMotion, tracks_points)
         std::vector<TrackedPoint> points;
         const std::vector<Mat> before = pyramidOf(image(area).clone()), now = pyramidOf(image(area - shift).clone());
         choosePoints(before, points);
-        trackPoints(before, now, false, points);
+        trackPoints(before, now, hdp::FROM_BEFORE, points);
         EXPECT_GE((int)points.size(), 200);
         int right = 0;
         for (const TrackedPoint& point : points)
@@ -186,7 +186,7 @@ TEST(HDPStereo_CameraMotion, tracks_points)
         near.forward(0, 3) = shift.x + 4;
         near.forward(1, 3) = shift.y - 4;
         movePoints(near, now[0].size(), points);
-        trackPoints(before, now, true, points);
+        trackPoints(before, now, hdp::FROM_GUESS, points);
         int again = 0;
         for (const TrackedPoint& point : points)
             again += cv::norm(point.now - point.before - Point2d(shift)) <= 0.5;

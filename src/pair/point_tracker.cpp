@@ -139,9 +139,10 @@ void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& poi
         points.push_back({ place, place, 0 });
 }
 
-void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, bool isNearby,
+void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, TrackingStart start,
                  std::vector<TrackedPoint>& points)
 {
+    const bool isNearby = start == FROM_GUESS;
     const int top = (int)before.size() - 1, first = isNearby ? std::min(1, top) : top;
     parallelFor((int)points.size(), [&](int i) {
         TrackedPoint& point = points[i];

@@ -35,11 +35,16 @@ CV_EXPORTS int trackingLevels(Size size);
 @param before Pyramid of the frame before, CV_8UC1, the finest level first, which points are in pixels of. */
 CV_EXPORTS void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points);
 
+//! Where trackPoints() begins
+enum TrackingStart
+{
+    FROM_BEFORE, // TrackedPoint::before, on the coarsest level
+    FROM_GUESS   // TrackedPoint::now, or nowhere for a point that stays where it was; on the finest levels alone
+};
+
 /** Finds points again: where the sum of absolute differences over a square has its minimum, with the fraction of a
-parabola. Those that leave the image stay where they were.
-@param isNearby Whether TrackedPoint::now is a guess, or nowhere for a point that stays where it was: only the finest
-levels are searched then. If not, points are searched around where they were, from the coarsest level on. */
-CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, bool isNearby,
+parabola. Those that leave the image stay where they were. */
+CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, TrackingStart start,
                             std::vector<TrackedPoint>& points);
 
 }}} // namespace cv::stereo::hdp

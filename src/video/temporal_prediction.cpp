@@ -82,15 +82,15 @@ CameraMotion findMotion(const FrameMemory& last, const std::vector<Mat>& now, st
         point.disparity = (disparity / (double)subpixelScale + last.key.minDisparity) / cell;
     }
     movePoints(scaled(last.motion, 1. / cell), size, points);
-    trackPoints(before, now, true, points);
+    trackPoints(before, now, FROM_GUESS, points);
     CameraMotion motion = fitMotion(points, size, maxError);
     if (motion.error > maxError)
     {
-        trackPoints(before, now, false, points);
+        trackPoints(before, now, FROM_BEFORE, points);
         motion = fitMotion(points, size, maxError);
     }
     movePoints(motion, size, points);
-    trackPoints(before, now, true, points);
+    trackPoints(before, now, FROM_GUESS, points);
     return scaled(fitMotion(points, size, maxError), cell);
 }
 
