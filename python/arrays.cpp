@@ -40,9 +40,9 @@ cv::Mat toMat(const py::array& array, const char* name, std::vector<py::array>& 
 
     // Rows may be apart, as long as they do not overlap; pixels may not.
     const py::ssize_t size = array.itemsize(), columns = array.shape(1);
-    const bool isLaidOut = (channels == 1 || array.strides(2) == size) &&
-                           (columns == 1 || array.strides(1) == size * channels) &&
-                           (array.shape(0) == 1 || array.strides(0) >= size * channels * columns);
+    const bool isLaidOut =
+        (channels == 1 || array.strides(2) == size) && (columns == 1 || array.strides(1) == size * channels) &&
+        (array.shape(0) == 1 || (array.strides(0) >= size * channels * columns && array.strides(0) % size == 0));
     const py::array pixels = isLaidOut ? array : py::array::ensure(array, py::array::c_style);
     kept.push_back(pixels);
     const size_t step = pixels.shape(0) == 1 || pixels.size() == 0 ? (size_t)cv::Mat::AUTO_STEP : pixels.strides(0);

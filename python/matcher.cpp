@@ -169,17 +169,8 @@ py::object compute(Matcher& self, const py::object& leftArray, const py::object&
         throw py::value_error("disparity must be int16 or float32, of the size of left");
     if (disparity.data != array.data() || !array.writeable())
         throw py::value_error("disparity must be writeable, with the pixels of a row next to each other");
-    // An array of fixed type has the type of the result.
-    cv::Mat_<short> fixedPoint;
-    cv::Mat_<float> pixels;
-    const bool isFloatArray = disparity.depth() == CV_32F;
-    (isFloatArray ? (cv::Mat&)pixels : (cv::Mat&)fixedPoint) = disparity;
-    self.run([&](HDPTreeMatcher& m) {
-        if (isFloatArray)
-            m.compute(left, right, pixels);
-        else
-            m.compute(left, right, fixedPoint);
-    });
+    const cv::Mat& fixed = disparity; // an array of fixed type has the type of the result
+    self.run([&](HDPTreeMatcher& m) { m.compute(left, right, fixed); });
     return output;
 }
 
@@ -314,13 +305,7 @@ Raises ValueError if a value is not valid; the matcher is unchanged then.)doc");
 #include "matcher_methods.inc"
 
     matcher.def(
-        "save",
-        [](Matcher& self, const py::object& filename) {
-        self.run([&](HDPTreeMatcher& m) {
-            const py::gil_scoped_acquire acquire;
-            writeFile(filename, m);
-        });
-        },
+        "save", [](Matcher& self, const py::object& filename) { writeText(filename, toText(self, nameOf(filename))); },
         py::arg("filename"),
         "Writes all parameters, the prediction model and the name of the tree strategy to an XML, YAML or JSON file.");
     const auto read = [](Matcher& self, const py::object& filename) {

@@ -107,6 +107,8 @@ static void run(const CommandLineParser& parser)
     for (const char* number : { "min-disparity", "num-disparities" })
         if (parser.has(number))
             parser.get<int>(number); // check() tells whether it is one
+    for (const char* number : { "unit", "field-of-view" })
+        parser.get<double>(number);
     if (!parser.has("@left"))
         fail("a source is needed: a file, a folder, a video or a camera; --help says more");
     if (!parser.check() || !(scale >= 0.05 && scale <= 1))

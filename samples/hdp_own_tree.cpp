@@ -94,6 +94,8 @@ static void run(const CommandLineParser& parser)
     const Mat left = readPicture(parser.get<String>("@left")), right = readPicture(parser.get<String>("@right")),
               truth = parser.has("truth") ? readImage(parser.get<String>("truth"), IMREAD_GRAYSCALE) : Mat();
     const int numDisparities = parser.get<int>("num-disparities"), maxWeight = parser.get<int>("max-weight");
+    if (!parser.check())
+        CV_Error(Error::StsBadArg, "--num-disparities and --max-weight must be numbers");
 
     //! [use]
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities, HDPTreeMatcher::PRESET_TREE);

@@ -35,10 +35,13 @@ static void match(const CommandLineParser& parser)
     const Mat left = imread(parser.get<String>("@left")), right = imread(parser.get<String>("@right"));
     if (left.empty() || right.empty())
         CV_Error(Error::StsError, "cannot read the images");
+    const int numDisparities = parser.get<int>("num-disparities");
+    if (!parser.check())
+        CV_Error(Error::StsBadArg, "--num-disparities must be a number");
     if (!parser.has("@out"))
         CV_Error(Error::StsBadArg, "OUT is missing: hdp_stereo_match LEFT RIGHT OUT.png");
 
-    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, parser.get<int>("num-disparities"), preset->second);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities, preset->second);
     Mat disparity, confidence;
     matcher->compute(left, right, disparity); // CV_16SC1, times 16
     matcher->getConfidence(confidence);       // CV_8UC1

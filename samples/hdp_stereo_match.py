@@ -109,7 +109,7 @@ def write_point_cloud(filename, disparity, image, focal, baseline):
                     [0, 0, 0, focal],
                     [0, 0, 1 / baseline, 0]])
     points = cv.reprojectImageTo3D(disparity, Q)
-    seen = np.isfinite(points).all(axis=2)
+    seen = np.isfinite(points).all(axis=2) & (points[..., 2] > 0)
     vertices = np.empty(np.count_nonzero(seen), [('position', '<f4', 3), ('color', 'u1', 3)])
     vertices['position'] = points[seen]
     vertices['color'] = image[seen][:, ::-1]

@@ -207,6 +207,8 @@ TEST(HDPStereo_BlockSmoothing, steps_become_ramps)
     for (int begin = 0; begin < BlockGrid::side; ++begin)
     {
         Mat left = blocks(Size(203, 70), begin, rng), right = blocks(left.size(), (begin + 3) % BlockGrid::side, rng);
+        ASSERT_GT(hdp::findBlocks(left).step, 0);
+        ASSERT_GT(hdp::findBlocks(right).step, 0);
         Mat expectedLeft = left.clone(), expectedRight = right.clone();
         makeRamps(expectedLeft, begin, hdp::findBlocks(left).step);
         makeRamps(expectedRight, (begin + 3) % BlockGrid::side, hdp::findBlocks(right).step);

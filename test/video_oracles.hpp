@@ -299,7 +299,8 @@ private:
 
     int choiceAt(int x, int y) const
     {
-        return choices_.at<uchar>(std::min(y / 2, choices_.rows - 1), std::min(x / 2, choices_.cols - 1));
+        const int choice = choices_.at<uchar>(std::min(y / 2, choices_.rows - 1), std::min(x / 2, choices_.cols - 1));
+        return choice % 4 == hdp::MOVED && !isKnown(prediction_->warp, x, y) ? +hdp::MEASURED : choice;
     }
 
     //! What the last frame has at a place: the disparity in 1 / 256 pixel, and how many frames that stands for

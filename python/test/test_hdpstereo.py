@@ -841,6 +841,13 @@ class Storage(Test):
         matcher.setTreeStrategy(SegmentTree(300))
         change(matcher, gamma=7)
         matcher.save(self.path / 'own.yml')
+
+        class Path:
+            def __fspath__(path):
+                return str(self.path / ('%d.yml' % matcher.getNumDisparities()))
+
+        matcher.save(Path())  # which asks the matcher
+        self.assertTrue((self.path / ('%d.yml' % matcher.getNumDisparities())).is_file())
         text = "filename: '%s': treeStrategy: set a strategy named SegmentTree before reading" % (self.path / 'own.yml')
         self.assertRaisesText(ValueError, text, HDPTreeMatcher.load, self.path / 'own.yml')
         other = HDPTreeMatcher(0, 32)

@@ -180,6 +180,11 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
     std::fill(row.choices.begin() + cells * cell, row.choices.end(), choices[cells - 1]);
     if (!frame.isStill())
     {
+        // An odd last row or column has the cell beside it, which may be in another block.
+        const FrameWarp& warp = frame.prediction.warp;
+        for (int x = y < frame.cells().height * cell ? cells * cell : 0; x < width; ++x)
+            if ((ofPixels[x] & PLACES) == MOVED && !warp.isKnown(x, y))
+                ofPixels[x] = MEASURED;
         takeMoved(frame, y, row);
         int* const moved = row.moved.data();
         HDP_VECTORIZED for (int x = 0; x < width; ++x) moved[x] = FrameMemory::finer(row.disparity[x], row.detail[x]);

@@ -45,8 +45,8 @@ CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMe
 
 /** Finds what each cell may take from the last frame, a TemporalSource (CV_8UC1). It may be taken from where the motion
 leads unless the cell differs from that by more than noise and by more than a share of the contrast: differences are
-means over 3 x 3 cells, contrasts over 5 x 5. The same place, if the camera moved, has to look the same as well, and to
-differ no more than where the motion leads.
+means over 3 x 3 cells, contrasts over 5 x 5. The same place, if the camera moved, has to have about the same mean
+level, and to differ no more than where the motion leads.
 @param before,now FrameMemory::grey[0] of the last frame and of this one.
 @param warp Where its pixels were; none if the camera stands still: what looks the same is at the same place then. */
 CV_EXPORTS void findSources(const Mat& before, const Mat& now, const FrameWarp* warp, VideoScratch& scratch,

@@ -28,6 +28,8 @@ float predict(const FrameMemory& last, const FramePrediction& p, int x, int y)
     const int sources = p.sources.ptr(i)[std::min(x / cell, p.sources.cols - 1)];
     if (!(sources & MOVED_PLACE))
         return sources != 0 && isConfirmed(last, x, y) ? unmoved : none;
+    if (!p.warp.isKnown(x, y)) // as an odd last row or column may be
+        return none;
     const Point from = p.warp(x, y);
     const float moved = p.backward.change.now(last.disparity.at<ushort>(from) * unit, (float)x, (float)y);
     const bool isClear = !(sources & SAME_PLACE) || p.key.scale * std::abs(moved - unmoved) <= maxSourceDistance;

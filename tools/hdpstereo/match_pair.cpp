@@ -287,6 +287,7 @@ void matchPair(const CommandLineParser& parser)
     Rectifier rectifier(parser);
     Mat leftMask, rightMask, left = readPicture(parser.get<String>("@left"), leftMask),
                              right = readPicture(parser.get<String>("@right"), rightMask);
+    makeAlike(left, right);
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.cols);
     if (!rectifier.apply(left, right, leftMask, rightMask, *matcher))
         MaskFiles(parser).apply(leftMask, rightMask, *matcher);

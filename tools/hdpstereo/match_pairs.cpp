@@ -206,6 +206,7 @@ size_t matchPairs(const CommandLineParser& parser)
         {
             Mat leftMask, rightMask, left = readPicture(pair.left, leftMask),
                                      right = readPicture(pair.right, rightMask);
+            makeAlike(left, right);
             if (!rectifier.apply(left, right, leftMask, rightMask, *matcher))
                 masks.apply(leftMask, rightMask, *matcher);
             matcher->setNumDisparities(numDisparitiesOf(parser, left.cols));

@@ -130,8 +130,11 @@ void takeRange(const CommandLineParser& parser, const WindowedPair& pair, double
         first = found.minDisparity;
         count = found.numDisparities;
     }
-    matcher.setMinDisparity(first * (1 << times));
-    matcher.setNumDisparities(count * (1 << times));
+    // No more than a matcher would find in the whole
+    const int64 most = std::min(pair.size().width - 1, 2045), unit = (int64)1 << times;
+    const auto limited = [=](int64 disparity) { return (int)std::max(std::min(disparity, most), -most); };
+    matcher.setMinDisparity(limited(first * unit));
+    matcher.setNumDisparities(limited((first + count) * unit - 1) - limited(first * unit) + 1);
     std::cout << format("%-11sdisparities %d..%d\n", "found", matcher.getMinDisparity(),
                         matcher.getMinDisparity() + matcher.getNumDisparities() - 1);
 }

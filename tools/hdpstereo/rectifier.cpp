@@ -70,10 +70,15 @@ void Rectifier::write(FileStorage& fs) const
 {
     if (first_.empty())
         return;
-    const auto textOf = [](const String& path) {
+    const auto writeText = [&](const char* name, const String& path) {
         std::ifstream file(path.c_str());
-        return String((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+        const String text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+        fs << name << "[";
+        for (size_t i = 0; i < text.size(); i += 1000) // a string of FileStorage has less than 4096 characters
+            fs << text.substr(i, 1000);
+        fs << "]";
     };
-    fs << "calibration" << textOf(first_) << "calibration2" << textOf(second_) << "unit" << unit_ << "fieldOfView"
-       << fieldOfView_;
+    writeText("calibration", first_);
+    writeText("calibration2", second_);
+    fs << "unit" << unit_ << "fieldOfView" << fieldOfView_;
 }

@@ -16,7 +16,7 @@ WindowedPair::WindowedPair(const CommandLineParser& parser)
       smallest_(open(parser, "smallest", "--smallest")), largest_(open(parser, "largest", "--largest")),
       prior_(open(parser, "prior", "--prior"))
 {
-    if (left_.windows->type() != right_.windows->type())
+    if (CV_MAT_DEPTH(left_.windows->type()) != CV_MAT_DEPTH(right_.windows->type()))
         CV_Error(Error::StsUnmatchedFormats, "RIGHT must have the type of LEFT");
 }
 
@@ -69,6 +69,7 @@ PairPart WindowedPair::read(const Rect& part) const
     PairPart pair;
     readSide(left_, leftMask_, part, pair.left, pair.leftMask);
     readSide(right_, rightMask_, part, pair.right, pair.rightMask);
+    makeAlike(pair.left, pair.right);
     return pair;
 }
 

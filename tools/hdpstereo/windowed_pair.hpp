@@ -22,7 +22,7 @@ public:
 
     cv::Size size() const { return size_; }
     //! Of both images
-    int type() const { return left_.windows->type(); }
+    int type() const { return std::max(left_.windows->type(), right_.windows->type()); } // grey or BGR, see makeAlike()
     //! Of all files, for each pixel of an image
     int bytesInMemory() const;
     //! The files that are not read by windows

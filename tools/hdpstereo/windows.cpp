@@ -137,7 +137,8 @@ public:
         const bool isWhole = (bits_ == 8 || bits_ == 16) && format == SAMPLEFORMAT_UINT && (isGrey || isColored),
                    isFloat = bits_ == 32 && format == SAMPLEFORMAT_IEEEFP && isGrey;
         return (isWhole || isFloat) && fieldOf<uint16_t>(f, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_CONTIG &&
-               !size_.empty() && !block_.empty() && (isTiled_ || block_.height < size_.height);
+               fieldOf<uint16_t>(f, TIFFTAG_ORIENTATION) == ORIENTATION_TOPLEFT && !size_.empty() && !block_.empty() &&
+               (isTiled_ || block_.height < size_.height);
     }
 
     Size size() const CV_OVERRIDE { return size_; }
@@ -195,7 +196,8 @@ class TiffMap : public MapTiles
 public:
     TiffMap(const String& path, Size size, int side) : path_(path), part_(path), side_(side)
     {
-        const bool isBig = (double)size.width * size.height * 4 > 4e9;
+        const double padded = (double)alignSize(size.width, side) * alignSize(size.height, side); // tiles are whole
+        const bool isBig = 4 * padded > 4e9;
         file_.reset(TIFFOpen(part_.name().c_str(), isBig ? "w8" : "w"));
         if (!file_)
             fail();
@@ -267,6 +269,16 @@ Mat joinMasks(const Mat& given, const Mat& ofFile)
     if (given.empty())
         return ofFile;
     return given.size() == ofFile.size() ? Mat(given & ofFile) : given;
+}
+
+void makeAlike(Mat& left, Mat& right)
+{
+    if (left.depth() != CV_8U || right.depth() != CV_8U)
+        return;
+    if (left.channels() == 1 && right.channels() == 3)
+        cvtColor(left, left, COLOR_GRAY2BGR);
+    else if (left.channels() == 3 && right.channels() == 1)
+        cvtColor(right, right, COLOR_GRAY2BGR);
 }
 
 Mat readPicture(const String& path, Mat& mask)

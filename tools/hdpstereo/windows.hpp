@@ -32,6 +32,9 @@ cv::Ptr<ImageWindows> openImage(const cv::String& path);
 //! if their sizes differ: compute() refuses it.
 cv::Mat joinMasks(const cv::Mat& given, const cv::Mat& ofFile);
 
+//! Of two pictures of 8 bit, one in grey levels and one in colours, both in colours: a grey PNG is read in these.
+void makeAlike(cv::Mat& left, cv::Mat& right);
+
 //! The whole of an image, and its mask, see ImageWindows::read()
 cv::Mat readPicture(const cv::String& path, cv::Mat& mask);
 

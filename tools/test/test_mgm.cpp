@@ -180,7 +180,7 @@ TEST(HDPStereo_Mgm, ranges_of_pixels)
     }
     // Where there is none, that of all holds, whatever others have.
     const Mat narrow = match("-r -20 -R -12 -s none", "TESTLRRL=0")(free);
-    EXPECT_EQ(0, cv::countNonZero((narrow < -20) | (narrow > -12)));
+    EXPECT_EQ(0, cv::countNonZero(~((narrow >= -20) & (narrow <= -12))));
     // These ranges say all; the right map is matched over that of all.
     least = truth - 3;
     most = truth + 3;

@@ -169,7 +169,8 @@ TEST(HDPStereo_Programs, rectifies_raw_pairs)
     EXPECT_EQ("error: --depth needs --calibration\n", run(folder, program + " --depth=x.png").errors);
     EXPECT_EQ("error: --calibration2 needs --calibration\n", run(folder, program + " --calibration2=" + chain).errors);
 
-    // A folder remembers it.
+    // A folder remembers it, however long it is.
+    std::ofstream(chain.c_str(), std::ios::app) << "# " << String(5000, 'x') << "\n";
     const String batch = "hdpstereo --batch " + folder.path("lefts") + " " + folder.path("rights") + " " +
                          folder.path("maps") + " --num-disparities=32 --format=pfm";
     EXPECT_EQ(0, run(folder, batch + " --calibration=" + chain).status);
