@@ -16,7 +16,7 @@ have to see the three under the same names. Maps that are there are kept: run ag
 OUT/options.json says what made them; with other options it stops. LEFTS and RIGHTS may also be the two files of one
 large pair: it is cut into tiles, which are matched with one model of the pair, OUT/model.yml, so that there are no
 seams; OUT/map.tif is put together when all tiles are there. With rasterio, TIFF is read by windows and the map written
-by tiles, so that no process has more than a tile in memory, and what TIFF declares as no data has no disparity; other
+by tiles, so that no worker has more than a tile in memory, and what TIFF declares as no data has no disparity; other
 images, and TIFF without rasterio, are read whole for each tile, and the map is put together in memory.
 --num-disparities=0 finds the disparities, of one large pair once for all tiles. Without a scheduler, it makes a
 cluster of this machine. On Debian: apt install python3-distributed python3-opencv python3-rasterio

@@ -25,7 +25,9 @@ inline void writePoints(const String& path, const Mat& disparity, const Mat& dep
     Mat points;
     reprojectImageTo3D(disparity, points, Q);
     std::ofstream file(path.c_str(), std::ios::binary);
-    file << "ply\nformat binary_little_endian 1.0\nelement vertex " << countNonZero(depth == depth)
+    const ushort one = 1; // its first byte tells the order of bytes in floats
+    const char* const endian = *reinterpret_cast<const uchar*>(&one) == 1 ? "little" : "big";
+    file << "ply\nformat binary_" << endian << "_endian 1.0\nelement vertex " << countNonZero(depth == depth)
          << "\nproperty float x\nproperty float y\nproperty float z\n"
             "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
     for (int y = 0; y < depth.rows; y++)

@@ -37,7 +37,7 @@ static const char* const usage =
     "All maps are files of floats: .tif, .pfm, and .exr if OpenCV has it.\n"
     "A left pixel (x, y) is (x + d, y) in the right image: the sign is the opposite of OpenCV's.\n"
     "  -r MIN -R MAX    smallest and largest disparity, fractions rounded outwards; without both, or if both are nan,\n"
-    "                   they are found in the pair, but with -m; else, or if too few points match, -30 and 30\n"
+    "                   they are found in the pair, -30 and 30 if that fails or with -m; one alone: the other is that\n"
     "  -m FILE -M FILE  the same for each pixel, in fractions, too; no others occur. Not finite: no limit of its own\n"
     "  -s none          whole disparities; with anything else they have fractions (none)\n"
     "  -l FILE          the map before the left-right check and the removal of small regions, by a second match\n"

@@ -16,7 +16,8 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 // Corners
-HDP_TUNABLE(int, minSpacing, 10, "pixels of the image", "side of a cell: windows of nearer corners see the same");
+HDP_TUNABLE(int, minSpacing, 10, "pixels of the image",
+            "side of a cell of the usual layer: nearer windows see the same");
 HDP_TUNABLE(int, maxCorners, 500, "corners", "one per cell of a grid: more cost time, fewer miss what is small");
 HDP_TUNABLE(int, cornerStep, 2, "pixels", "from one that is looked at to the next: neighbours are about as good");
 HDP_TUNABLE(int, maxCoarseArea, 45000, "pixels", "of the coarse layer: more cost time, fewer have too few corners");

@@ -43,7 +43,7 @@ enum TrackingStart
 };
 
 /** Finds points again: where the sum of absolute differences over a square has its minimum, with the fraction of a
-parabola. Those that leave the image stay where they were. */
+parabola. Those that leave the image stay where they were, as if at rest. */
 CV_EXPORTS void trackPoints(const std::vector<Mat>& before, const std::vector<Mat>& now, TrackingStart start,
                             std::vector<TrackedPoint>& points);
 

@@ -155,10 +155,12 @@ static std::vector<uchar> pointCloud(const Mat& disparity, const Mat& known, con
     Mat z;
     extractChannel(points, z, 2);
     const Mat finite = known & (z > 0) & (z < std::numeric_limits<float>::infinity()); // else it is behind the cameras
-    const String header = format("ply\nformat binary_little_endian 1.0\nelement vertex %d\n"
+    const ushort one = 1; // its first byte tells the order of bytes in floats
+    const char* const endian = *reinterpret_cast<const uchar*>(&one) == 1 ? "little" : "big";
+    const String header = format("ply\nformat binary_%s_endian 1.0\nelement vertex %d\n"
                                  "property float x\nproperty float y\nproperty float z\n"
                                  "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
-                                 countNonZero(finite));
+                                 endian, countNonZero(finite));
     std::vector<uchar> bytes(header.begin(), header.end());
     for (int y = 0; y < points.rows; y++)
         for (int x = 0; x < points.cols; x++)

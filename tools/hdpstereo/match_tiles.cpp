@@ -78,7 +78,7 @@ double affordedPixels(const CommandLineParser& parser, double otherBytes)
     const double perPixel = bytesPerPixel(parser.get<String>("preset")) + 16;       // and images, and map
     const double pixels = (memory - fixed - otherBytes) / perPixel;
     if (!(pixels > 256 * 256))
-        CV_Error(Error::StsOutOfRange, format("--memory must be more than %.0f",
+        CV_Error(Error::StsOutOfRange, format("--memory must be more than %.0f MiB",
                                               std::ceil((fixed + otherBytes + 256 * 256 * perPixel) / (1 << 20))));
     return pixels;
 }

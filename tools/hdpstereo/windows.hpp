@@ -24,8 +24,8 @@ public:
     virtual cv::Mat read(const cv::Rect& part, cv::Mat& mask) = 0;
 };
 
-//! Opens an image: TIFF is read by windows if it has strips or tiles and the program is built with libtiff; other
-//! images are read whole.
+//! Opens an image: TIFF of 8 or 16 bit or grey floats is read by windows if it has strips or tiles, is not to be turned,
+//! and the program is built with libtiff; other images are read whole.
 cv::Ptr<ImageWindows> openImage(const cv::String& path);
 
 //! Which pixels have data by a mask that was given and by that of the image's file; either may be empty. The given one

@@ -20,7 +20,7 @@ TEST(HDPStereo_Programs, help_and_wrong_arguments)
 }
 
 #ifdef __linux__
-//! A map that is lost on a full disk is an error.
+//! What is printed and lost on a full disk is an error.
 TEST(HDPStereo_Programs, full_disk)
 {
     const DatasetFolder folder;
