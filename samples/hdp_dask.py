@@ -252,6 +252,8 @@ def main():
     args = parser.parse_args()
     if args.num_disparities < 0 or (args.num_disparities == 0 and args.min_disparity != 0):
         sys.exit('error: --num-disparities must be > 0, or 0 without --min-disparity, which is found then, too')
+    if args.workers < 1:
+        sys.exit('error: --workers must be at least 1')
     cluster = {'address': args.scheduler} if args.scheduler else {
         'n_workers': args.workers, 'threads_per_worker': 1, 'dashboard_address': None}
     if args.lefts.is_file() and args.rights.is_file():
@@ -273,10 +275,18 @@ def main():
 
     lefts = sorted(path.resolve() for path in args.lefts.iterdir() if path.suffix.lower() in PICTURES)
     rights, out = args.rights.resolve(), args.out.resolve()
-    out.mkdir(parents=True, exist_ok=True)
-    options = {name: getattr(args, name) for name in ('preset', 'min_disparity', 'num_disparities', 'format')}
-    keep_options(out / 'options.json', options)
+    if out in (args.lefts.resolve(), rights):
+        sys.exit('error: OUT must be another folder than that of the images')
     outputs = {left: out / (left.stem + '.' + args.format) for left in lefts}
+    if len(set(outputs.values())) < len(lefts):
+        sys.exit('error: two left images have the same name, but for its ending')
+    options = {name: getattr(args, name) for name in ('preset', 'min_disparity', 'num_disparities', 'format')}
+    options.update(left=str(args.lefts.resolve()), right=str(rights))
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        keep_options(out / 'options.json', options)
+    except (ValueError, OSError) as error:
+        sys.exit("error: '%s' cannot be the folder for the maps: %s" % (out, error))
     missing = [left for left in lefts if not outputs[left].exists()]
     print('%d pairs, %d of them are there' % (len(lefts), len(lefts) - len(missing)))
 

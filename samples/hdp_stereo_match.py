@@ -113,9 +113,12 @@ def write_point_cloud(filename, disparity, image, focal, baseline):
     vertices = np.empty(np.count_nonzero(seen), [('position', '<f4', 3), ('color', 'u1', 3)])
     vertices['position'] = points[seen]
     vertices['color'] = image[seen][:, ::-1]
-    with open(filename, 'wb') as f:
-        f.write((PLY_HEADER % len(vertices)).encode('ascii'))
-        f.write(vertices.tobytes())
+    try:
+        with open(filename, 'wb') as f:
+            f.write((PLY_HEADER % len(vertices)).encode('ascii'))
+            f.write(vertices.tobytes())
+    except OSError:
+        sys.exit('cannot write ' + filename)
     print('written %s (%d points)' % (filename, len(vertices)))
 
 

@@ -47,7 +47,7 @@ public:
         const Mat left = leftArray.getMat(), right = rightArray.getMat();
         checkPair(left, right);
         checkInputs(inputs_, left.size());
-        const int depth = checkOutput(disparityArray, left.size());
+        const int depth = depthOfOutput(disparityArray, left.size(), p_.disparityDepth);
         const auto makePlan = [&](const MatcherParameters& parameters) {
             return plan(parameters, left.size(), left.type(), pairModel_, inputs_);
         };
@@ -400,21 +400,6 @@ private:
         if (ofLayer.empty())
             return array.release();
         ofLayer.colRange(result_.plan.output.extension >> layer, ofLayer.cols).copyTo(array);
-    }
-
-    //! Returns the depth of the map: that of the caller's array, if its type is fixed.
-    int checkOutput(OutputArray disparity, Size size) const
-    {
-        if (!disparity.needed())
-            CV_Error(Error::StsBadArg, "disparity must be an array, not noArray()");
-        if (disparity.fixedSize() && disparity.size() != size)
-            CV_Error(Error::StsUnmatchedSizes,
-                     format("disparity must have the size of left, %d x %d, not %d x %d, as it is fixed", size.width,
-                            size.height, disparity.size().width, disparity.size().height));
-        const int type = disparity.fixedType() ? disparity.type() : p_.disparityDepth;
-        if (type != CV_16SC1 && type != CV_32FC1)
-            CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1 if its type is fixed");
-        return type;
     }
 
     MatcherParameters p_;

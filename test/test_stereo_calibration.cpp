@@ -267,6 +267,26 @@ TEST(HDPStereo_StereoCalibration, knows_sections_of_the_zed)
     EXPECT_EQ(Size(640, 360), read(files, Size(640, 360)).imageSize);
     files[0].fields[0].text = "[left_cam_hd]\nother=1\n";
     expectRefused(files, hd, "SN12345.conf", "LEFT_CAM_HD/FX");
+    // Halves are those of their own mode, and no mode is scaled to another one.
+    CalibrationFile factory = { "SN2.conf", "", {} };
+    const std::pair<const char*, int> focalLengths[] = {
+        { "2K", 1399 }, { "FHD", 1401 }, { "HD", 700 }, { "VGA", 350 }
+    };
+    factory.head = "[STEREO]\nBaseline=120\nTY=0\nTZ=0\n";
+    for (const auto& mode : focalLengths)
+        for (const char* const name : { "CV", "RX", "RZ" })
+            factory.head += format("%s_%s=0\n", name, mode.first);
+    for (const auto& mode : focalLengths)
+        for (const char* const side : { "LEFT", "RIGHT" })
+            factory.head += format("[%s_CAM_%s]\nfx=%d\nfy=%d\ncx=300\ncy=200\nk1=0\nk2=0\np1=0\np2=0\nk3=0\n", side,
+                                   mode.first, mode.second, mode.second);
+    const auto focalLength = [&](Size size) { return read({ factory }, size).cameraMatrix1.at<double>(0, 0); };
+    EXPECT_DOUBLE_EQ(350, focalLength(Size(640, 360)));
+    EXPECT_DOUBLE_EQ(700.5, focalLength(Size(960, 540)));
+    EXPECT_DOUBLE_EQ(175, focalLength(Size(320, 180)));
+    EXPECT_DOUBLE_EQ(175, focalLength(Size(336, 188)));
+    EXPECT_DOUBLE_EQ(699.5, focalLength(Size(1104, 621)));
+    expectRefused({ factory }, Size(1000, 562), "SN2.conf", "1280 x 720");
     // Lenses with a section of their own; without tangential terms they are of fisheyes.
     CalibrationFile file = { "SN1.conf", "", {} };
     for (const std::string side : { "LEFT", "RIGHT" })

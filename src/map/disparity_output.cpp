@@ -76,6 +76,20 @@ void moveIntoRanges(const PixelRanges& ranges, short invalid, Mat& fixedPoint)
 
 } // namespace
 
+int depthOfOutput(OutputArray disparity, Size size, int usual)
+{
+    if (!disparity.needed())
+        CV_Error(Error::StsBadArg, "disparity must be an array, not noArray()");
+    if (disparity.fixedSize() && disparity.size() != size)
+        CV_Error(Error::StsUnmatchedSizes,
+                 format("disparity must have the size of left, %d x %d, not %d x %d, as it is fixed", size.width,
+                        size.height, disparity.size().width, disparity.size().height));
+    const int type = disparity.fixedType() ? disparity.type() : usual;
+    if (type != CV_16SC1 && type != CV_32FC1)
+        CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1 if its type is fixed");
+    return type;
+}
+
 void upsampleDisparity(const Mat& upper, Size size, Mat& disparity)
 {
     disparity.create(size, CV_16U);

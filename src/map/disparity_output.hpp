@@ -39,6 +39,9 @@ struct OutputBuffers
     Mat whole, fixedPoint, speckles;
 };
 
+//! The depth of the map: that of the caller's array, if its type is fixed. Throws if the map cannot be written there.
+int depthOfOutput(OutputArray disparity, Size size, int usual);
+
 //! The map of a layer of this size from that of the one above: bilinear inside a surface, its pixel's own at its border
 CV_EXPORTS void upsampleDisparity(const Mat& upper, Size size, Mat& disparity);
 

@@ -5,6 +5,7 @@
 #include "calibration_check.hpp"
 #include "calibration_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -221,14 +222,18 @@ bool haveSameAspect(Size a, Size b)
     return std::abs((double)a.width * b.height / b.width - a.height) <= 1;
 }
 
-//! The mode of this size; otherwise the first one of the aspect that the file has
+//! The mode of this size; otherwise that which it is a half, a quarter or an eighth of, or else the only one of its
+//! aspect: modes see different parts of the sensor.
 const ZedMode& zedModeOf(const CalibrationText& text, Size imageSize)
 {
     const auto has = [&](const ZedMode& mode) { return text.has(std::string("LEFT_CAM_") + mode.name + "/FX"); };
-    for (const bool isScaled : { false, true })
+    for (int halved = 1; halved <= 8; halved *= 2)
         for (const ZedMode& mode : zedModes)
-            if ((isScaled ? haveSameAspect(imageSize, mode.size) : imageSize == mode.size) && has(mode))
+            if (imageSize == Size(mode.size.width / halved, mode.size.height / halved) && has(mode))
                 return mode;
+    const auto isLike = [&](const ZedMode& mode) { return haveSameAspect(imageSize, mode.size) && has(mode); };
+    if (std::count_if(std::begin(zedModes), std::end(zedModes), isLike) == 1)
+        return *std::find_if(std::begin(zedModes), std::end(zedModes), isLike);
     std::string names;
     for (const ZedMode& mode : zedModes)
         if (has(mode))

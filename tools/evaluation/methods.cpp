@@ -184,7 +184,7 @@ std::array<Mat, 2> imagesFor(const Method& method, const Mat& left, const Mat& r
     if (!method.isHdp)
         toColors(images[0], images[1]);
     for (Mat& image : images)
-        if (method.isGray)
+        if (method.isGray && image.channels() == 3)
             cv::cvtColor(image, image, cv::COLOR_BGR2GRAY);
     return images;
 }

@@ -107,6 +107,9 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
 {
     FileStorage options(".yml", FileStorage::WRITE | FileStorage::MEMORY);
     options << "version" << HDPSTEREO_VERSION;
+    const String lefts = parser.get<String>("@left"), rights = parser.get<String>("@right");
+    if (utils::fs::isDirectory(lefts)) // else it is a list, of which the pairs may become more
+        options << "lefts" << hdp_tools::placeOf(lefts) << "rights" << hdp_tools::placeOf(rights);
     options << "numDisparities"
             << (parser.has("num-disparities") ? parser.get<String>("num-disparities") : "width / 5");
     if (parser.has("findings"))
