@@ -295,15 +295,12 @@ Range knownRange(Size size, const PairModel& model, const PairInputs& inputs)
 
 //! The parameters without those that depend on others. known: the range where they have none, a single disparity if
 //! that is empty
-MatcherParameters completed(MatcherParameters p, const Range& known, const PairInputs& inputs)
+MatcherParameters completed(MatcherParameters p, const Range& known)
 {
     if (p.numDisparities == 0)
         p = known.empty() ? withRange(p, 0, 1) : withRange(p, known.start, known.size());
     if (!p.usePrediction) // there are no layers, and the plain tree algorithm matches the image
         p.aggregation = M::AGGREGATION_TREES;
-    // The layer above was matched within them, and support points take as long as without.
-    if (inputs.limit(Range(p.minDisparity, p.minDisparity + p.numDisparities)))
-        p.disparityPrior = M::PRIOR_UPPER_LAYER;
     return p;
 }
 
@@ -329,9 +326,11 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     PairPlan plan;
     const Range known = parameters.numDisparities > 0 ? Range() : knownRange(size, model, inputs);
     plan.looksForRange = parameters.numDisparities == 0 && known.empty();
-    const MatcherParameters p = completed(parameters, known, inputs);
+    MatcherParameters p = completed(parameters, known);
     checkCombinations(p, size, inputs.hasPrior());
     plan.hasRanges = inputs.limit(Range(p.minDisparity, p.minDisparity + p.numDisparities));
+    if (plan.hasRanges) // the layer above was matched within them, and support points take as long as without
+        p.disparityPrior = M::PRIOR_UPPER_LAYER;
     plan.size = size;
     plan.numDisparities = p.numDisparities;
     plan.treeStrategy = p.treeStrategy;

@@ -196,8 +196,8 @@ class TiffMap : public MapTiles
 public:
     TiffMap(const String& path, Size size, int side) : path_(path), part_(path), side_(side)
     {
-        const double padded = (double)alignSize(size.width, side) * alignSize(size.height, side); // tiles are whole
-        const bool isBig = 4 * padded > 4e9;
+        const auto padded = [=](int length) { return std::ceil((double)length / side) * side; }; // tiles are whole
+        const bool isBig = 4 * padded(size.width) * padded(size.height) > 4e9;
         file_.reset(TIFFOpen(part_.name().c_str(), isBig ? "w8" : "w"));
         if (!file_)
             fail();
