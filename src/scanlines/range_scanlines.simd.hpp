@@ -95,7 +95,9 @@ public:
         // Of the first pixel's parts
         const uchar *left[parts], *right[parts], *leftLimits[parts], *rightLimits[parts];
         const ushort* upper;
-        const DisparityInterval* intervals;
+        const DisparityInterval* intervals; // or none
+
+        const DisparityInterval* interval(int x) const { return intervals ? intervals + x : nullptr; }
     };
 
     explicit RangeCosts(const RangeProblem& problem) : p_(problem), lanes_(problem) {}
@@ -244,7 +246,8 @@ public:
             for (int r = active.start; r < active.end; ++r)
                 rows_[r].winner = finishPixel(rows_[r], t - r);
             for (int r = active.start; r < active.end; ++r)
-                setWinner(rows_[r], t - r);
+                rows_[r].winners.setWithin(t - r, rows_[r].sums, 0, rows_[r].winner, p_.candidates - 1,
+                                           rows_[r].costRow.interval(t - r));
         }
         for (int r = 0; r < height; ++r)
             rows_[r].winners.takeDisparities(width_, bit, 1, disparity.ptr<ushort>(rows.start + r));
@@ -266,16 +269,6 @@ private:
 
     //! The edges of a row to the right or to the row below, see weighEdges()
     const uchar* edges(int y, int below) const { return p_.weights.ptr(y) + below; }
-
-    CV_ALWAYS_INLINE void setWinner(const Row& row, int x) const
-    {
-        const DisparityInterval* const intervals = row.costRow.intervals;
-        const int last = p_.candidates - 1;
-        if (intervals)
-            row.winners.setWithin(x, row.sums, 0, row.winner, last, intervals[x].first, intervals[x].last);
-        else
-            row.winners.set(x, row.sums, 0, row.winner, last);
-    }
 
     void enterBlock(const Range& rows, const ScanlineStripe& stripe)
     {

@@ -134,11 +134,9 @@ private:
                     large = enter(own, large, last[k], before + k * lineLength);
                 const int winner =
                     step<role, vectors>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
-                if (role == LAST && intervals)
-                    winners.setWithin(k, total, interval.first, winner, interval.size() - 1, intervals[pixel].first,
-                                      intervals[pixel].last);
-                else if (role == LAST)
-                    winners.set(k, total, interval.first, winner, interval.size() - 1);
+                if (role == LAST)
+                    winners.setWithin(k, total, interval.first, winner, interval.size() - 1,
+                                      intervals ? intervals + pixel : nullptr);
             }
             if (role == LAST)
                 winners.takeDisparities(scanlines, CostVolume::scale, halving, disparity + first);

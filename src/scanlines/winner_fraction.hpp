@@ -58,12 +58,14 @@ struct Winners
         slope[i] = (short)std::max(std::max(before, after) - sum, 1);
     }
 
-    //! The same for a winner that lies in [ownFirst, ownLast], and for others: costs beyond these are not those of
-    //! candidates.
+    //! The same with the ends of its pixel's own interval, if there is one and the winner lies in it: costs beyond are
+    //! not those of candidates.
     template <typename Sum>
-    CV_ALWAYS_INLINE void setWithin(int i, const Sum* sums, int first, int k, int last, int ownFirst, int ownLast) const
+    CV_ALWAYS_INLINE void setWithin(int i, const Sum* sums, int first, int k, int last,
+                                    const DisparityInterval* own) const
     {
-        const int begin = std::max(ownFirst - first, 0), end = std::min(ownLast - first, last);
+        const int begin = own ? std::max(own->first - first, 0) : 0,
+                  end = own ? std::min(own->last - first, last) : last;
         if (begin <= k && k <= end)
             set(i, sums + begin, first + begin, k - begin, end - begin);
         else

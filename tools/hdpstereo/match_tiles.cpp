@@ -108,33 +108,28 @@ int timesHalved(Size size, double pixels)
 //! --num-disparities=0: that of --findings, of --smallest and --largest if they limit all pixels, or of the reduced pair
 void takeRange(const CommandLineParser& parser, const WindowedPair& pair, double pixels, HDPTreeMatcher& matcher)
 {
-    int times = 0, first, count;
-    double smallest, largest;
     if (parser.has("findings"))
     {
         const PairModel model = PairModel::load(parser.get<String>("findings"));
-        first = model.minDisparity;
-        count = model.numDisparities;
-    }
-    else if (pair.limitsAll(smallest, largest))
-    {
-        const double end = pair.size().width - 1; // beyond the images there is nothing
-        first = cvFloor(std::min(std::max(smallest, -end), end));
-        count = cvCeil(std::min(std::max(largest, (double)first), end)) + 1 - first;
+        matcher.setMinDisparity(model.minDisparity);
+        matcher.setNumDisparities(model.numDisparities);
     }
     else
     {
-        times = timesHalved(pair.size(), pixels);
-        const HDPTreeMatcher::Findings found =
-            matchAlone(parser, pair.size().width, pair.reduced(times), 0, 0)->getFindings();
-        first = found.minDisparity;
-        count = found.numDisparities;
+        double first = 0, last = 0;
+        if (!pair.limitsAll(first, last))
+        {
+            const int times = timesHalved(pair.size(), pixels);
+            const HDPTreeMatcher::Findings found =
+                matchAlone(parser, pair.size().width, pair.reduced(times), 0, 0)->getFindings();
+            first = std::ldexp(found.minDisparity, times);
+            last = std::ldexp(found.minDisparity + found.numDisparities, times) - 1;
+        }
+        const double most = std::min(pair.size().width - 1, 2045); // as a matcher finds in the whole
+        const auto limited = [=](double disparity) { return std::max(std::min(disparity, most), -most); };
+        matcher.setMinDisparity(cvFloor(limited(first)));
+        matcher.setNumDisparities(cvCeil(limited(last)) - matcher.getMinDisparity() + 1);
     }
-    // No more than a matcher would find in the whole
-    const int64 most = std::min(pair.size().width - 1, 2045), unit = (int64)1 << times;
-    const auto limited = [=](int64 disparity) { return (int)std::max(std::min(disparity, most), -most); };
-    matcher.setMinDisparity(limited(first * unit));
-    matcher.setNumDisparities(limited((first + count) * unit - 1) - limited(first * unit) + 1);
     std::cout << format("%-11sdisparities %d..%d\n", "found", matcher.getMinDisparity(),
                         matcher.getMinDisparity() + matcher.getNumDisparities() - 1);
 }

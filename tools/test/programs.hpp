@@ -65,6 +65,19 @@ inline long peakMemory(const DatasetFolder& folder, const String& command)
     return usage.ru_maxrss;
 }
 
+//! A calibration of cameras of 160 x 120 pixels that are rectified already; returns its file.
+inline String writeCalibration(const DatasetFolder& folder)
+{
+    const String chain = folder.path("camchain.yaml");
+    std::ofstream file(chain.c_str());
+    for (int camera = 0; camera < 2; ++camera)
+        file << "cam" << camera << ":\n  camera_model: pinhole\n  distortion_model: none\n  resolution: [160, 120]\n"
+             << "  intrinsics: [200, 200, 79.5, 59.5]\n";
+    file << "  T_cn_cnm1: [1, 0, 0, -0.2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
+    file.close();
+    return chain;
+}
+
 //! A pair of 160 x 120 pixels and 32 disparities, and three scenes of it: dataset/half/{a,b,c}
 inline void writePair(const DatasetFolder& folder)
 {

@@ -146,13 +146,7 @@ TEST(HDPStereo_Programs, rectifies_raw_pairs)
     const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 22);
     folder.write("lefts/a.png", pair.left);
     folder.write("rights/a.png", pair.right);
-    const String chain = folder.path("camchain.yaml");
-    std::ofstream file(chain.c_str());
-    for (int camera = 0; camera < 2; ++camera)
-        file << "cam" << camera << ":\n  camera_model: pinhole\n  distortion_model: none\n  resolution: [160, 120]\n"
-             << "  intrinsics: [200, 200, 79.5, 59.5]\n";
-    file << "  T_cn_cnm1: [1, 0, 0, -0.2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
-    file.close();
+    const String chain = writeCalibration(folder);
     const String left = folder.path("lefts/a.png"), right = folder.path("rights/a.png"), map = folder.path("map.pfm");
     const String program = "hdpstereo " + left + " " + right + " --num-disparities=32 ";
     const String calibrated = program + map + " --calibration=" + chain;

@@ -45,12 +45,13 @@ column. getConfidence() tells how reliable each disparity is, getFindings() what
 
 **What to set.** The parameters that matter, the most important first:
 - minDisparity, numDisparities: the range of disparities in pixels, minDisparity to minDisparity + numDisparities - 1.
-  minDisparity has any sign; a negative one adds about as many columns on the left of the images. numDisparities
-  is > 0, and not necessarily a multiple of 16, or 0: both are found in the pair, see Findings::numDisparities, and the
-  parameter minDisparity has no meaning. This takes 20 to 150 ms, and the range is about twice as large as necessary.
-  Where setDisparityRange() limits all pixels, it is that of all of them, within the images' width. Otherwise a pair
-  in which fewer than 10 corners have matches, as in images without texture, is an error. The frames of a video keep
-  the range of the first one while it has all disparities that are found, and is not twice as large.
+  minDisparity has any sign; a negative one adds as many columns on the left of the images, numDisparities at most,
+  rounded up for the layers. numDisparities is > 0, and not necessarily a multiple of 16, or 0: both are found in the
+  pair, see Findings::numDisparities, and the parameter minDisparity has no meaning. This takes 20 to 150 ms, and
+  the range is about twice as large as necessary. Where setDisparityRange() limits all pixels, it is that of all of
+  them, within the images' width. Otherwise a pair in which fewer than 10 corners have matches, as in images without
+  texture, is an error. The frames of a video keep the range of the first one while it has all disparities that are
+  found, and is not twice as large.
 - the preset, see HDPTreeMatcher::Preset: what to spend on accuracy.
 - Params::useTemporalPrediction: on for videos.
 - Params::maxRowOffset, Params::useLightAlignment, Params::noiseThreshold: what is done about pairs that are not quite
