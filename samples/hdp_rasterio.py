@@ -12,8 +12,8 @@ usage:
 
 LEFT and RIGHT are of one size, of any number of columns, in formats of GDAL: 8 bit, 16 bit or float; of more bands
 than one, 8 bit has the first three, all others the first. What a raster declares as no data has no disparity and no
-influence. OUT is a GeoTIFF of floats, NaN = none, with the coordinates of the left raster; of the window alone, if
-there is one. Tiles are matched with one model of the pair, found in its overviews, so that there are no seams, and so
+influence. OUT is a GeoTIFF of floats, NaN = none, with the coordinates of the left raster, its ground control points
+and its rational polynomials; of the window alone, if there is one. Tiles are matched with one model of the pair, found in its overviews, so that there are no seams, and so
 is the range of disparities if --num-disparities is 0; memory is that of a tile. On Debian: apt install
 python3-rasterio python3-opencv
 '''
@@ -98,6 +98,18 @@ def open_rasters(args):
     return (left, right), window
 
 
+def place_of(raster, window):
+    '''Coordinates, ground control points and rational polynomials of a window, for a file of it'''
+    gcps, crs = raster.gcps
+    for gcp in gcps:
+        gcp.row, gcp.col = gcp.row - window.row_off, gcp.col - window.col_off
+    rpcs = raster.rpcs
+    if rpcs:
+        rpcs.line_off, rpcs.samp_off = rpcs.line_off - window.row_off, rpcs.samp_off - window.col_off
+    place = dict(crs=crs, gcps=gcps) if gcps else dict(crs=raster.crs, transform=raster.window_transform(window))
+    return dict(place, rpcs=rpcs)
+
+
 def match_rasters(args):
     '''Errors are ValueError, or those of rasterio and of the system.'''
     if args.tile <= 0:
@@ -109,7 +121,7 @@ def match_rasters(args):
         raise ValueError("OUT must not be an input, '%s'" % args.out)
     left = rasters[0]
     profile = dict(driver='GTiff', dtype='float32', count=1, nodata=np.nan, width=window.width, height=window.height,
-                   crs=left.crs, transform=left.window_transform(window), compress='deflate')
+                   compress='deflate', **place_of(left, window))
     part = args.out + '.part'  # a map that is there is kept until the new one is whole
     try:
         with rasterio.open(part, 'w', **profile) as out:

@@ -50,6 +50,9 @@ public:
         return true;
     }
 
+    //! Of pictures; 0 if they are not counted beforehand
+    size_t count() const { return files_.size(); }
+
     double fps() const
     {
         const double fps = capture_.get(CAP_PROP_FPS);
@@ -73,6 +76,9 @@ public:
         left_.open(left);
         if (!sideBySide_)
             right_.open(right);
+        if (left_.count() > 0 && right_.count() > 0 && left_.count() != right_.count()) // one is missing somewhere
+            CV_Error_(Error::StsError, ("%s has %d images, and %s has %d", left.c_str(), (int)left_.count(),
+                                        right.c_str(), (int)right_.count()));
     }
 
     //! Returns false at the end.

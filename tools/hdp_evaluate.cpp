@@ -107,19 +107,20 @@ static int run(const CommandLineParser& parser)
             std::cout << toMarkdown(foundRangesTable(method, selectScenes(parser))) << std::endl;
         return 0;
     }
-    for (const String option : { "calibration", "confidence" })
-        if (parser.has(option))
+    if (parser.has("calibration"))
+        for (const Method& method : settings.methods)
         {
-            const auto makeTable = option == "calibration" ? calibrationTable : confidenceErrorsTable;
-            for (const Method& method : settings.methods)
-            {
-                const Table table = makeTable(method, selectScenes(parser), settings.numDisparities);
-                std::cout << toMarkdown(table) << std::endl;
-                if (!plot.empty())
-                    writeText(plot, calibrationPlot(table));
-            }
-            return 0;
+            const Table table = calibrationTable(method, selectScenes(parser), settings.numDisparities);
+            std::cout << toMarkdown(table) << std::endl;
+            if (!plot.empty())
+                writeText(plot, calibrationPlot(table));
         }
+    if (parser.has("confidence"))
+        for (const Method& method : settings.methods)
+            std::cout << toMarkdown(confidenceErrorsTable(method, selectScenes(parser), settings.numDisparities))
+                      << std::endl;
+    if (parser.has("calibration") || parser.has("confidence"))
+        return 0;
 
     std::vector<SceneResult> results;
     for (const Scene& scene : selectScenes(parser))

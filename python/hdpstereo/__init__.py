@@ -65,6 +65,9 @@ def _init_params(self, preset=HDPTreeMatcher.PRESET_FAST, **fields):
 
 def _init(self, minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_FAST, **parameters):
     parameters = _with_names_in_camel_case(parameters)
+    for name, own, default in (('minDisparity', minDisparity, 0), ('numDisparities', numDisparities, 64)):
+        if name in parameters and own != default:
+            raise TypeError('a parameter is given twice: ' + name)
     _construct(self, _integer('minDisparity', parameters.pop('minDisparity', minDisparity)),
                _integer('numDisparities', parameters.pop('numDisparities', numDisparities)), _preset(preset))
     params = self.getParams()
@@ -122,6 +125,20 @@ The values of a preset, but for some fields: Params('quality', fill_occlusions=F
 preset: as create() has it.
 fields: by name, in snake case, too.'''
 
+
+def _restored_calibration(fields):
+    calibration = StereoCalibration()
+    for name, value in fields.items():
+        setattr(calibration, name, value)
+    return calibration
+
+
+def _reduce_calibration(self):
+    fields = {name: getattr(self, name) for name in dir(self) if not name.startswith('_')}
+    return _restored_calibration, ({name: value for name, value in fields.items() if value is not None},)
+
+
+StereoCalibration.__reduce__ = _reduce_calibration  # for pickle and copy
 HDPTreeMatcher.__init__, HDPTreeMatcher.__repr__ = _init, _repr
 HDPTreeMatcher.Params.__init__ = _init_params
 _create_like.__doc__ = _like.__doc__

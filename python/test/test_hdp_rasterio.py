@@ -19,6 +19,8 @@ try:
     import hdpstereo
     import numpy as np
     import rasterio
+    from rasterio.control import GroundControlPoint
+    from rasterio.rpc import RPC
     from rasterio.transform import from_origin
 except ImportError as e:
     print('skipped: %s (on Debian: apt install python3-rasterio python3-opencv)' % e)
@@ -104,6 +106,24 @@ def main():
         found, _ = load(folder)
         wrong = np.mean(~(np.abs(found - truth)[judged] <= 0.5))
         assert wrong < 0.01, wrong
+
+        with rasterio.open(folder / 'left.tif', 'r+') as raster:
+            raster.rpcs = RPC(height_off=100, height_scale=50, lat_off=43, lat_scale=0.1, line_off=450, line_scale=450,
+                              long_off=1.5, long_scale=0.1, samp_off=1000, samp_scale=1000,
+                              line_den_coeff=[1] + [0] * 19, line_num_coeff=[0, 0, -1] + [0] * 17,
+                              samp_den_coeff=[1] + [0] * 19, samp_num_coeff=[0, 1] + [0] * 18)
+        assert run(folder, '--window=700,150,300,200').returncode == 0
+        with rasterio.open(folder / 'out.tif') as raster:
+            assert (raster.rpcs.line_off, raster.rpcs.samp_off) == (300, 300), raster.rpcs
+            assert raster.transform == TRANSFORM * raster.transform.translation(700, 150)
+        with rasterio.open(folder / 'left.tif', 'r+') as raster:
+            raster.gcps = [GroundControlPoint(row, col, 2. + col, 48. - row) for row in (0, 800) for col in (0, 1800)
+                           ], rasterio.crs.CRS.from_epsg(4326)
+        assert run(folder, '--window=700,150,300,200').returncode == 0
+        with rasterio.open(folder / 'out.tif') as raster:
+            points, crs = raster.gcps
+            assert [(p.row, p.col, p.x, p.y) for p in points][3] == (650, 1100, 1802, -752), points
+            assert crs == rasterio.crs.CRS.from_epsg(4326)
 
         for window in '1900,0,200,100', '0,0,10', 'left':
             result = run(folder, '--window=' + window)

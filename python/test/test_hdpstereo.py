@@ -148,6 +148,11 @@ class Rig(Test):
         self.assertEqual((1, 5), hdpstereo.StereoRig(other).getCalibration().distCoeffs2.shape)
         with self.assertRaisesRegex(ValueError, 'none.yaml'):
             hdpstereo.readStereoCalibration('none.yaml')
+        for original in other, hdpstereo.StereoCalibration():
+            for copied in copy.deepcopy(original), pickle.loads(pickle.dumps(original)):
+                for name in ('imageSize', 'cameraMatrix1', 'distCoeffs1', 'cameraMatrix2', 'distCoeffs2', 'R', 'T',
+                             'isFisheye'):
+                    np.testing.assert_array_equal(getattr(original, name), getattr(copied, name), name)
 
     def test_depth(self):
         rig = hdpstereo.StereoRig.create(self.calibration, 40, size=(150, 110))
@@ -307,6 +312,8 @@ class Parameters(Test):
         for create in HDPTreeMatcher.create, HDPTreeMatcher.Params:
             self.assertRaisesText(TypeError, twice,
                                   lambda create=create: create(fillOcclusions=1, fill_occlusions=0))
+        self.assertRaisesText(TypeError, 'a parameter is given twice: numDisparities',
+                              lambda: HDPTreeMatcher.create(0, 128, num_disparities=64))
         for name in ('side', 'params', '__class__', '_x', ''):
             self.assertRaises(TypeError, lambda name=name: HDPTreeMatcher.create(**{name: 3}))
         self.assertRaisesText(TypeError, 'HDPTreeMatcher has no parameter numDisparity',

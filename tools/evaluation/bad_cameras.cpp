@@ -98,6 +98,16 @@ ImageChange rows(double offset, double shear, double stretch)
     };
 }
 
+//! Which numbers a case may have; others leave nothing of an image, or take hours.
+struct NumberRange
+{
+    const char* letters;
+    double min, max;
+};
+const NumberRange numberRanges[] = { { "gain", 0, 100 },   { "gamma", 0.01, 100 }, { "offset", -255, 255 },
+                                     { "noise", 0, 255 },  { "blur", 0.1, 100 },   { "jpeg", 0, 100 },
+                                     { "dy", -1000, 1000 } };
+
 //! The case of a name, without it; the number is what follows the name's letters.
 bool makeCase(const String& letters, double number, CameraCase& made)
 {
@@ -142,15 +152,22 @@ std::vector<CameraCase> selectCases(const String& option, const String& list)
     std::vector<CameraCase> cases;
     for (const String& name : splitList(list))
     {
-        const size_t letters = std::min(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), name.size());
-        const String number = name.substr(letters);
-        const bool hasNumber =
-            String("gain,gamma,offset,noise,blur,jpeg,dy").find(name.substr(0, letters)) != String::npos;
+        const size_t length = std::min(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), name.size());
+        const String letters = name.substr(0, length), number = name.substr(length);
         char* end = nullptr;
         const double value = std::strtod(number.c_str(), &end);
         CameraCase made;
         made.name = name;
-        if (*end != 0 || hasNumber == number.empty() || !makeCase(name.substr(0, letters), value, made))
+        bool hasNumber = false;
+        for (const NumberRange& range : numberRanges)
+            if (letters == range.letters)
+            {
+                hasNumber = true;
+                if (!number.empty() && !(value >= range.min && value <= range.max))
+                    fail(format("--%s: the number of '%s' must be %g to %g", option.c_str(), name.c_str(), range.min,
+                                range.max));
+            }
+        if (*end != 0 || hasNumber == number.empty() || !makeCase(letters, value, made))
             fail("--" + option + " knows no case '" + name + "', only " + ALL_CASES + ", and these with other numbers");
         bool isNew = true;
         for (const CameraCase& other : cases)

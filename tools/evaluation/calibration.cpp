@@ -39,7 +39,8 @@ static void addPixels(const Mat& disparity, const Mat& sigma, const Pair& pair, 
             if (pair.judged.at<uchar>(y, x) == 0 || limit == std::numeric_limits<float>::infinity())
                 continue;
             const size_t level = std::upper_bound(LEVELS.begin(), LEVELS.end(), limit) - LEVELS.begin() - 1;
-            const bool isWithin = std::abs(disparity.at<float>(y, x) - truth) <= limit;
+            const double distance = disparity.at<float>(y, x) - truth, ofTruth = pair.truthDeviation;
+            const bool isWithin = distance * distance <= limit * limit + ofTruth * ofTruth;
             for (const size_t i : { level, LEVELS.size() }) // the last one is of all
             {
                 shares[i].pixels++;
@@ -82,7 +83,8 @@ Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, i
     Table table;
     table.title = "Errors within sigma, " + method.name;
     table.note =
-        "Percent of the pixels of known truth with a sigma from this one on; 68 if it is true. -: fewer than " +
+        "Percent of the pixels of known truth with a sigma from this one on; 68 if it is true. Where the truth is "
+        "rounded to steps of s pixels, sigma is sqrt(sigma^2 + s^2 / 12). -: fewer than " +
         cv::format("%d pixels.", LEAST_PIXELS);
     table.header.push_back("sigma, pixels");
     for (const auto& set : sets)

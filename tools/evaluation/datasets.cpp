@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -341,6 +342,8 @@ Pair readPair(const Scene& scene)
         pair.truth = readTruth(scene.truth, size, scene.resolution, depth);
         const bool isKitti = scene.isFrame || (depth == CV_16U && !fs::exists(scene.rightTruth));
         pair.protocol = isKitti ? Pair::KITTI : depth == CV_32F ? Pair::BAD : Pair::MIDDLEBURY;
+        if (depth == CV_8U) // whole pixels of the full size
+            pair.truthDeviation = std::sqrt(1 / 12.) / resolutionDivisor(scene.resolution);
         // Without a mask, it says what is not occluded; it must be there.
         if (!isKitti && (scene.nonOccludedMask.empty() || fs::exists(scene.rightTruth)))
             pair.rightTruth = readTruth(scene.rightTruth, size, scene.resolution, depth);

@@ -24,12 +24,13 @@ struct Pair
         BAD         //!< Middlebury 2014, MiddEval3, ETH3D: errors above 0.5, 1, 2 and 4 of the non-occluded pixels
     };
     Protocol protocol;
-    Mat left, right;       // CV_8UC3 or CV_16UC1, see readPicture()
-    cv::Range disparities; // to be searched
-    Mat truth;             // NO_DISPARITY where unknown; empty without truth
-    Mat rightTruth;        // of the right image; may be empty
-    Mat judged;            // mask of the pixels that count
-    Mat judgedNonOccluded; // those of KITTI that are not occluded; may be empty
+    Mat left, right;           // CV_8UC3 or CV_16UC1, see readPicture()
+    cv::Range disparities;     // to be searched
+    Mat truth;                 // NO_DISPARITY where unknown; empty without truth
+    double truthDeviation = 0; // of its errors by rounding, in pixels, where it is in large steps
+    Mat rightTruth;            // of the right image; may be empty
+    Mat judged;                // mask of the pixels that count
+    Mat judgedNonOccluded;     // those of KITTI that are not occluded; may be empty
 };
 
 //! The options that readPair() knows: @left, @right, the disparities, and the truth

@@ -9,6 +9,8 @@
 
 #include "evaluation/datasets.hpp"
 
+#include <cmath>
+
 namespace opencv_test { namespace {
 
 using namespace hdp_tools;
@@ -74,6 +76,7 @@ TEST(HDPStereo_Datasets, middlebury_2006_trees)
         expectHalves(pair);
         EXPECT_EQ(Pair::MIDDLEBURY, pair.protocol);
         EXPECT_EQ(256 / trees[i / 2].divisor, pair.disparities.end);
+        EXPECT_DOUBLE_EQ(std::sqrt(1 / 12.) / trees[i / 2].divisor, pair.truthDeviation); // whole pixels of full size
         // Columns 0 .. 3 leave the image, 12 .. 19 come to disparities of 4, and 20 .. 23 to 8.
         EXPECT_EQ(0, countNonZero(pair.judged.colRange(0, 4)));
         EXPECT_EQ(8 * 12, countNonZero(pair.judged.colRange(4, 12)));
@@ -184,6 +187,7 @@ TEST(HDPStereo_Datasets, middlebury_2014_and_eval3)
     {
         const Pair pair = readPair(found[i]);
         EXPECT_EQ(Pair::BAD, pair.protocol);
+        EXPECT_EQ(0, pair.truthDeviation); // floats are not rounded
         EXPECT_EQ(70, pair.disparities.end);
         EXPECT_EQ(8.25f, pair.truth.at<float>(3, 20));
         EXPECT_EQ(NO_DISPARITY, pair.truth.at<float>(0, 5));

@@ -82,6 +82,10 @@ TEST(HDPStereo_EvaluationPrograms, robustness)
                              "| noise4 |", "| jpeg40 |", "| shear |" })
         EXPECT_NE(String::npos, good.output.find(row)) << row;
     testUnknown(folder, common, "--cases", "case", { "dy", "dy1x", "clean2", "rain" });
+    for (const char* name : { "blur0", "blur99999", "jpeg101", "noise-1", "dy1e99" })
+        EXPECT_NE(String::npos, run(folder, common + " --cases=" + name)
+                                    .errors.find("error: --cases: the number of '" + String(name) + "' must be "))
+            << name;
     folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
     EXPECT_EQ(2, run(folder, common + " --cases=clean").status);
 }
@@ -238,6 +242,11 @@ TEST(HDPStereo_EvaluationPrograms, evaluate)
     EXPECT_EQ(0, confidence.status) << confidence.errors;
     for (const char* row : { "| confidence >= | dataset: pixels | dataset: wrong |", "\n| 0 | 100.0 | ", "\n| 200 | " })
         EXPECT_NE(String::npos, confidence.output.find(row)) << confidence.output;
+    const Execution both = run(folder, "hdp_evaluate --num-disparities=32 --confidence --calibration --methods=fast " +
+                                           folder.path("dataset"));
+    EXPECT_EQ(0, both.status) << both.errors;
+    EXPECT_NE(String::npos, both.output.find("| sigma, pixels | dataset |"));
+    EXPECT_NE(String::npos, both.output.find(confidence.output));
     EXPECT_EQ(0, run(folder, "hdp_evaluate --num-disparities=32 --confidence " + folder.path("dataset")).status);
     EXPECT_EQ("error: --confidence: bm knows no errors\n",
               run(folder, "hdp_evaluate --methods=bm --confidence " + folder.path("dataset")).errors);
