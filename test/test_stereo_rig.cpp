@@ -224,6 +224,39 @@ TEST(HDPStereo_StereoRig, computes_depth_of_what_has_a_disparity)
     EXPECT_EQ(0, depth.at<ushort>(0));
 }
 
+//! The type of the output says nothing: depthType does.
+TEST(HDPStereo_StereoRig, depth_of_a_fixed_type)
+{
+    const Ptr<StereoRig> rig = StereoRig::create(makeCalibration());
+    const Mat pixels(4, 5, CV_32F, Scalar(16)), small(2, 5, CV_32F);
+    Mat_<ushort> millimetres;
+    Mat_<float> metres;
+    expectRejected([&] { rig->computeDepth(pixels, millimetres); },
+                   "depth must be CV_32FC1 as depthType, not CV_16UC1");
+    expectRejected([&] { rig->computeDepth(pixels, metres, CV_16U); },
+                   "depth must be CV_16UC1 as depthType, not CV_32FC1");
+    EXPECT_TRUE(millimetres.empty() && metres.empty());
+    expectRejected([&] { rig->computeDepth(pixels, noArray()); }, "depth must be an array, not noArray()");
+    expectRejected([&] { rig->computeDepth(pixels, small); }, "depth must have the size of disparity, 5 x 4");
+    rig->computeDepth(pixels, millimetres, CV_16U);
+    rig->computeDepth(pixels, metres);
+    EXPECT_NEAR(1000 * metres(3, 4), millimetres(3, 4), 0.51);
+}
+
+TEST(HDPStereo_StereoRig, results_that_are_not_wanted)
+{
+    const Ptr<StereoRig> rig = StereoRig::create(makeCalibration(), 100);
+    Mat R1, R2, P1, P2, Q, left, right, alone;
+    rig->getRectification(R1, R2, P1, P2, Q);
+    rig->getRectification(noArray(), noArray(), noArray(), noArray(), alone);
+    expectIdentical(Q, alone);
+    rig->getRectification(noArray(), noArray(), noArray(), alone, noArray());
+    expectIdentical(P2, alone);
+    rig->getMasks(left, right);
+    rig->getMasks(noArray(), alone);
+    expectIdentical(right, alone);
+}
+
 TEST(HDPStereo_StereoRig, refuses_what_is_impossible)
 {
     const StereoCalibration good = makeCalibration();
@@ -253,6 +286,13 @@ TEST(HDPStereo_StereoRig, refuses_what_is_impossible)
     };
     for (const double degrees : { 95., 180. })
         expectBad([&](StereoCalibration& c) { turn(2, degrees, c); }, "side by side");
+    const auto movePrincipalPoints = [&](StereoCalibration& c) { // of lenses without distortion
+        turn(0, 0, c);
+        c.cameraMatrix1.at<double>(0, 2) = 0;
+        c.cameraMatrix2.at<double>(0, 2) = c.imageSize.width;
+        c.distCoeffs1 = c.distCoeffs2 = Mat::zeros(1, 5, CV_64F);
+    };
+    expectBad(movePrincipalPoints, "principal points");
     for (const double degrees : { 120., 179. })
         expectBad([&](StereoCalibration& c) { turn(1, degrees, c); }, "same direction");
 

@@ -41,6 +41,25 @@ double maxUnfoldedAngle(const Mat& distortion, bool isFisheye)
     return 899 * step;
 }
 
+void copyIfNeeded(const Mat& result, OutputArray array)
+{
+    if (array.needed())
+        result.copyTo(array);
+}
+
+//! Throws if the depth cannot be written there.
+void checkDepth(OutputArray depth, Size size, int type)
+{
+    if (!depth.needed())
+        CV_Error(Error::StsBadArg, "depth must be an array, not noArray()");
+    if (depth.fixedType() && depth.type() != type)
+        CV_Error(Error::StsUnmatchedFormats, format("depth must be %s as depthType, not %s, which is fixed",
+                                                    typeToString(type).c_str(), typeToString(depth.type()).c_str()));
+    if (depth.fixedSize() && (depth.dims() > 2 || depth.size() != size))
+        CV_Error(Error::StsUnmatchedSizes,
+                 format("depth must have the size of disparity, %d x %d, as it is fixed", size.width, size.height));
+}
+
 class StereoRigImpl CV_FINAL : public StereoRig
 {
 public:
@@ -76,8 +95,8 @@ public:
 
     void getMasks(OutputArray left, OutputArray right) const CV_OVERRIDE
     {
-        masks_[0].copyTo(left);
-        masks_[1].copyTo(right);
+        copyIfNeeded(masks_[0], left);
+        copyIfNeeded(masks_[1], right);
     }
 
     void computeDepth(InputArray disparityArray, OutputArray depth, int depthType, int minDisparity) const CV_OVERRIDE
@@ -92,6 +111,7 @@ public:
                             size_.height, disparity.cols, disparity.rows));
         if (depthType != CV_32F && depthType != CV_16U)
             CV_Error(Error::StsBadArg, "depthType must be CV_32F or CV_16U");
+        checkDepth(depth, disparity.size(), depthType);
         Mat metres; // from disparities in pixels; 0 where there is none
         disparity.convertTo(metres, CV_32F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
         for (float& value : Mat_<float>(metres))
@@ -112,11 +132,11 @@ public:
     {
         const double f = focalLength_, B = baseline_;
         const Point2d c = principalPoint_;
-        Mat(R_[0]).copyTo(R1);
-        Mat(R_[1]).copyTo(R2);
-        Mat(Matx34d(f, 0, c.x, 0, 0, f, c.y, 0, 0, 0, 1, 0)).copyTo(P1);
-        Mat(Matx34d(f, 0, c.x, -f * B, 0, f, c.y, 0, 0, 0, 1, 0)).copyTo(P2);
-        Mat(Matx44d(1, 0, 0, -c.x, 0, 1, 0, -c.y, 0, 0, 0, f, 0, 0, 1 / B, 0)).copyTo(Q);
+        copyIfNeeded(Mat(R_[0]), R1);
+        copyIfNeeded(Mat(R_[1]), R2);
+        copyIfNeeded(Mat(Matx34d(f, 0, c.x, 0, 0, f, c.y, 0, 0, 0, 1, 0)), P1);
+        copyIfNeeded(Mat(Matx34d(f, 0, c.x, -f * B, 0, f, c.y, 0, 0, 0, 1, 0)), P2);
+        copyIfNeeded(Mat(Matx44d(1, 0, 0, -c.x, 0, 1, 0, -c.y, 0, 0, 0, f, 0, 0, 1 / B, 0)), Q);
     }
 
     StereoCalibration getCalibration() const CV_OVERRIDE
@@ -165,8 +185,8 @@ private:
               std::abs(principalPoint_.y) < most))
             CV_Error(Error::StsBadArg,
                      fillsImages
-                         ? "fieldOfView must be given: with this distortion nothing else tells the size of what both "
-                           "cameras see. Is the calibration right?"
+                         ? "fieldOfView must be given: with this distortion and these principal points nothing else "
+                           "tells the size of what both cameras see. Is the calibration right?"
                          : format("size must be larger, or fieldOfView smaller: the focal length would be %g pixels, "
                                   "which must be between 1 and 10^6",
                                   focalLength_));

@@ -89,7 +89,7 @@ public:
     CV_WRAP virtual void rectify(InputArray left, InputArray right, OutputArray rectifiedLeft,
                                  OutputArray rectifiedRight) const = 0;
 
-    /** @brief Returns which pixels of the rectified images show something.
+    /** @brief Returns which pixels of the rectified images show something. Either may be cv::noArray().
     @param left Receives CV_8UC1 of the rectified size: 255, or 0 for what no raw pixel reaches.
     @param right Receives that of the right image.
      */
@@ -102,12 +102,13 @@ public:
     @param depthType CV_32F or CV_16U.
     @param minDisparity In pixels. Disparities below it, at or below 0, or not finite are invalid. Rejected pixels of a
     matcher with minDisparity > 1 are above 0, so it is to be given then.
-    @throws cv::Exception if an argument is of another type, or disparity is empty or larger than getSize().
+    @throws cv::Exception if an argument is of another type, disparity is empty or larger than getSize(), or depth is
+    cv::noArray(), or of a fixed type or size that is not that of the result.
      */
     CV_WRAP virtual void computeDepth(InputArray disparity, OutputArray depth, int depthType = CV_32F,
                                       int minDisparity = 0) const = 0;
 
-    /** @brief Returns the rectification, as cv::stereoRectify does.
+    /** @brief Returns the rectification, as cv::stereoRectify does. Any of the matrices may be cv::noArray().
     @param R1 Receives the rotation of the left camera: CV_64F, 3 x 3.
     @param R2 Receives that of the right camera.
     @param P1 Receives the projection of the left camera: CV_64F, 3 x 4, in pixels.
@@ -132,7 +133,7 @@ public:
     /** @brief Creates a rig.
     @param calibration See readStereoCalibration().
     @param fieldOfView Horizontal field of view of the rectified images in degrees, 1 to 170. 0: without fisheye as much
-    as has no empty pixels; with fisheye what keeps the focal length.
+    as has no empty pixels, but for a column or row at a border; with fisheye what keeps the focal length.
     @param size Size of the rectified images; by default that of the raw ones.
     @throws cv::Exception if a matrix of the calibration is of another size, not finite or impossible, if
     cv::stereoRectify() would put one camera above the other, if one sees nothing of the other's image, or if an
@@ -168,8 +169,9 @@ public:
 
     /** @brief Takes a frame into account.
     @param rows HDPTreeMatcher::Findings::rows of a pair that is rectified by the calibration.
-    @return Whether it was: false if all are 0, as too few corners were matched, or it contradicts those before. After
-    five contradictions in a row those are forgotten: something has hit the rig.
+    @return Whether it was: false if all are 0, as too few corners were matched or a row was off by more than
+    HDPTreeMatcher::Params::maxRowOffset, or it contradicts those before. After five contradictions in a row those are
+    forgotten: something has hit the rig.
     @throws cv::Exception if there are not five finite numbers, or they move a row by a quarter of the image's height.
      */
     CV_WRAP virtual bool add(const std::vector<double>& rows) = 0;
