@@ -114,6 +114,32 @@ TEST(HDPStereo_SlowLightAlignment, errors_are_those_of_the_same_light)
     }
 }
 
+//! The documentation of Findings::light: the same levels, whatever the range is
+TEST(HDPStereo_LightAlignment, of_any_range)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 24, 7);
+    const int moved = 40;
+    Mat right; // 40 pixels farther to the left: disparities of 40 to 63
+    cv::copyMakeBorder(pair.right.colRange(moved, 640), right, 0, 0, 0, moved, BORDER_REPLICATE);
+    right = relight(right, lights[5]);
+    for (const int minDisparity : { 0, 40, -150 })
+    {
+        SCOPED_TRACE(minDisparity);
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, 64 - minDisparity);
+        match(*matcher, pair.left, right);
+        const LightModel model = foundBy(*matcher, true);
+        const PairModel ofPair = matcher->getPairModel();
+        EXPECT_EQ(ofPair.light, matcher->getFindings().light);
+        for (int v = 40; v < 480; v += 80)
+            for (int u = 40; u < 560; u += 80)
+            {
+                const double x = (u + 0.5 + minDisparity + ofPair.addedColumns) / (640 + ofPair.addedColumns) - 0.5;
+                const double y = (v + 0.5) / 480 - 0.5;
+                EXPECT_NEAR(0.5, model.at(lights[5](0.5, (u + 0.5) / 640 - 0.5, y), x, y), 0.02) << u << ", " << v;
+            }
+    }
+}
+
 //! The same light, or none to compare
 TEST(HDPStereo_LightAlignment, good_pairs_stay_as_they_are)
 {

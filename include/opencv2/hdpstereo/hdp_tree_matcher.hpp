@@ -439,7 +439,7 @@ public:
         A point of the right image that is u pixels right of its centre and v below it was
         \f$m_0 + m_1 u + m_2 v + m_3 u v + m_4 v^2\f$ pixels below its row, as small rotations of a camera and another
         focal length make it. @ref tutorial_hdpstereo_matching tells how to correct a calibration by them. Zeros if too
-        few corners were matched, rowError being 0 then, or if Params::maxRowOffset is 0. */
+        few corners were matched, rowError being 0 then, or if a row is off by more than Params::maxRowOffset. */
         CV_PROP std::vector<double> rows;
 
         //! Whether the rows of the right image were moved before matching.
@@ -454,10 +454,11 @@ public:
 
         /** @brief How the light of the right image differed from that of the left one: \f$m_0, \ldots, m_9\f$.
 
-        With levels from 0 to 1, a level r of the right image at (x, y), from its centre in units of its width and
-        height, is \f$r (m_0 + m_1 x + m_2 y + m_3 x^2 + m_4 x y + m_5 y^2 + m_6 (x^2 + y^2)^2) + m_7 + m_8 r^2 + m_9
-        r^3\f$ in the left one. The width is that of the image with the columns that a negative minDisparity adds. 1 and
-        zeros if too few corners were matched or Params::useLightAlignment is false. */
+        With levels from 0 to 1, a level r of the right image at (x, y) is \f$r (m_0 + m_1 x + m_2 y + m_3 x^2 + m_4 x y
+        + m_5 y^2 + m_6 (x^2 + y^2)^2) + m_7 + m_8 r^2 + m_9 r^3\f$ in the left one. x and y are from the centre, in
+        units of width and height, of the image as it is matched, see PairModel: that of column u is x = (u + 1/2 +
+        minDisparity + PairModel::addedColumns) / (width + PairModel::addedColumns) - 1/2. 1 and zeros if too few
+        corners were matched or Params::useLightAlignment is false. */
         CV_PROP std::vector<double> light;
 
         //! Whether the light of the right image was changed before matching.
