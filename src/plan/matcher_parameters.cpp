@@ -169,9 +169,12 @@ void HDPTreeMatcher::Params::write(FileStorage& fs) const
 
 void HDPTreeMatcher::Params::read(const FileNode& fn)
 {
+    if (!fn.isMap())
+        CV_Error(Error::StsParseError, "parameters must be a map");
     Params params(PRESET_PAPER);
     visitParams(params, hdp::ValueReader{ fn, "", true });
-    params.treeStrategy = readStrategy(fn["treeStrategy"], treeStrategy);
+    if (!fn["treeStrategy"].empty())
+        params.treeStrategy = readStrategy(fn["treeStrategy"], treeStrategy);
     if (!fn["predictionModel"].empty())
     {
         params.predictionModel = DisparityPredictionModel::create();
