@@ -158,6 +158,7 @@ TEST(HDPStereo_ModelTraining, degenerate_maps)
             even(Rect(2 * x, 2 * y, 2, 2)).setTo(2 * (x + y));
         }
     expectUntrained(one(even), one(half), "same offset");
+    expectUntrained({ even, good.lower }, { half, good.upper }, "in either half of the maps");
     Mat huge = good.lower.clone();
     huge.at<float>(3, 5) = 1e9f;
     expectUntrained(one(huge), one(good.upper), "at most 32767");

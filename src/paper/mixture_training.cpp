@@ -109,7 +109,9 @@ void histogramsOfHalves(const std::vector<Mat>& maps, const std::vector<Mat>& up
     if (areConstant(maps))
         CV_Error(Error::StsBadArg, "disparities must not be all the same");
     if (first.size() < 2 || second.size() < 2)
-        CV_Error(Error::StsBadArg, "upperDisparities must not all have the same offset from half of disparities");
+        CV_Error(
+            Error::StsBadArg,
+            "upperDisparities must not all have the same offset from half of disparities in either half of the maps");
 }
 
 double meanLogLikelihood(const GaussianMixture& mixture, const OffsetHistogram& histogram)

@@ -77,9 +77,9 @@ public:
     @param maxComponents Largest number of Gaussians, 1..64.
     @param seed Seed of the choice of halves and of the starts of the fit, >= 0.
     @return Mean log-likelihood of an offset of the half that the number of Gaussians was chosen by.
-    @throws cv::Exception if an argument is invalid, if one of the halves has fewer than 100 offsets, if all \f$D_l\f$
-    or all offsets are equal, or if the library was built without opencv_ml, which only this method needs; the model is
-    unchanged.
+    @throws cv::Exception if an argument is invalid, if one of the halves has fewer than 100 offsets, or equal ones
+    only, if all \f$D_l\f$ are equal, or if the library was built without opencv_ml, which only this method needs; the
+    model is unchanged.
      */
     CV_WRAP virtual double train(InputArrayOfArrays disparities, InputArrayOfArrays upperDisparities,
                                  int maxComponents = 6, int seed = 0) = 0;
