@@ -44,7 +44,7 @@ public:
     {
         CV_TRACE_FUNCTION();
         result_ = Result(); // until this pair is matched
-        const Mat left = leftArray.getMat(), right = rightArray.getMat();
+        const Mat left = imageOf(leftArray, "left"), right = imageOf(rightArray, "right");
         checkPair(left, right);
         checkInputs(inputs_, left.size());
         const int depth = depthOfOutput(disparityArray, left.size(), p_.disparityDepth);

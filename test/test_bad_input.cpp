@@ -40,6 +40,9 @@ TEST(HDPStereo_BadInput, empty_images)
     Mat disparity;
     expectRejected([&] { HDPTreeMatcher::create()->compute(noArray(), image, disparity); }, "left");
     expectRejected([&] { HDPTreeMatcher::create()->compute(image, noArray(), disparity); }, "right");
+    const std::vector<Mat> several(2, image);
+    expectRejected([&] { HDPTreeMatcher::create()->compute(several, image, disparity); }, "left must be an image");
+    expectRejected([&] { HDPTreeMatcher::create()->compute(image, several, disparity); }, "right must be an image");
 }
 
 TEST(HDPStereo_BadInput, depths_and_channels)
@@ -111,7 +114,9 @@ TEST(HDPStereo_BadInput, output_that_cannot_be_written)
 {
     const SyntheticPair first = makeSyntheticPair(Size(160, 100), 20, 3),
                         second = makeSyntheticPair(Size(160, 100), 20, 4);
-    const Mat small(10, 12, CV_16S);
+    const Mat small(10, 12, CV_16S), volume(std::vector<int>(3, 5), CV_16S);
+    std::vector<short> list;
+    std::vector<Mat> several(1);
     Mat maps[2];
     for (bool fails : { false, true })
     {
@@ -124,6 +129,9 @@ TEST(HDPStereo_BadInput, output_that_cannot_be_written)
                            "disparity must be an array");
             expectRejected([&] { matcher->compute(second.left, second.right, small); },
                            "disparity must have the size of left, 160 x 100, not 12 x 10");
+            expectRejected([&] { matcher->compute(second.left, second.right, volume); }, "disparity must have two");
+            expectRejected([&] { matcher->compute(second.left, second.right, list); }, "disparity must be a Mat");
+            expectRejected([&] { matcher->compute(second.left, second.right, several); }, "disparity must be a Mat");
         }
         maps[fails] = match(*matcher, first.left, first.right).clone();
     }

@@ -80,6 +80,11 @@ int depthOfOutput(OutputArray disparity, Size size, int usual)
 {
     if (!disparity.needed())
         CV_Error(Error::StsBadArg, "disparity must be an array, not noArray()");
+    const int kind = disparity.kind();
+    if (!disparity.isMat() && !disparity.isUMat() && kind != _InputArray::MATX && kind != _InputArray::CUDA_HOST_MEM)
+        CV_Error(Error::StsBadArg, "disparity must be a Mat, not a vector or another array");
+    if (disparity.fixedSize() && disparity.dims() > 2)
+        CV_Error(Error::StsUnmatchedSizes, "disparity must have two dimensions, as its size is fixed");
     if (disparity.fixedSize() && disparity.size() != size)
         CV_Error(Error::StsUnmatchedSizes,
                  format("disparity must have the size of left, %d x %d, not %d x %d, as it is fixed", size.width,

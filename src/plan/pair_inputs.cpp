@@ -55,6 +55,13 @@ void checkSize(const Mat& input, Size size, const char* name)
 
 } // namespace
 
+Mat imageOf(InputArray array, const char* name)
+{
+    if (array.isMatVector() || array.isUMatVector() || array.kind() == _InputArray::STD_VECTOR_VECTOR)
+        CV_Error(Error::StsBadArg, format("%s must be an image, not a vector of them", name));
+    return array.getMat();
+}
+
 void setMasks(InputArray left, InputArray right, PairInputs& inputs)
 {
     const Mat leftMask = toMask(left, "leftMask"), rightMask = toMask(right, "rightMask");

@@ -30,6 +30,9 @@ struct PairInputs
     bool hasPrior() const { return !prior.empty(); }
 };
 
+//! The image in a caller's array; throws if there are several
+Mat imageOf(InputArray array, const char* name);
+
 // What a caller tells, copied; see the methods of HDPTreeMatcher. They throw if it is not that, and change nothing.
 void setMasks(InputArray left, InputArray right, PairInputs& inputs);
 CV_EXPORTS void setRange(InputArray smallest, InputArray largest, PairInputs& inputs);

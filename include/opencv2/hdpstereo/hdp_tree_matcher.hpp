@@ -79,7 +79,8 @@ on several parameters or on the images is checked by compute(), before any work.
 - Params::predictionModel has too few layers;
 - numDisparities is 0, and the pair has too few corners to find the range: found by some work, before matching;
 - the images are not those of the PairModel that is set;
-- the output array is cv::noArray(), or has a fixed type other than CV_16SC1 and CV_32FC1, or another fixed size;
+- the output array is cv::noArray() or a std::vector, or has a fixed type other than CV_16SC1 and CV_32FC1, or another
+  fixed size;
 - a mask or a prior has not the size of the images, or the maps of setDisparityRange() are larger;
 - a TreeStrategy throws, or does not leave a permutation of the edges, or trees have more than 2^36 costs. Only this is
   found while matching; the matcher stays usable, and the output array is unchanged.
