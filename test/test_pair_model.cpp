@@ -424,8 +424,25 @@ TEST(HDPStereo_PairModel, bad_values)
         PairModel model = makeUnusualModel();
         bad.second(model);
         expectRejected([&] { matcher->setPairModel(model); }, std::string("PairModel: ") + bad.first);
-        expectRejected([&] { readFrom(textOf(model)); }, bad.first);
+        expectRejected([&] { textOf(model); }, bad.first);
     }
+    const std::string text = textOf(makeUnusualModel());
+    for (const char* line : { "   width: -3", "   bits: 17", "   rowError: .Nan", "   black: .Inf" })
+    {
+        const std::string field(line, std::strchr(line, ':') + 1);
+        std::string spoilt = text;
+        const size_t begin = spoilt.find(field);
+        spoilt.replace(begin, spoilt.find('\n', begin) - begin, line);
+        expectRejected([&] { readFrom(spoilt); }, field.substr(3, field.size() - 4));
+    }
+    // What is not written harms no file.
+    const TemporaryFile file(".yml");
+    PairModel model = makeUnusualModel();
+    model.save(file.name);
+    model.rowError = nan;
+    expectRejected([&] { model.save(file.name); }, "PairModel: rowError");
+    EXPECT_EQ(text, textOf(PairModel::load(file.name)));
+    EXPECT_TRUE(readFrom(textOf(PairModel())).empty());
     expectRejected([] { PairModel().tile(0, 0, 1, 1); }, "empty");
     expectRejected([] { makeUnusualModel().tile(501, 0, 500, 1); }, "PairModel: x");
 }

@@ -118,7 +118,11 @@ PairModel PairModel::enlarged(int times, int largeWidth, int largeHeight) const
     return model;
 }
 
-void PairModel::write(FileStorage& fs) const { visitFields(*this, ValueWriter{ fs }); }
+void PairModel::write(FileStorage& fs) const
+{
+    checkPairModel(*this);
+    visitFields(*this, ValueWriter{ fs });
+}
 
 void PairModel::read(const FileNode& fn)
 {
@@ -132,6 +136,7 @@ void PairModel::read(const FileNode& fn)
 
 void PairModel::save(const String& filename) const
 {
+    checkPairModel(*this); // what was in the file stays
     FileStorage fs(filename, FileStorage::WRITE);
     if (!fs.isOpened())
         CV_Error(Error::StsError, "cannot write '" + filename + "'");

@@ -107,7 +107,7 @@ struct CV_EXPORTS_W_SIMPLE PairModel
 
     /** @brief Writes the model to a file.
     @param filename XML, YAML or JSON, by its extension.
-    @throws cv::Exception if it cannot be written. */
+    @throws cv::Exception if it cannot be written, or a value is not valid: load() reads what is written. */
     CV_WRAP void save(const String& filename) const;
 
     /** @brief Reads what save() has written.
@@ -119,7 +119,7 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     @throws cv::Exception if a value is missing or not valid; the model is unchanged. */
     void read(const FileNode& fn);
 
-    //! Stores all fields by name.
+    //! Stores all fields by name. Throws cv::Exception if a value is not valid, before anything is stored.
     void write(FileStorage& fs) const;
 };
 
