@@ -53,6 +53,20 @@ template <typename T> py::array_t<T> toPython(const std::vector<T>& values)
     return py::array_t<T>((py::ssize_t)values.size(), values.data());
 }
 
+//! None if there are none
+template <typename T> py::object listToPython(const std::vector<T>& values)
+{
+    return values.empty() ? py::object(py::none()) : py::object(toPython(values));
+}
+
+//! Of a copy, which nobody else sees: writing into it is an error. None stays.
+inline py::object readOnly(const py::object& array)
+{
+    if (!array.is_none())
+        array.attr("setflags")(py::arg("write") = false);
+    return array;
+}
+
 inline std::vector<cv::String> toPython(const std::vector<cv::String>& values) { return values; }
 inline int toPython(int value) { return value; }
 inline bool toPython(bool value) { return value; }
@@ -69,10 +83,11 @@ void fromText(cv::Algorithm& algorithm, const std::string& text);
 //! The name of a file, which may be a path object
 std::string nameOf(const py::object& filename);
 
+//! Throws for a name of a compressed file.
 void writeText(const py::object& filename, const std::string& text);
 void writeFile(const py::object& filename, const cv::Algorithm& algorithm);
 
-//! Calls read() with the text of a file; its cv::Exception gets the name.
+//! Calls read() with the text of a file; its cv::Exception gets the name. So does the error if the file is no text.
 void readFile(const py::object& filename, const std::function<void(const std::string& text)>& read);
 
 #endif

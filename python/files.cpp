@@ -27,6 +27,9 @@ std::string nameOf(const py::object& filename)
 
 void writeText(const py::object& filename, const std::string& text)
 {
+    const std::string name = nameOf(filename);
+    if (name.size() > 3 && name.compare(name.size() - 3, 3, ".gz") == 0)
+        throw py::value_error("filename: '" + name + "': only C++ writes compressed files, leave out .gz");
     const py::object file = py::module_::import("io").attr("open")(filename, "w", py::arg("encoding") = "utf-8");
     file.attr("write")(text);
     file.attr("close")();
@@ -40,11 +43,18 @@ void writeFile(const py::object& filename, const cv::Algorithm& algorithm)
 void readFile(const py::object& filename, const std::function<void(const std::string& text)>& read)
 {
     const py::object file = py::module_::import("io").attr("open")(filename, "r", py::arg("encoding") = "utf-8");
-    const std::string text = file.attr("read")().cast<std::string>();
-    file.attr("close")();
     try
     {
+        const std::string text = file.attr("read")().cast<std::string>();
+        file.attr("close")();
         read(text);
+    }
+    catch (const py::error_already_set& e)
+    {
+        file.attr("close")();
+        if (!e.matches(PyExc_UnicodeDecodeError))
+            throw;
+        throw py::value_error("filename: '" + nameOf(filename) + "': it must be text in UTF-8, not compressed");
     }
     catch (const cv::Exception& e) // which does not know the name
     {

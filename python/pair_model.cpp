@@ -25,12 +25,12 @@ PairModel fromText(const std::string& text)
     return model;
 }
 
-//! Fields of numbers are numpy arrays.
+//! Fields of numbers are numpy arrays, read-only.
 void defNumbers(py::class_<PairModel>& type, const char* name, std::vector<double> PairModel::*field,
                 const char* documentation)
 {
     type.def_property(
-        name, [field](const PairModel& self) { return toPython(self.*field); },
+        name, [field](const PairModel& self) { return readOnly(toPython(self.*field)); },
         [field](PairModel& self, const std::vector<double>& values) { self.*field = values; }, documentation);
 }
 
@@ -93,7 +93,7 @@ and nothing is estimated from these: the frames of one rig, or the tiles of one 
     disparity = matcher.compute(left[y:y + height, x:x + width], right[y:y + height, x:x + width])
 
 Points of the right image are counted from the centre of the image as it is matched: moved to the right by minDisparity,
-with addedColumns more on the left.)doc");
+with addedColumns more on the left. The arrays rows and light are copies, and read-only: assign others.)doc");
     setPackage(type);
     type.def(py::init<>(), "An empty model, of no images");
     type.def("empty", &PairModel::empty, "Returns whether the model is of no images.");

@@ -27,7 +27,8 @@ void addCalibration(py::module_& module)
 What a calibration says of two cameras side by side, as cv2.stereoCalibrate has it.
 
 A point X of the left camera is R X + T in the right one: x to the right, y down, z forward. T is in metres. distCoeffs1
-and distCoeffs2 have 4, 5, 8, 12 or 14 numbers; with isFisheye they are those of cv2.fisheye, 4 numbers.)doc");
+and distCoeffs2 have 4, 5, 8, 12 or 14 numbers; with isFisheye they are those of cv2.fisheye, 4 numbers. Matrices
+are copies, and read-only: assign others.)doc");
     setPackage(calibration);
     calibration.def(py::init<>(), "A calibration without matrices");
     calibration.def_property(
@@ -36,7 +37,7 @@ and distCoeffs2 have 4, 5, 8, 12 or 14 numbers; with isFisheye they are those of
         "Width and height of the raw images, in pixels");
     const auto matrix = [&](const char* name, cv::Mat StereoCalibration::*field, const char* documentation) {
         calibration.def_property(
-            name, [field](const StereoCalibration& self) { return toPython((self.*field).clone()); },
+            name, [field](const StereoCalibration& self) { return readOnly(toPython((self.*field).clone())); },
             [field, name](StereoCalibration& self, const py::array& value) { self.*field = toMatrix(value, name); },
             documentation);
     };
@@ -87,7 +88,7 @@ Creates a rig.
 
 calibration: see readStereoCalibration().
 fieldOfView: horizontal field of view of the rectified images in degrees, 1 to 170. 0: without fisheye as much as has no
-empty pixels; with fisheye what keeps the focal length.
+empty pixels, but for a column or row at a border; with fisheye what keeps the focal length.
 size: width and height of the rectified images; by default those of the raw ones.)doc";
     rig.def(py::init(create), py::arg("calibration"), py::arg("fieldOfView") = 0., py::arg("size") = Pair(0, 0),
             createHelp);

@@ -45,7 +45,7 @@ public:
         const py::function override = py::get_override(static_cast<const TreeStrategy*>(this), "orderEdges");
         if (!override)
             return TreeStrategy::orderEdges(weights, edges);
-        edges = edgesOf(override(toPython(weights.clone()), toPython(edges)),
+        edges = edgesOf(override(readOnly(toPython(weights.clone())), toPython(edges)),
                         "orderEdges() must return integers in one dimension");
     }
 
@@ -163,6 +163,7 @@ Edge 2 * i joins pixel i = y * width + x to its right neighbour, edge 2 * i + 1 
 
 weights: the largest absolute differences over the colour channels, 0 to 255, or for COST_CENSUS 9 / 8 of those of the
 levels of grey images, rounded up: uint8 in two channels, of the layer's size; weights.ravel()[e] is that of edge e.
+They are a copy, and read-only.
 edges: the numbers of the edges that there are: int32 in one dimension.
 
 Returns the same numbers in another order. compute() raises ValueError if one is added, removed or repeated.)doc")

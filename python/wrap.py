@@ -42,7 +42,7 @@ DOXYGEN_WORDS = (  # to plain text
 )
 
 WORDS = DOXYGEN_WORDS + (  # and from C++ to Python
-    (r'\b(HDPTreeMatcher|StereoMatcher|Params|Findings)::', r'\1.'),
+    (r'\b(HDPTreeMatcher|StereoMatcher|Params|Findings|PairModel)::', r'\1.'),
     (r'\bDisparityPredictionModel::', 'DisparityPredictionModel.'),
     (r'cv::Mat_<float>', 'a numpy array of float32'),
     (r'cv::Exception', 'ValueError'),
@@ -178,17 +178,16 @@ class Method:
             what = 'Returns ' if (kind, name) in self.outputs else ''
             text = re.sub(r'@param %s (Receives )?' % name, '\n%s%s: ' % (what, name), text)
         text = in_python_words(text)
-        if any(kind == 'OutputArray' for kind, _ in self.outputs):
-            text = text.replace('Empty', 'None')
-        if self.arrays:
+        if self.outputs or self.arrays:
             text = text.replace('Empty', 'None')
         briefs[self.name] = re.match(r'.*?[.](?=\s|$)', text, re.S)[0]
         return text
 
     def cpp(self):
         '''The definition of the method'''
-        results = ['result'] if self.result != 'void' else []
-        results += [name for _, name in self.outputs]
+        results = ['toPython(result)'] if self.result != 'void' else []
+        results += [('toPython(%s)' if kind == 'OutputArray' else 'listToPython(%s)') % name
+                    for kind, name in self.outputs]
         lines = ['matcher.def("%s",' % self.name,
                  '    [](Matcher& self%s) {' % ''.join(', const py::object& %sArray' % name if kind in INPUTS else
                                                        ', %s %s' % (kind, name) for kind, name in self.inputs)]
@@ -204,9 +203,9 @@ class Method:
         if self.enumeration:
             lines.append('        return enumerator("%s", result);' % self.enumeration)
         elif len(results) == 1:
-            lines.append('        return toPython(%s);' % results[0])
+            lines.append('        return %s;' % results[0])
         elif results:
-            lines.append('        return py::make_tuple(%s);' % ', '.join('toPython(%s)' % name for name in results))
+            lines.append('        return py::make_tuple(%s);' % ', '.join(results))
         lines.append('    },%s' % ''.join(' py::arg("%s"),' % name for _, name in self.inputs))
         lines.append('    R"doc(%s)doc");' % self.documentation)
         return '\n'.join(lines) + '\n'
@@ -214,7 +213,8 @@ class Method:
     def stub(self):
         '''The declaration for type checkers'''
         kinds = [self.enumeration or SCALARS[self.result]] if self.result != 'void' else []
-        kinds += [OUTPUTS[kind][1] for kind, _ in self.outputs]
+        kinds += [OUTPUTS[kind][1] if kind == 'OutputArray' else 'Optional[%s]' % OUTPUTS[kind][1]
+                  for kind, _ in self.outputs]
         result = 'None' if not kinds else kinds[0] if len(kinds) == 1 else 'Tuple[%s]' % ', '.join(kinds)
         arguments = ''.join(', %s: %s' % (name, SCALARS.get(kind) or INPUTS[kind]) for kind, name in self.inputs)
         return '    def %s(self%s) -> %s: ...\n' % (self.name, arguments, result)

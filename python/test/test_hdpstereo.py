@@ -10,6 +10,7 @@ The package hdpstereo. Run by CTest, or alone:
 
 import copy
 import gc
+import gzip
 import importlib.util
 import inspect
 import os
@@ -146,6 +147,8 @@ class Rig(Test):
             setattr(other, name, getattr(self.calibration, name))
         other.distCoeffs2 = np.zeros(5)
         self.assertEqual((1, 5), hdpstereo.StereoRig(other).getCalibration().distCoeffs2.shape)
+        with self.assertRaisesRegex(ValueError, 'read-only'):
+            other.cameraMatrix1[0, 0] = 3
         with self.assertRaisesRegex(ValueError, 'none.yaml'):
             hdpstereo.readStereoCalibration('none.yaml')
         for original in other, hdpstereo.StereoCalibration():
@@ -564,6 +567,14 @@ class Matching(Test):
         self.assertEqual((48, 64), matcher.compute(LEFT[:48, :64], RIGHT[:48, :64]).shape)
         with self.assertRaisesRegex(ValueError, 'left must have 64 x 48 pixels'):
             matcher.compute(LEFT, RIGHT)
+        for array in model.rows, model.light:
+            with self.assertRaisesRegex(ValueError, 'read-only'):
+                array[0] = 3
+        model.rowError = -1
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertRaisesRegex(ValueError, 'rowError', model.save, pathlib.Path(folder) / 'model.yml')
+            self.assertEqual([], os.listdir(folder))
+        model.rowError = 0
         model.rows = [1, 2]
         self.assertRaisesText(ValueError, 'PairModel: rows must be 5 finite numbers', matcher.setPairModel, model)
         self.assertRaises(TypeError, matcher.setPairModel, None)
@@ -628,12 +639,14 @@ class Matching(Test):
         self.assertIsNone(matcher.getConfidence())
         self.assertEqual((None, None), matcher.getForest())
         self.assertIsNone(matcher.getLayerDisparity(0))
+        self.assertIsNone(matcher.getLayerPrior(0))
         findings = matcher.getFindings()
         self.assertEqual(([], 0, False), (findings.stages, len(findings.searchRatios), findings.areRowsMoved))
         disparity = matcher.compute(LEFT, RIGHT)
         confidence = matcher.getConfidence()
         self.assertEqual((np.uint8, disparity.shape), (confidence.dtype, confidence.shape))
-        self.assertEqual([32, 16, 0], [len(matcher.getLayerPrior(layer)) for layer in range(3)])
+        self.assertEqual([32, 16], [len(matcher.getLayerPrior(layer)) for layer in range(2)])
+        self.assertIsNone(matcher.getLayerPrior(2))
         self.assertEqual(3, len(matcher.getFindings().searchRatios))
         trees, intervals = matcher.getForest()
         self.assertEqual((np.int32, disparity.shape), (trees.dtype, trees.shape))
@@ -745,6 +758,7 @@ class Strategies(Test):
         self.match(Asked(), False)
         weights, edges = asked[0]
         self.assertEqual((np.uint8, TRUTH.shape + (2,)), (weights.dtype, weights.shape))
+        self.assertFalse(weights.flags.writeable)
         difference = np.abs(np.diff(LEFT.astype(int), axis=1)).max(axis=2)
         np.testing.assert_array_equal(difference, weights[:, :-1, 0])
         self.assertEqual((np.int32, (2 * TRUTH.size - sum(TRUTH.shape),)), (edges.dtype, edges.shape))
@@ -876,6 +890,14 @@ class Storage(Test):
             self.assertRaises(ValueError, matcher.read, self.path / 'bad.yml')
             for load in DisparityPredictionModel.load, HDPTreeMatcher.load, hdpstereo.PairModel.load:
                 self.assertRaisesRegex(ValueError, "filename: '.*bad.yml': ", load, self.path / 'bad.yml')
+        for content in gzip.compress(good.encode()), b'gamma: \xff':
+            (self.path / 'bad.yml.gz').write_bytes(content)
+            for load in matcher.read, DisparityPredictionModel.load, HDPTreeMatcher.load, hdpstereo.PairModel.load:
+                self.assertRaisesRegex(ValueError, "^filename: '.*bad.yml.gz': it must be text", load,
+                                       self.path / 'bad.yml.gz')
+        for save in matcher.save, DisparityPredictionModel().save, hdpstereo.PairModel().save:
+            self.assertRaisesRegex(ValueError, "filename: '.*new.yml.gz': ", save, str(self.path / 'new.yml.gz'))
+        self.assertFalse((self.path / 'new.yml.gz').exists())
         self.assertEqual(before, parameters(matcher))
 
     def test_model(self):
