@@ -129,7 +129,8 @@ Mat wrongPixelsD1(const Mat& disparity, const Mat& truth, const Mat& mask)
 
 double percent(const Mat& pixels, const Mat& mask)
 {
-    return 100. * cv::countNonZero(pixels) / std::max(cv::countNonZero(mask), 1);
+    const int all = cv::countNonZero(mask);
+    return all > 0 ? 100. * cv::countNonZero(pixels) / all : std::numeric_limits<double>::quiet_NaN();
 }
 
 } // namespace hdp_tools

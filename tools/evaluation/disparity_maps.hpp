@@ -63,7 +63,7 @@ Mat wrongPixels(const Mat& disparity, const Mat& truth, const Mat& mask, double 
 //! As wrongPixels(), by the measure of KITTI: an error above 3 pixels and above 5 % of the truth
 Mat wrongPixelsD1(const Mat& disparity, const Mat& truth, const Mat& mask);
 
-//! Share of the mask, in percent
+//! Share of the mask, in percent; not a number if the mask is empty
 double percent(const Mat& pixels, const Mat& mask);
 
 } // namespace hdp_tools

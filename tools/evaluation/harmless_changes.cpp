@@ -242,15 +242,17 @@ Pair truthOfChanged(const HarmlessChange& change, const Pair& pair)
     if (pair.protocol == Pair::NO_TRUTH)
         return judging;
     if (change.isMirrored)
-    {
         mirrorTruth(pair, judging);
-        return judging;
+    else
+    {
+        const Mat kept = keptPixels(change, pair.truth);
+        judging.truth = pair.truth;
+        judging.judged = pair.judged & kept;
+        if (!pair.judgedNonOccluded.empty())
+            judging.judgedNonOccluded = pair.judgedNonOccluded & kept;
     }
-    const Mat kept = keptPixels(change, pair.truth);
-    judging.truth = pair.truth;
-    judging.judged = pair.judged & kept;
-    if (!pair.judgedNonOccluded.empty())
-        judging.judgedNonOccluded = pair.judgedNonOccluded & kept;
+    if (countNonZero(judging.judged) == 0)
+        fail("the change " + change.name + " leaves no pixel that can be judged");
     return judging;
 }
 

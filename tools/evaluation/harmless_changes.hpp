@@ -74,7 +74,7 @@ Mat keptPixels(const HarmlessChange& change, const Mat& disparity);
 
 /** What a restored map is judged by: the truth of the pair, and the judged pixels that the change has left. Of the
 mirror: the truth of the right image. Where the set has none, this is the left truth, as the right image sees it: only
-pixels that the left image shows, too, are judged. */
+pixels that the left image shows, too, are judged. Fails if no pixel is left. */
 Pair truthOfChanged(const HarmlessChange& change, const Pair& pair);
 
 //! What the right image sees of the pixels of a map: of those that come to one pixel, the nearest.

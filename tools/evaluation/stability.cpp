@@ -224,17 +224,24 @@ void countConfidence(const Mat& confidence, const Mat& pixels, const Mat& unstab
             }
 }
 
+//! Of each change, as those of Stability that are means over them
+struct Shares
+{
+    std::vector<double> bare, edge, inBlobs, occluded;
+};
+
 //! Adds what a change does, without its errors.
-void addMoves(const HarmlessChange& change, const CleanResult& clean, const Mat& restored, Stability& stability)
+void addMoves(const HarmlessChange& change, const CleanResult& clean, const Mat& restored, Stability& stability,
+              Shares& shares)
 {
     const Mat kept = keptPixels(change, clean.disparity);
     const Mat unstable = unstablePixels(change, clean.disparity, restored) & kept;
     const Mat visible = clean.visible & kept, occluded = clean.occluded & kept, moved = unstable & visible;
     stability.unstable.push_back(percent(moved, visible));
-    stability.bare += percent(moved & clean.bare, visible);
-    stability.edge += percent(moved & clean.edges, visible);
-    stability.inBlobs += percent(moved & largeBlobs(unstable, blobShare), visible);
-    stability.occluded += percent(unstable & occluded, occluded);
+    shares.bare.push_back(percent(moved & clean.bare, visible));
+    shares.edge.push_back(percent(moved & clean.edges, visible));
+    shares.inBlobs.push_back(percent(moved & largeBlobs(unstable, blobShare), visible));
+    shares.occluded.push_back(percent(unstable & occluded, occluded));
     if (!clean.confidence.empty())
         countConfidence(clean.confidence, visible, moved, stability.confidence);
 }
@@ -250,7 +257,7 @@ Stability measureStability(const Method& method, const Pair& given, const std::v
     const Score cleanScore = scoreMap(clean.disparity, pair);
     Stability stability;
     stability.cleanError = mainScore(cleanScore, pair.protocol);
-    stability.bare = stability.edge = stability.inBlobs = stability.occluded = 0;
+    Shares shares;
     for (const HarmlessChange& change : changes)
     {
         const Pair changed = changePair(change, pair, scene), judging = truthOfChanged(change, pair);
@@ -260,14 +267,13 @@ Stability measureStability(const Method& method, const Pair& given, const std::v
         const Score onSame = change.isMirrored ? cleanScore : scoreMap(clean.disparity, judging);
         stability.errors.push_back(mainScore(scoreMap(restored, judging), pair.protocol));
         stability.cleanErrors.push_back(mainScore(onSame, pair.protocol));
-        addMoves(change, clean, restored, stability);
+        addMoves(change, clean, restored, stability, shares);
     }
     const bool hasTruth = pair.protocol != Pair::NO_TRUTH;
-    const double count = (double)changes.size();
-    stability.bare /= count;
-    stability.inBlobs /= count;
-    stability.edge = hasTruth ? stability.edge / count : NO_SCORE;
-    stability.occluded = hasTruth && countNonZero(clean.occluded) > 0 ? stability.occluded / count : NO_SCORE;
+    stability.bare = meanOf(shares.bare);
+    stability.inBlobs = meanOf(shares.inBlobs);
+    stability.edge = hasTruth ? meanOf(shares.edge) : NO_SCORE;
+    stability.occluded = meanOf(shares.occluded);
     return stability;
 }
 

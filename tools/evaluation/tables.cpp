@@ -35,13 +35,23 @@ void Table::addNumbers(const std::vector<double>& values, const char* printfForm
         cell.isBest = !std::isnan(values[i]) && std::stod(cell.text) == best;
     }
 }
+
+//! A cell ends at a bar.
+static String markdownCell(const String& text)
+{
+    String escaped;
+    for (char c : text)
+        escaped += c == '|' ? String("\\|") : String(1, c);
+    return escaped;
+}
+
 String toMarkdown(const Table& table)
 {
     std::ostringstream out;
     out << "### " << table.title << "\n\n";
     const auto row = [&](const std::vector<String>& cells) {
         for (const String& cell : cells)
-            out << "| " << cell << " ";
+            out << "| " << markdownCell(cell) << " ";
         out << "|\n";
     };
     row(table.header);

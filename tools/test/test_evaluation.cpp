@@ -175,6 +175,10 @@ TEST(HDPStereo_Evaluation, tables)
     EXPECT_EQ("### A, \"B\" & <C>\n\n| scene | one | two | three | four |\n| --- | --- | --- | --- | --- |\n"
               "| Aloe, Baby | 3.14 | - | **2.00** | **2.00** |\n",
               toMarkdown(table));
+    Table bars;
+    bars.header = { "scene" };
+    bars.addRow("A|B");
+    EXPECT_NE(String::npos, toMarkdown(bars).find("\n| A\\|B |\n"));
     EXPECT_EQ("\"A, \"\"B\"\" & <C>\"\nscene,one,two,three,four\n\"Aloe, Baby\",3.14,,2.00,2.00\n", toCsv(table));
     const String html = toHtml(table);
     EXPECT_NE(String::npos, html.find("A, &quot;B&quot; &amp; &lt;C&gt;"));

@@ -110,6 +110,10 @@ TEST(HDPStereo_EvaluationPrograms, stability)
     EXPECT_EQ(0, few.status) << few.errors;
     EXPECT_NE(String::npos, few.output.find("| clean | **0.00** | **0.00** |")) << few.output;
     testUnknown(folder, common, "--changes", "change", { "left", "left1.5", "jpeg0", "flip2", "rain", "noise" });
+    const Execution nothing = run(folder, common + " --changes=left159 --scenes=a");
+    EXPECT_EQ(2, nothing.status);
+    EXPECT_NE(String::npos, nothing.errors.find("the change left159 leaves no pixel that can be judged"))
+        << nothing.errors;
     folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
     EXPECT_EQ(2, run(folder, common + " --changes=flip").status);
 }
