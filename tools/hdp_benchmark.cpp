@@ -173,7 +173,7 @@ static Table sizeTable(const String& sizes, const std::vector<Method>& methods, 
                        bool oneAtATime)
 {
     std::vector<Pair> pairs(1, pair);
-    for (const String& size : splitList(sizes == "true" ? "640x480/64,1280x720/128" : sizes))
+    for (const String& size : splitList("sizes", sizes == "true" ? "640x480/64,1280x720/128" : sizes))
     {
         const size_t slash = std::min(size.find('/'), size.size());
         int disparities;

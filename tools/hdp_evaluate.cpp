@@ -5,8 +5,10 @@
 // Matches every pair of a dataset with every method, and prints the tables of the paper: the share of the disparities
 // that is searched, the errors, and the time. --report writes them with pictures of all maps to a page.
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <set>
 
 #include "opencv2/core.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
@@ -60,6 +62,15 @@ static bool asksForRanges(const CommandLineParser& parser)
     return parser.has("num-disparities") && getInteger(parser, "num-disparities", 0, 2048) == 0;
 }
 
+//! The option that asks for tables of its own, of what matchers say; empty if there is none
+static String ownTables(const CommandLineParser& parser)
+{
+    return asksForRanges(parser)       ? "--num-disparities=0"
+           : parser.has("calibration") ? "--calibration"
+           : parser.has("confidence")  ? "--confidence"
+                                       : "";
+}
+
 static EvaluationSettings readSettings(const CommandLineParser& parser)
 {
     const Ptr<DisparityPredictionModel> model = parser.has("model")
@@ -67,8 +78,7 @@ static EvaluationSettings readSettings(const CommandLineParser& parser)
                                                     : Ptr<DisparityPredictionModel>();
     EvaluationSettings settings;
     settings.numDisparities = parser.has("num-disparities") ? getInteger(parser, "num-disparities", 0, 2048) : 0;
-    const bool asksMatcher = parser.has("calibration") || parser.has("confidence") || asksForRanges(parser);
-    const String usual = asksMatcher ? "presets" : "systems,presets,opencv";
+    const String usual = ownTables(parser).empty() ? "systems,presets,opencv" : "presets";
     settings.methods = selectMethods("methods", parser.has("methods") ? parser.get<String>("methods") : usual, model);
     settings.runs = getInteger(parser, "runs", 1, 1000);
     settings.jobs = getInteger(parser, "jobs", 1, 256);
@@ -87,6 +97,58 @@ static String changesText(const std::vector<HarmlessChange>& changes)
     return text;
 }
 
+static void checkOwnTables(const CommandLineParser& parser, const EvaluationSettings& settings)
+{
+    const String option = ownTables(parser);
+    const bool areRanges = asksForRanges(parser);
+    std::vector<String> others = { "changes", "csv", "report", "maps" };
+    if (areRanges)
+        others.insert(others.end(), { "calibration", "confidence" });
+    for (const String& other : others)
+        if (parser.has(other))
+            fail("--" + other + " does not go with " + option);
+    if (settings.runs > 1 || settings.jobs > 1)
+        fail("--runs and --jobs do not go with " + option);
+    for (const Method& method : settings.methods)
+        if (!method.isHdp)
+            fail(option + ": " + method.name + (areRanges ? " finds no range" : " knows no errors"));
+}
+
+//! Prints what ownTables() asks for; returns the exit status.
+static int printOwnTables(const CommandLineParser& parser, const EvaluationSettings& settings)
+{
+    checkOwnTables(parser, settings);
+    std::vector<Scene> scenes = selectScenes(parser);
+    scenes.erase(std::remove_if(scenes.begin(), scenes.end(), [](const Scene& scene) { return scene.truth.empty(); }),
+                 scenes.end());
+    if (scenes.empty())
+        fail("no pair has truth, which " + ownTables(parser) + " needs");
+    const String plot = parser.get<String>("plot");
+    if (!plot.empty())
+        writeText(plot, "");
+    catchInterrupts();
+    std::set<String> bad;
+    const auto print = [&](const Table& table) {
+        if (!table.rows.empty())
+            std::cout << toMarkdown(table) << std::endl;
+    };
+    for (const Method& method : settings.methods)
+        if (asksForRanges(parser))
+            print(foundRangesTable(method, scenes, bad));
+    for (const Method& method : settings.methods)
+        if (parser.has("calibration"))
+        {
+            const Table table = calibrationTable(method, scenes, settings.numDisparities, bad);
+            print(table);
+            if (!plot.empty() && !table.rows.empty())
+                writeText(plot, calibrationPlot(table));
+        }
+    for (const Method& method : settings.methods)
+        if (parser.has("confidence"))
+            print(confidenceErrorsTable(method, scenes, settings.numDisparities, bad));
+    return endOfRun(bad.size(), scenes.size());
+}
+
 static int run(const CommandLineParser& parser)
 {
     if (useTunables(parser))
@@ -96,31 +158,10 @@ static int run(const CommandLineParser& parser)
     setThreads(parser);
     const int threads = getNumThreads();
     const EvaluationSettings settings = readSettings(parser);
-    const bool looksForRanges = asksForRanges(parser);
-    const String plot = parser.get<String>("plot");
-    if (!plot.empty() && (!parser.has("calibration") || settings.methods.size() != 1 || looksForRanges))
+    if (parser.has("plot") && (!parser.has("calibration") || settings.methods.size() != 1 || asksForRanges(parser)))
         fail("--plot needs --calibration, one method and no --num-disparities=0");
-
-    if (looksForRanges)
-    {
-        for (const Method& method : settings.methods)
-            std::cout << toMarkdown(foundRangesTable(method, selectScenes(parser))) << std::endl;
-        return 0;
-    }
-    if (parser.has("calibration"))
-        for (const Method& method : settings.methods)
-        {
-            const Table table = calibrationTable(method, selectScenes(parser), settings.numDisparities);
-            std::cout << toMarkdown(table) << std::endl;
-            if (!plot.empty())
-                writeText(plot, calibrationPlot(table));
-        }
-    if (parser.has("confidence"))
-        for (const Method& method : settings.methods)
-            std::cout << toMarkdown(confidenceErrorsTable(method, selectScenes(parser), settings.numDisparities))
-                      << std::endl;
-    if (parser.has("calibration") || parser.has("confidence"))
-        return 0;
+    if (!ownTables(parser).empty())
+        return printOwnTables(parser, settings);
 
     std::vector<SceneResult> results;
     for (const Scene& scene : selectScenes(parser))
@@ -162,11 +203,7 @@ static int run(const CommandLineParser& parser)
                    isInterrupted() ? "; interrupted" : "", changes.empty() ? "" : ". ", changes.c_str());
         writeText(page, reportPage(tables, settings.methods, results, summary));
     }
-    if (isInterrupted())
-        std::cerr << "interrupted: this is what was finished" << std::endl;
-    if (bad > 0)
-        std::cerr << bad << " of " << results.size() << " pairs were skipped or failed, see above" << std::endl;
-    return isInterrupted() ? 130 : bad > 0 ? 2 : 0;
+    return endOfRun((size_t)bad, results.size());
 }
 
 int main(int argc, char** argv)

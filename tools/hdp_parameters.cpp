@@ -9,12 +9,15 @@
 #include <ctime>
 #include <functional>
 #include <iostream>
+#include <memory>
+#include <set>
 #include <sstream>
 
 #include "evaluation/command_line.hpp"
 #include "evaluation/datasets.hpp"
 #include "evaluation/harmless_changes.hpp"
 #include "evaluation/methods.hpp"
+#include "evaluation/progress.hpp"
 #include "evaluation/scores.hpp"
 #include "evaluation/tunables.hpp"
 
@@ -130,6 +133,19 @@ static std::vector<Variant> variantsOf(const String& preset, const std::vector<T
     return variants;
 }
 
+//! A setting for as long as this lives
+class AppliedSetting
+{
+public:
+    explicit AppliedSetting(const TunableSetting& setting) : before_(applySetting(setting)) {}
+    AppliedSetting(const AppliedSetting&) = delete;
+    AppliedSetting& operator=(const AppliedSetting&) = delete;
+    ~AppliedSetting() { applySetting(before_); }
+
+private:
+    TunableSetting before_;
+};
+
 //! What is done with the pairs of every set
 struct Settings
 {
@@ -178,10 +194,8 @@ static void measure(const Pair& pair, const HarmlessChange& change, const Pair& 
         for (size_t i = 0; i < variants.size(); i++)
         {
             const bool isSwept = i > 0 && !settings.sweep.empty();
-            const TunableSetting before = isSwept ? applySetting(settings.sweep[i - 1]) : TunableSetting();
+            const std::unique_ptr<AppliedSetting> swept(isSwept ? new AppliedSetting(settings.sweep[i - 1]) : nullptr);
             seconds[i] = std::min(seconds[i], compute(*matchers[i], changed, maps[i]));
-            if (isSwept)
-                applySetting(before);
         }
     const Pair truth = truthOfChanged(change, pair);
     const Figures figures = figuresOf(pair.protocol);
@@ -194,21 +208,40 @@ static void measure(const Pair& pair, const HarmlessChange& change, const Pair& 
     }
 }
 
-//! A table for the scenes of a set, which have truth of one kind
-static void measureSet(const std::vector<Scene>& scenes, const Settings& settings, std::vector<Variant> variants)
+//! A pair as it is, or with each change
+static void measure(const Pair& pair, const String& scene, const Settings& settings, std::vector<Variant>& variants)
+{
+    for (const HarmlessChange& change : settings.changes)
+        measure(pair, change, changePair(change, pair, scene), settings, variants);
+    if (settings.changes.empty())
+        measure(pair, HarmlessChange(), pair, settings, variants);
+}
+
+//! A table for the scenes of a set, which have truth of one kind. bad: receives those that are skipped.
+static void measureSet(const std::vector<Scene>& scenes, const Settings& settings, std::vector<Variant> variants,
+                       std::set<String>& bad)
 {
     Figures figures = figuresOf(Pair::MIDDLEBURY);
+    size_t pairs = 0;
     for (const Scene& scene : scenes)
-    {
-        std::cerr << variants[0].name << ": " << scene.set << "/" << scene.name << std::endl;
-        const Pair pair = readPair(scene);
-        figures = figuresOf(pair.protocol);
-        for (const HarmlessChange& change : settings.changes)
-            measure(pair, change, changePair(change, pair, scene.name), settings, variants);
-        if (settings.changes.empty())
-            measure(pair, HarmlessChange(), pair, settings, variants);
-    }
-    const double count = double(scenes.size() * std::max<size_t>(settings.changes.size(), 1));
+        try
+        {
+            std::cerr << variants[0].name << ": " << scene.title() << std::endl;
+            const Pair pair = readPair(scene);
+            std::vector<Variant> withPair = variants;
+            measure(pair, scene.name, settings, withPair);
+            variants = withPair;
+            figures = figuresOf(pair.protocol);
+            pairs++;
+        }
+        catch (const std::exception& error)
+        {
+            std::cerr << "skipped " << scene.title() << ": " << messageOf(error) << std::endl;
+            bad.insert(scene.title());
+        }
+    if (pairs == 0)
+        return;
+    const double count = double(pairs * std::max<size_t>(settings.changes.size(), 1));
     std::cout << "| " << scenes[0].set << ": " << variants[0].name << " with | " << figures.names[0] << " | "
               << figures.names[1] << " | time |\n|---|---|---|---|\n";
     for (const Variant& v : variants)
@@ -238,33 +271,40 @@ static int run(const CommandLineParser& parser)
 {
     if (useTunables(parser))
         return 0;
+    if (!parser.has("@root"))
+        fail("a folder is needed, see --help");
     setThreads(parser);
     Settings settings;
     settings.runs = getInteger(parser, "runs", 1, 1000);
     settings.changes = selectChanges(parser);
     if (parser.has("sweep"))
         settings.sweep = parseSweep("sweep", parser.get<String>("sweep"));
-    const std::vector<String> presets = splitList(parser.get<String>("presets"));
+    const std::vector<String> presets = splitList("presets", parser.get<String>("presets"));
     for (const String& name : presets)
         if (settings.sweep.empty() && name != "fast" && name != "tree")
             fail("--presets=" + parser.get<String>("presets") + ": neither fast nor tree");
 
     const std::vector<std::vector<Scene>> sets = findSets(parser.get<String>("@root"));
+    std::set<String> bad;
+    size_t pairs = 0;
+    for (const std::vector<Scene>& set : sets)
+        pairs += set.size();
     for (const String& name : presets)
     {
         settings.preset = presetOf(name);
         const std::vector<Variant> variants =
             settings.sweep.empty() ? variantsOf(settings.preset) : variantsOf(name, settings.sweep);
         for (const std::vector<Scene>& set : sets)
-            measureSet(set, settings, variants);
+            measureSet(set, settings, variants, bad);
     }
-    return 0;
+    return endOfRun(bad.size(), pairs);
 }
 
 int main(int argc, char** argv)
 {
     return runProgram(argc, argv, String(KEYS) + TUNABLE_KEYS,
                       "What each parameter does to speed and accuracy: mean errors over the pairs of each set, and the "
-                      "processor time as a multiple of the preset's.\n",
+                      "processor time as a multiple of the preset's.\n"
+                      "Exit status: 0 if all is well, 2 if a pair was skipped, 1 on other errors.\n",
                       { "changes=" }, 1, run);
 }

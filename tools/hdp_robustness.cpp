@@ -66,7 +66,7 @@ static int run(const CommandLineParser& parser)
     const std::vector<Scene> scenes = selectScenes(parser);
     catchInterrupts();
     Progress progress(scenes.size());
-    int skipped = 0;
+    size_t skipped = 0;
     for (size_t first = 0, next; first < scenes.size() && !isInterrupted(); first = next)
     {
         // The scenes of a set
@@ -86,7 +86,8 @@ static int run(const CommandLineParser& parser)
             }
             catch (const std::exception& error)
             {
-                progress.message(scenes[s].title() + ": " + error.what());
+                progress.message("skipped " + scenes[s].title() + ": " + messageOf(error));
+                progress.skip(1);
                 ++skipped;
                 continue;
             }
@@ -113,7 +114,7 @@ static int run(const CommandLineParser& parser)
             std::cout << toMarkdown(toTable(scenes[first].set, protocol, pairs, cases, methods, scores)) << std::endl;
     }
     progress.finish();
-    return isInterrupted() ? 130 : skipped > 0 ? 2 : 0;
+    return endOfRun(skipped, scenes.size());
 }
 
 int main(int argc, char** argv)

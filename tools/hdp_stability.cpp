@@ -194,8 +194,8 @@ static void print(const SetResult& result, const std::vector<Method>& methods,
     std::cout.flush();
 }
 
-//! Adds a pair to the results of its set, or fails.
-static void measure(const Scene& scene, int numDisparities, const std::vector<Method>& methods,
+//! Adds a pair to the results of its set, or fails. Returns whether it was not interrupted.
+static bool measure(const Scene& scene, int numDisparities, const std::vector<Method>& methods,
                     const std::vector<HarmlessChange>& changes, std::vector<SetResult>& results)
 {
     Pair pair = readPair(scene);
@@ -206,7 +206,7 @@ static void measure(const Scene& scene, int numDisparities, const std::vector<Me
         if (!isInterrupted())
             ofPair.push_back(measureStability(method, pair, changes, scene.name));
     if (isInterrupted())
-        return;
+        return false;
     const auto isOfSet = [&](const SetResult& r) { return r.set == scene.set && r.protocol == pair.protocol; };
     std::vector<SetResult>::iterator found = std::find_if(results.begin(), results.end(), isOfSet);
     if (found == results.end())
@@ -215,6 +215,7 @@ static void measure(const Scene& scene, int numDisparities, const std::vector<Me
     found->scenes.push_back(scene.name);
     for (size_t m = 0; m < methods.size(); ++m)
         found->byMethod[m].push_back(ofPair[m]);
+    return true;
 }
 
 static int run(const CommandLineParser& parser)
@@ -230,18 +231,19 @@ static int run(const CommandLineParser& parser)
     const std::vector<Scene> scenes = selectScenes(parser);
     catchInterrupts();
     Progress progress(scenes.size());
-    int skipped = 0;
+    size_t skipped = 0;
     std::vector<SetResult> results; // of a set
     for (size_t s = 0; s < scenes.size() && !isInterrupted(); ++s)
     {
         try
         {
-            measure(scenes[s], numDisparities, methods, changes, results);
-            progress.step(scenes[s].title());
+            if (measure(scenes[s], numDisparities, methods, changes, results))
+                progress.step(scenes[s].title());
         }
         catch (const std::exception& error)
         {
-            progress.message("skipped " + scenes[s].title() + ": " + error.what());
+            progress.message("skipped " + scenes[s].title() + ": " + messageOf(error));
+            progress.skip(1);
             ++skipped;
         }
         if (s + 1 < scenes.size() && scenes[s + 1].set == scenes[s].set && !isInterrupted())
@@ -251,7 +253,7 @@ static int run(const CommandLineParser& parser)
         results.clear();
     }
     progress.finish();
-    return isInterrupted() ? 130 : skipped > 0 ? 2 : 0;
+    return endOfRun(skipped, scenes.size());
 }
 
 int main(int argc, char** argv)

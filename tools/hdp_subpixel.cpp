@@ -198,7 +198,7 @@ static int run(const CommandLineParser& parser)
         return 0;
     setThreads(parser);
     const std::vector<Method> methods = selectMethods("methods", parser.get<String>("methods"));
-    const std::vector<String> textures = splitList(parser.get<String>("textures"));
+    const std::vector<String> textures = splitList("textures", parser.get<String>("textures"));
     const double noise = getNumber(parser, "noise", 0, 64);
     for (const String& texture : textures)
         if (texture != "natural" && texture != "fine")

@@ -29,7 +29,7 @@ static const String KEYS =
     "{@root           |     | folder of a video: left, right and, if the truth is known, disp_lidar; or of such "
     "folders }"
     "{methods         | fast,quality | names as of hdp_evaluate }"
-    "{noise           | 0,5 | standard deviations of Gaussian noise in both images, in grey levels }"
+    "{noise           |     | standard deviations of Gaussian noise in both images, in grey levels; by default 0,5 }"
     "{still           |     | in place of each video, its first frame so many times, with noise of its own each time }"
     "{pan             |     | in place of each video, each of its pairs as one that a camera pans over: RIGHT,DOWN "
     "pixels from frame to frame, in --still frames, or eight }"
@@ -44,15 +44,13 @@ static const String KEYS =
 static std::vector<double> readDeviations(const CommandLineParser& parser)
 {
     std::vector<double> deviations;
-    for (const String& item : splitList(parser.get<String>("noise")))
+    for (const String& item : splitList("noise", parser.has("noise") ? parser.get<String>("noise") : "0,5"))
     {
         char* end = nullptr;
         deviations.push_back(std::strtod(item.c_str(), &end));
         if (*end || !(deviations.back() >= 0 && deviations.back() <= 100))
             fail("--noise=" + item + ": not a number from 0 to 100");
     }
-    if (deviations.empty())
-        fail("--noise names no standard deviation");
     return deviations;
 }
 
@@ -377,8 +375,8 @@ static Task readTask(const CommandLineParser& parser)
     const String variants = task.hasVariants ? parser.get<String>("variants") : String();
     task.variants = variants == "true" ? String() : variants; // without a value
     task.isPanned = parser.has("pan");
-    if (task.hasVariants && (parser.has("still") || task.isPanned))
-        fail("--variants does not go with --still or --pan");
+    if (task.hasVariants && (parser.has("noise") || parser.has("still") || task.isPanned))
+        fail("--variants does not go with --noise, --still or --pan");
     if (task.isPanned)
         task.step = readStep(parser.get<String>("pan"));
     selectVariants(task.variants, 1);
@@ -406,21 +404,21 @@ static int run(const CommandLineParser& parser)
         videos.back().push_back(scene);
     }
     catchInterrupts();
-    int skipped = 0;
+    size_t skipped = 0;
     for (const std::vector<Scene>& scenes : videos)
         try
         {
             const Table table = task.isPanned ? evaluatePans(task, scenes) : evaluate(task, scenes);
             if (isInterrupted())
-                return 130;
+                break;
             std::cout << toMarkdown(table) << std::endl;
         }
         catch (const std::exception& error)
         {
-            std::cerr << "skipped " << scenes[0].set << ": " << error.what() << std::endl;
+            std::cerr << "skipped " << scenes[0].set << ": " << messageOf(error) << std::endl;
             ++skipped;
         }
-    return skipped > 0 ? 2 : 0;
+    return endOfRun(skipped, videos.size(), "videos");
 }
 
 int main(int argc, char** argv)

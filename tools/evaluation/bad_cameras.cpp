@@ -150,7 +150,7 @@ const char* const ALL_CASES =
 std::vector<CameraCase> selectCases(const String& option, const String& list)
 {
     std::vector<CameraCase> cases;
-    for (const String& name : splitList(list))
+    for (const String& name : splitList(option, list))
     {
         const size_t length = std::min(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), name.size());
         const String letters = name.substr(0, length), number = name.substr(length);

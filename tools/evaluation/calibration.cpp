@@ -14,7 +14,7 @@
 
 #include "opencv2/hdpstereo.hpp"
 
-#include "command_line.hpp"
+#include "evaluation.hpp"
 #include "scores.hpp"
 
 namespace hdp_tools {
@@ -49,29 +49,24 @@ static void addPixels(const Mat& disparity, const Mat& sigma, const Pair& pair, 
         }
 }
 
-//! Matches the scenes with truth; use is called with each, its pair, matcher and disparities.
-static void matchScenes(const char* option, const Method& method, const std::vector<Scene>& scenes, int numDisparities,
+//! Matches the scenes; use is called with each, its pair, matcher and disparities.
+static void matchScenes(const Method& method, const std::vector<Scene>& scenes, int numDisparities,
+                        std::set<String>& bad,
                         const std::function<void(const Scene&, const Pair&, const HDPTreeMatcher&, const Mat&)>& use)
 {
-    for (const Scene& scene : scenes)
-    {
-        if (scene.truth.empty())
-            continue;
-        const Pair pair = readPair(scene);
+    forEachPair(method, scenes, bad, [&](const Scene& scene, const Pair& pair) {
         const cv::Range range = numDisparities > 0 ? cv::Range(0, numDisparities) : pair.disparities;
         const Ptr<cv::StereoMatcher> matcher = method.create(range);
-        const HDPTreeMatcher* const hdp = dynamic_cast<const HDPTreeMatcher*>(matcher.get());
-        if (!hdp)
-            fail(option + (": " + method.name) + " knows no errors");
-        const std::array<Mat, 2> images = imagesFor(method, pair.left, pair.right);
-        use(scene, pair, *hdp, matchDensely(method, *matcher, images[0], images[1]));
-    }
+        const Mat disparity = matchDensely(method, *matcher, pair.left, pair.right);
+        use(scene, pair, dynamic_cast<const HDPTreeMatcher&>(*matcher), disparity);
+    });
 }
 
-Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities)
+Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities,
+                       std::set<String>& bad)
 {
     std::map<String, std::vector<Share>> sets;
-    matchScenes("--calibration", method, scenes, numDisparities,
+    matchScenes(method, scenes, numDisparities, bad,
                 [&](const Scene& scene, const Pair& pair, const HDPTreeMatcher& matcher, const Mat& disparity) {
         Mat sigma;
         matcher.getDisparitySigma(sigma);
@@ -89,7 +84,7 @@ Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, i
     table.header.push_back("sigma, pixels");
     for (const auto& set : sets)
         table.header.push_back(set.first);
-    for (size_t i = 0; i <= LEVELS.size(); i++)
+    for (size_t i = 0; i <= LEVELS.size() && !sets.empty(); i++)
     {
         table.addRow(i < LEVELS.size() ? cv::format("%.2f", LEVELS[i]) : String("all"));
         for (const auto& set : sets)
@@ -170,10 +165,11 @@ double ConfidenceErrors::wrong(int least) const
     return pixels < LEAST_PIXELS ? NO_SCORE : 100 * std::accumulate(wrong_.begin() + least, wrong_.end(), 0.) / pixels;
 }
 
-Table confidenceErrorsTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities)
+Table confidenceErrorsTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities,
+                            std::set<String>& bad)
 {
     std::map<String, ConfidenceErrors> sets;
-    matchScenes("--confidence", method, scenes, numDisparities,
+    matchScenes(method, scenes, numDisparities, bad,
                 [&](const Scene& scene, const Pair& pair, const HDPTreeMatcher& matcher, const Mat& disparity) {
         Mat confidence;
         matcher.getConfidence(confidence);
@@ -188,7 +184,7 @@ Table confidenceErrorsTable(const Method& method, const std::vector<Scene>& scen
     for (const auto& set : sets)
         for (const char* what : { ": pixels", ": wrong" })
             table.header.push_back(set.first + what);
-    for (int least = 0; least <= 200; least += 20)
+    for (int least = 0; least <= 200 && !sets.empty(); least += 20)
     {
         table.addRow(cv::format("%d", least));
         for (const auto& set : sets)

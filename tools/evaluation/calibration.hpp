@@ -7,6 +7,8 @@
 #ifndef OPENCV_HDPSTEREO_TOOLS_CALIBRATION_HPP
 #define OPENCV_HDPSTEREO_TOOLS_CALIBRATION_HPP
 
+#include <set>
+
 #include "datasets.hpp"
 #include "methods.hpp"
 #include "tables.hpp"
@@ -15,10 +17,13 @@ namespace hdp_tools {
 
 /** Of the pixels with a HDPTreeMatcher::getDisparitySigma() of some level, the share whose error is within it, by sets:
 68 % if it is true.
-@param method Whose matcher is an HDPTreeMatcher; fails otherwise.
-@param scenes Those without truth are left out.
-@param numDisparities 0: those of the dataset. */
-Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities);
+@param method Whose matcher is an HDPTreeMatcher.
+@param scenes With truth.
+@param numDisparities 0: those of the dataset.
+@param bad See forEachPair().
+@return Without rows if no scene was matched. */
+Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities,
+                       std::set<String>& bad);
 
 //! The curves of such a table as SVG, a line per set, over the percents that are aimed at
 String calibrationPlot(const Table& table);
@@ -47,7 +52,8 @@ private:
 };
 
 //! What values of HDPTreeMatcher::getConfidence() mean, by sets; arguments as of calibrationTable().
-Table confidenceErrorsTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities);
+Table confidenceErrorsTable(const Method& method, const std::vector<Scene>& scenes, int numDisparities,
+                            std::set<String>& bad);
 
 } // namespace hdp_tools
 

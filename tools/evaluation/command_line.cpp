@@ -25,13 +25,21 @@ String lowerCase(String text)
     return text;
 }
 
-std::vector<String> splitList(const String& text)
+String messageOf(const std::exception& error)
+{
+    const cv::Exception* const ofOpenCV = dynamic_cast<const cv::Exception*>(&error);
+    return ofOpenCV ? ofOpenCV->err : String(error.what());
+}
+
+std::vector<String> splitList(const String& option, const String& text)
 {
     std::vector<String> items;
     std::istringstream in(text);
     for (String item; std::getline(in, item, ',');)
         if (!item.empty())
             items.push_back(item);
+    if (items.empty())
+        fail("--" + option + "=" + text + " names nothing");
     return items;
 }
 
@@ -117,13 +125,9 @@ int runProgram(int argc, const char* const argv[], const String& keys, const Str
             fail("cannot write to the standard output");
         return status;
     }
-    catch (const cv::Exception& e)
-    {
-        std::cerr << "error: " << e.err << std::endl;
-    }
     catch (const std::exception& e)
     {
-        std::cerr << "error: " << e.what() << std::endl;
+        std::cerr << "error: " << messageOf(e) << std::endl;
     }
     return 1;
 }

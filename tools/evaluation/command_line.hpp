@@ -7,6 +7,7 @@
 #ifndef OPENCV_HDPSTEREO_TOOLS_COMMAND_LINE_HPP
 #define OPENCV_HDPSTEREO_TOOLS_COMMAND_LINE_HPP
 
+#include <exception>
 #include <functional>
 #include <vector>
 
@@ -22,8 +23,11 @@ using cv::String;
 
 String lowerCase(String text);
 
-//! The items of a list that is separated by commas; empty ones are left out.
-std::vector<String> splitList(const String& text);
+//! What an exception says, in one line
+String messageOf(const std::exception& error);
+
+//! The items of a list that is separated by commas, the value of an option; empty ones are left out. Fails if none is left.
+std::vector<String> splitList(const String& option, const String& text);
 
 //! The number given for an option, within [low, high]
 double getNumber(const cv::CommandLineParser& parser, const String& name, double low, double high);

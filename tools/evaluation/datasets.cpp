@@ -234,8 +234,10 @@ std::vector<Scene> findScenes(const String& root)
 std::vector<Scene> selectScenes(const cv::CommandLineParser& parser)
 {
     std::vector<Scene> scenes = findScenes(parser.get<String>("@root"));
-    const std::vector<String> resolutions = splitList(parser.get<String>("resolution")),
-                              names = splitList(parser.get<String>("scenes"));
+    const auto listOf = [&](const char* option) {
+        return parser.has(option) ? splitList(option, parser.get<String>(option)) : std::vector<String>();
+    };
+    const std::vector<String> resolutions = listOf("resolution"), names = listOf("scenes");
     for (const String& resolution : resolutions)
         if (resolution != "full" && resolution != "half" && resolution != "third" && resolution != "quarter")
             fail("--resolution: unknown resolution '" + resolution + "', there are: full, half, third, quarter");

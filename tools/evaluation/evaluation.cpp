@@ -138,7 +138,7 @@ static void evaluateScene(const EvaluationSettings& settings, SceneResult& resul
     }
     catch (const std::exception& e)
     {
-        result.problems.push_back("skipped " + title + ": " + e.what());
+        result.problems.push_back("skipped " + title + ": " + messageOf(e));
         progress.message(result.problems.back());
         progress.skip(settings.methods.size());
         return;
@@ -169,11 +169,33 @@ static void evaluateScene(const EvaluationSettings& settings, SceneResult& resul
         }
         catch (const std::exception& e)
         {
-            result.problems.push_back("failed: " + title + " " + name + ": " + e.what());
+            result.problems.push_back("failed: " + title + " " + name + ": " + messageOf(e));
             progress.message(result.problems.back());
             progress.skip(1);
         }
     }
+}
+
+void forEachPair(const Method& method, const std::vector<Scene>& scenes, std::set<String>& bad,
+                 const std::function<void(const Scene&, const Pair&)>& use)
+{
+    Progress progress(scenes.size());
+    for (size_t i = 0; i < scenes.size() && !isInterrupted(); i++)
+    {
+        const String title = scenes[i].title();
+        try
+        {
+            use(scenes[i], readPair(scenes[i]));
+            progress.step(title + " " + method.name);
+        }
+        catch (const std::exception& e)
+        {
+            bad.insert(title);
+            progress.message("skipped " + title + " " + method.name + ": " + messageOf(e));
+            progress.skip(1);
+        }
+    }
+    progress.finish();
 }
 
 int evaluateScenes(const EvaluationSettings& settings, std::vector<SceneResult>& results)

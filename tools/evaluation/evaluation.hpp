@@ -7,6 +7,8 @@
 #ifndef OPENCV_HDPSTEREO_TOOLS_EVALUATION_HPP
 #define OPENCV_HDPSTEREO_TOOLS_EVALUATION_HPP
 
+#include <functional>
+#include <set>
 #include <vector>
 
 #include "datasets.hpp"
@@ -53,6 +55,12 @@ struct EvaluationSettings
     bool hasReport;                      // makes the figures
     std::vector<HarmlessChange> changes; // over which all figures are means; if empty, they are of the pair as it is
 };
+
+/** Calls use with each scene and its pair, for tables of one method. What goes wrong is told, as by evaluateScenes(), and
+the scene is left out. Ends early if interrupted.
+@param bad Receives the titles of what is left out. */
+void forEachPair(const Method& method, const std::vector<Scene>& scenes, std::set<String>& bad,
+                 const std::function<void(const Scene&, const Pair&)>& use);
 
 //! Makes a folder and those above it; fails if it cannot.
 void makeFolder(const String& path);

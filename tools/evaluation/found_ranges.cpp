@@ -11,6 +11,7 @@
 #include "opencv2/hdpstereo.hpp"
 
 #include "command_line.hpp"
+#include "evaluation.hpp"
 #include "scores.hpp"
 
 namespace hdp_tools {
@@ -50,13 +51,9 @@ double secondsOf(const HDPTreeMatcher::Findings& findings)
     return stage == findings.stages.end() ? 0 : 1e-3 * findings.stageTimes[stage - findings.stages.begin()];
 }
 
-void addPair(const Method& method, const Scene& scene, SetErrors& set)
+void addPair(const Method& method, const Scene& scene, const Pair& pair, SetErrors& set)
 {
-    const Pair pair = readPair(scene);
     const Ptr<cv::StereoMatcher> matcher = method.create(cv::Range(0, 0));
-    const HDPTreeMatcher* const hdp = dynamic_cast<const HDPTreeMatcher*>(matcher.get());
-    if (!hdp)
-        fail("--num-disparities=0: " + method.name + " finds no range");
     const std::array<Mat, 2> images = imagesFor(method, pair.left, pair.right);
     set.pairs++;
     Mat disparity;
@@ -70,7 +67,7 @@ void addPair(const Method& method, const Scene& scene, SetErrors& set)
         set.bad.push_back(scene.name);
         return;
     }
-    const HDPTreeMatcher::Findings findings = hdp->getFindings();
+    const HDPTreeMatcher::Findings findings = dynamic_cast<const HDPTreeMatcher&>(*matcher).getFindings();
     const cv::Range found(findings.minDisparity, findings.minDisparity + findings.numDisparities);
     const RangeError error = rangeError(found, pair.truth, pair.judged);
     const bool isCovered = std::max(error.before, error.behind) < TOLERANCE;
@@ -85,12 +82,11 @@ void addPair(const Method& method, const Scene& scene, SetErrors& set)
 
 } // namespace
 
-Table foundRangesTable(const Method& method, const std::vector<Scene>& scenes)
+Table foundRangesTable(const Method& method, const std::vector<Scene>& scenes, std::set<String>& bad)
 {
     std::map<String, SetErrors> sets;
-    for (const Scene& scene : scenes)
-        if (!scene.truth.empty())
-            addPair(method, scene, sets[scene.set]);
+    forEachPair(method, scenes, bad,
+                [&](const Scene& scene, const Pair& pair) { addPair(method, scene, pair, sets[scene.set]); });
     Table table;
     table.title = "Ranges found, " + method.name;
     table.note =
@@ -111,10 +107,10 @@ Table foundRangesTable(const Method& method, const std::vector<Scene>& scenes)
         table.addNumber(100 * set.behind, "%.1f");
         table.addNumber(found == 0 ? NO_SCORE : set.size / found, "%.2f");
         table.addNumber(found == 0 ? NO_SCORE : 1000 * set.seconds / found, "%.0f");
-        String bad;
+        String names;
         for (const String& name : set.bad)
-            bad += (bad.empty() ? "" : " ") + name;
-        table.addText(bad);
+            names += (names.empty() ? "" : " ") + name;
+        table.addText(names);
     }
     return table;
 }

@@ -7,6 +7,8 @@
 #ifndef OPENCV_HDPSTEREO_TOOLS_FOUND_RANGES_HPP
 #define OPENCV_HDPSTEREO_TOOLS_FOUND_RANGES_HPP
 
+#include <set>
+
 #include "datasets.hpp"
 #include "methods.hpp"
 #include "tables.hpp"
@@ -27,8 +29,12 @@ struct RangeError
 @param leftOut Share of the true disparities that is left out at each end. */
 RangeError rangeError(const cv::Range& found, const Mat& truth, const Mat& judged, double leftOut = 0.001);
 
-//! Of the ranges that a method finds, by sets; fails if it finds none.
-Table foundRangesTable(const Method& method, const std::vector<Scene>& scenes);
+/** Of the ranges that a method finds, by sets.
+@param method Whose matcher is an HDPTreeMatcher.
+@param scenes With truth.
+@param bad See forEachPair().
+@return Without rows if no scene was read. */
+Table foundRangesTable(const Method& method, const std::vector<Scene>& scenes, std::set<String>& bad);
 
 } // namespace hdp_tools
 

@@ -162,7 +162,7 @@ void mirrorTruth(const Pair& pair, Pair& mirrored)
 std::vector<HarmlessChange> selectChanges(const String& option, const String& list)
 {
     std::vector<HarmlessChange> changes;
-    for (const String& name : splitList(list))
+    for (const String& name : splitList(option, list))
     {
         const size_t letters = std::min(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), name.size());
         const String number = name.substr(letters);
@@ -177,8 +177,6 @@ std::vector<HarmlessChange> selectChanges(const String& option, const String& li
                          [&](const HarmlessChange& other) { return other.name == name; }))
             changes.push_back(made);
     }
-    if (changes.empty())
-        fail("--" + option + " names no change");
     return changes;
 }
 

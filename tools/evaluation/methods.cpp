@@ -148,7 +148,7 @@ std::vector<Method> selectMethods(const String& option, const String& list, cons
 {
     const std::vector<Group> groups = allMethods(model);
     std::vector<Method> selected;
-    for (const String& item : splitList(list))
+    for (const String& item : splitList(option, list))
     {
         bool isKnown = false;
         for (const Group& group : groups)
@@ -173,8 +173,6 @@ std::vector<Method> selectMethods(const String& option, const String& list, cons
         }
         fail("--" + option + "=" + list + ": '" + item + "' is unknown, there are: " + names);
     }
-    if (selected.empty())
-        fail("--" + option + " names no method");
     return selected;
 }
 

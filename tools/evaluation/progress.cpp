@@ -4,7 +4,6 @@
 
 #include "progress.hpp"
 
-#include <csignal>
 #include <iostream>
 #ifdef _WIN32
 #include <io.h>
@@ -14,23 +13,14 @@
 
 namespace hdp_tools {
 
-static volatile std::sig_atomic_t interrupted = 0;
-
-extern "C" {
-static void interrupt(int signal)
+int endOfRun(size_t bad, size_t all, const char* what)
 {
-    interrupted = 1;
-    std::signal(signal, SIG_DFL);
+    if (isInterrupted())
+        std::cerr << "interrupted: this is what was finished" << std::endl;
+    if (bad > 0)
+        std::cerr << bad << " of " << all << " " << what << " were skipped or failed, see above" << std::endl;
+    return isInterrupted() ? 130 : bad > 0 ? 2 : 0;
 }
-}
-
-void catchInterrupts()
-{
-    std::signal(SIGINT, interrupt);
-    std::signal(SIGTERM, interrupt);
-}
-
-bool isInterrupted() { return interrupted != 0; }
 
 static bool isTerminal()
 {

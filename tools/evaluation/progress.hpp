@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Progress of a long run on the standard error, and its interruption.
+// Progress of a long run on the standard error, and its end.
 
 #ifndef OPENCV_HDPSTEREO_TOOLS_PROGRESS_HPP
 #define OPENCV_HDPSTEREO_TOOLS_PROGRESS_HPP
@@ -11,14 +11,16 @@
 
 #include "opencv2/core.hpp"
 
+#include "../interrupts.hpp"
+
 namespace hdp_tools {
 
 using cv::String;
 
-//! From now on SIGINT and SIGTERM only make isInterrupted() true; the second one ends the program.
-void catchInterrupts();
-
-bool isInterrupted();
+/** Says in the end whether something is missing.
+@param bad How many of all pairs, or of what else there is, were skipped or failed.
+@return The exit status: 130 if interrupted, 2 if something is bad, or 0. */
+int endOfRun(size_t bad, size_t all, const char* what = "pairs");
 
 //! A bar on a terminal, lines elsewhere; for any thread.
 class Progress

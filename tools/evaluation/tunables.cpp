@@ -60,7 +60,7 @@ TunableSetting applySetting(const TunableSetting& setting)
 std::vector<TunableSetting> parseSweep(const String& option, const String& list)
 {
     std::vector<TunableSetting> settings;
-    for (const String& item : splitList(list))
+    for (const String& item : splitList(option, list))
     {
         if (item.find('=') == String::npos)
         {
@@ -115,7 +115,7 @@ static void printAll() { failWithout("list-tunables"); }
 bool useTunables(const cv::CommandLineParser& parser)
 {
     String text;
-    for (const String& item : splitList(parser.get<String>("set")))
+    for (const String& item : parser.has("set") ? splitList("set", parser.get<String>("set")) : std::vector<String>())
     {
         const TunableSetting setting = parseSetting("set", item), before = applySetting(setting);
         text += (text.empty() ? "With " : ", ") + setting.name + " = " + setting.value + " (was " + before.value + ")";

@@ -126,10 +126,12 @@ void cutOut(const Rect& part, Pair& pair)
 std::vector<VideoVariant> selectVariants(const String& list, int frames)
 {
     const std::vector<Recipe> recipes = allRecipes();
-    std::vector<String> names = splitList(list);
-    if (names.empty())
+    std::vector<String> names;
+    if (list.empty())
         for (const Recipe& recipe : recipes)
             names.push_back(recipe.name);
+    else
+        names = splitList("variants", list);
     std::vector<VideoVariant> variants;
     for (const String& name : names)
     {

@@ -63,7 +63,7 @@ TEST(HDPStereo_EvaluationPrograms, subpixel)
     EXPECT_EQ(0, good.status) << good.errors;
     for (const char* row : { "### natural texture, noise 2", "| fast |", "| sgbm |" })
         EXPECT_NE(String::npos, good.output.find(row)) << row;
-    for (const char* bad : { "--textures=rough", "--noise=-1", "--methods=slow", "file.png" })
+    for (const char* bad : { "--textures=rough", "--textures=,", "--noise=-1", "--methods=slow", "file.png" })
     {
         const Execution wrong = run(folder, "hdp_subpixel " + String(bad));
         EXPECT_EQ(1, wrong.status) << bad;
@@ -86,8 +86,11 @@ TEST(HDPStereo_EvaluationPrograms, robustness)
         EXPECT_NE(String::npos, run(folder, common + " --cases=" + name)
                                     .errors.find("error: --cases: the number of '" + String(name) + "' must be "))
             << name;
+    EXPECT_EQ("error: --cases=, names nothing\n", run(folder, common + " --cases=,").errors);
     folder.write("dataset/b/left.png", Mat(10, 10, CV_8UC3, Scalar::all(0))); // of another size than the right one
-    EXPECT_EQ(2, run(folder, common + " --cases=clean").status);
+    const Execution two = run(folder, common + " --cases=clean");
+    EXPECT_EQ(2, two.status);
+    EXPECT_NE(String::npos, two.errors.find("1 of 3 pairs were skipped")) << two.errors;
 }
 
 TEST(HDPStereo_EvaluationPrograms, stability)
@@ -151,6 +154,14 @@ TEST(HDPStereo_EvaluationPrograms, means_over_changes)
     EXPECT_NE(String::npos,
               parameters.output.find("| dataset: PRESET_FAST with | average error, pixels | D1 % | time |"));
     EXPECT_NE(String::npos, parameters.output.find("| blockSize = 5 | "));
+    EXPECT_EQ("error: --presets=, names nothing\n",
+              run(folder, "hdp_parameters --presets=, " + folder.path("dataset")).errors);
+    EXPECT_EQ("error: a folder is needed, see --help\n", run(folder, "hdp_parameters").errors);
+    std::remove(folder.path("dataset/b/right.png").c_str());
+    const Execution two = run(folder, "hdp_parameters --runs=1 --presets=fast " + folder.path("dataset"));
+    EXPECT_EQ(2, two.status);
+    EXPECT_NE(String::npos, two.errors.find("skipped dataset/b: ")) << two.errors;
+    EXPECT_NE(String::npos, two.output.find("| blockSize = 5 | "));
 }
 
 TEST(HDPStereo_EvaluationPrograms, video)
@@ -216,7 +227,7 @@ TEST(HDPStereo_EvaluationPrograms, video)
         EXPECT_NE(String::npos, variants.output.find(format("\n| %s | fast | - | - | ", name))) << variants.output;
 
     for (const char* bad : { "--noise=x", "--noise=-1", "--still=1", "--variants=rain", "--variants --still=9", "--pan",
-                             "--pan=3", "--pan=3,x", "--pan=3,1 --variants" })
+                             "--pan=3", "--pan=3,x", "--pan=3,1 --variants", "--variants --noise=5", "--variants=," })
         EXPECT_EQ(1, run(folder, "hdp_video " + folder.path("videos") + " " + bad).status) << bad;
     folder.write("videos/unknown/left/002.png", Mat(10, 10, CV_8U, Scalar(0)));
     const Execution skipped = run(folder, common);
@@ -255,8 +266,30 @@ TEST(HDPStereo_EvaluationPrograms, evaluate)
     EXPECT_EQ("error: --confidence: bm knows no errors\n",
               run(folder, "hdp_evaluate --methods=bm --confidence " + folder.path("dataset")).errors);
 
+    for (const String other : { "--changes", "--csv=x.csv", "--report=x", "--maps=x" })
+        for (const String mode : { "--confidence", "--calibration", "--num-disparities=0" })
+            EXPECT_EQ("error: " + other.substr(0, other.find('=')) + " does not go with " + mode + "\n",
+                      run(folder, "hdp_evaluate " + folder.path("dataset") + " " + other + " " + mode).errors);
+    EXPECT_EQ("error: --confidence does not go with --num-disparities=0\n",
+              run(folder, "hdp_evaluate --confidence --num-disparities=0 " + folder.path("dataset")).errors);
+    EXPECT_EQ("error: --runs and --jobs do not go with --confidence\n",
+              run(folder, "hdp_evaluate --confidence --runs=2 " + folder.path("dataset")).errors);
+
     // A pair that cannot be read is named and left out.
     std::remove(folder.path("dataset/b/right.png").c_str());
+    for (const String mode : { "--confidence", "--calibration", "--num-disparities=0" })
+    {
+        const Execution partial =
+            run(folder, "hdp_evaluate --methods=fast,tree " + folder.path("dataset") + " " + mode);
+        EXPECT_EQ(2, partial.status) << partial.errors;
+        EXPECT_NE(String::npos, partial.errors.find("skipped dataset/b fast: cannot read ")) << partial.errors;
+        EXPECT_NE(String::npos, partial.errors.find("1 of 3 pairs were skipped")) << partial.errors;
+        EXPECT_NE(String::npos, partial.output.find(", tree\n")) << partial.output;
+        for (const String side : { "left.png", "right.png" })
+            folder.write("unknown/a/" + side, cv::imread(folder.path("dataset/a/" + side)));
+        EXPECT_EQ("error: no pair has truth, which " + mode + " needs\n",
+                  run(folder, "hdp_evaluate " + folder.path("unknown") + " " + mode).errors);
+    }
     const Execution two = run(folder, common);
     EXPECT_EQ(2, two.status);
     EXPECT_NE(String::npos, two.errors.find("skipped dataset/b"));
