@@ -225,6 +225,6 @@ int main(int argc, char** argv)
 {
     return runProgram(argc, argv, KEYS,
                       "The pictures of the README and the tutorial: StereoSGBM beside PRESET_FAST, pair, maps of the "
-                      "layers, disparity forest, confidence, errors; masks, a prior and sigma.\n",
+                      "layers, disparity forest, confidence, errors; masks, a prior and sigma. --truth is needed.\n",
                       {}, 2, run);
 }

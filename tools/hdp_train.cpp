@@ -32,8 +32,10 @@ static const char* const KEYS =
     "{resolution      |     | of Middlebury's: full, half, third or quarter; needed if the folder has several }"
     "{fraction        | 0.5 | share of the pairs to train on; the model is tested on the others }"
     "{seed            | 0   | seed of the choice of pairs, and of the training }"
-    "{layers          | 3   | layers of the matcher, the image included; the model has one mixture less }"
-    "{max-components  | 6   | most Gaussians of a mixture }"
+    "{layers          | 3   | layers of the matcher, the image included; the model has one mixture less. Other "
+    "programs "
+    "need 3 or more }"
+    "{max-components  | 6   | most Gaussians of a mixture, up to 16 }"
     "{picture         |     | FILE.png for the fitted and the sampled distributions of the offsets }"
     "{threads         |     | number of threads; all processors if not given }";
 
@@ -118,7 +120,7 @@ static std::vector<TrainingScene> readScenes(const CommandLineParser& parser, in
         }
         catch (const std::exception& e)
         {
-            std::cerr << "skipped " << scene.name << ": " << e.what() << std::endl;
+            std::cerr << "skipped " << scene.name << ": " << messageOf(e) << std::endl;
         }
     }
     bad = int(scenes.size() - result.size());
@@ -276,6 +278,16 @@ static Table errorTable(const std::vector<TrainingScene>& scenes,
     return table;
 }
 
+//! Before the work, not after it; leaves what is there as it is.
+static void requireWritable(const String& path)
+{
+    const bool isNew = !utils::fs::exists(path);
+    if (!std::ofstream(path.c_str(), std::ios::app))
+        fail("cannot write '" + path + "'");
+    if (isNew)
+        std::remove(path.c_str());
+}
+
 //! The exit status
 static int run(const CommandLineParser& parser)
 {
@@ -290,15 +302,13 @@ static int run(const CommandLineParser& parser)
     setThreads(parser);
     const int seed = getInteger(parser, "seed", 0, std::numeric_limits<int>::max());
     const int layers = getInteger(parser, "layers", 2, 8);
-    const int maxComponents = getInteger(parser, "max-components", 1, 64);
+    const int maxComponents = getInteger(parser, "max-components", 1, 16);
 
     int bad = 0;
     std::vector<TrainingScene> scenes = readScenes(parser, bad);
-    const bool isNew = !utils::fs::exists(output);
-    if (!std::ofstream(output.c_str(), std::ios::app)) // before the work, not after it
-        fail("cannot write '" + output + "'");
-    if (isNew)
-        std::remove(output.c_str());
+    requireWritable(output);
+    if (!picture.empty())
+        requireWritable(picture);
     const bool hasHeldOut = scenes.back().isHeldOut;
     std::cout << "trained on " << listNames(scenes, false) << "\nheld out   " << listNames(scenes, true) << "\n\n";
 
@@ -349,8 +359,15 @@ static int run(const CommandLineParser& parser)
         pictures.insert(pictures.begin(), distributionPicture(sampled, *mixture, layer));
     }
     std::cout << toMarkdown(modelTable(*model)) << "\n" << toMarkdown(likelihoods) << std::endl;
-    model->save(output);
-    DisparityPredictionModel::load(output); // save() does not notice a full disk
+    try
+    {
+        model->save(output);
+        DisparityPredictionModel::load(output); // save() does not notice a full disk
+    }
+    catch (const cv::Exception&)
+    {
+        fail("cannot write '" + output + "'");
+    }
     std::cout << "written " << output << std::endl;
     if (!picture.empty())
     {
@@ -359,7 +376,10 @@ static int run(const CommandLineParser& parser)
         writeImage(picture, all);
         std::cout << "written " << picture << std::endl;
     }
-    if (hasHeldOut && published->getNumLayers() >= layers - 1)
+    if (hasHeldOut && published->getNumLayers() < layers - 1)
+        std::cout << "\nno table of errors: the published model is of " << published->getNumLayers() + 1 << " layers"
+                  << std::endl;
+    else if (hasHeldOut)
         std::cout << "\n" << toMarkdown(errorTable(scenes, { model, published }, layers)) << std::endl;
     if (bad > 0)
         std::cerr << bad << " of " << scenes.size() + size_t(bad) << " pairs were skipped, see above" << std::endl;

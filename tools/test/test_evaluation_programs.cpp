@@ -10,6 +10,7 @@
 
 #ifdef __unix__
 #include <cstdio>
+#include <unistd.h>
 
 namespace opencv_test { namespace {
 
@@ -337,6 +338,18 @@ TEST(HDPStereo_EvaluationPrograms, train_then_evaluate)
     EXPECT_EQ(0, trained.status) << trained.errors;
     EXPECT_NE(String::npos, trained.output.find("held out"));
     EXPECT_EQ(0, run(folder, "hdp_evaluate " + dataset + " --methods=paper --model=" + model).status);
+    const Execution many = run(folder, "hdp_train " + dataset + " --layers=5 --max-components=1 -o " + model);
+    EXPECT_EQ(0, many.status) << many.errors;
+    EXPECT_NE(String::npos, many.output.find("no table of errors: the published model is of "));
+    const Execution unwritable = run(folder, "hdp_train " + dataset + " --picture=/no/such/x.png -o " + model);
+    EXPECT_EQ("error: cannot write '/no/such/x.png'\n", unwritable.errors);
+#ifdef __linux__
+    ASSERT_EQ(0, symlink("/dev/full", folder.path("full.yml").c_str()));
+    const Execution full =
+        run(folder, "hdp_train " + dataset + " --layers=2 --max-components=1 -o " + folder.path("full.yml"));
+    EXPECT_EQ(1, full.status);
+    EXPECT_NE(String::npos, full.errors.find("error: cannot write '" + folder.path("full.yml") + "'\n")) << full.errors;
+#endif
 }
 
 TEST(HDPStereo_EvaluationPrograms, read_16_bit)
