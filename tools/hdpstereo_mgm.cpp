@@ -33,7 +33,7 @@ using hdp_tools::placeOf;
 static const char* const usage =
     "HDPTreeMatcher behind the command line of mgm\n"
     "usage: hdpstereo-mgm [OPTION VALUE]... LEFT RIGHT OUT [COST [BACKFLOW]]\n"
-    "LEFT, RIGHT: a rectified pair, 8 or 16 bit or float, NaN = no data. OUT: NaN = no disparity.\n"
+    "LEFT, RIGHT: a rectified pair, 8 or 16 bit or grey floats, NaN = no data. OUT: NaN = no disparity.\n"
     "All maps are files of floats: .tif, .pfm, and .exr if OpenCV has it.\n"
     "A left pixel (x, y) is (x + d, y) in the right image: the sign is the opposite of OpenCV's.\n"
     "  -r MIN -R MAX    smallest and largest disparity, fractions rounded outwards; without both, or if both are nan,\n"
@@ -46,7 +46,8 @@ static const char* const usage =
     "Accepted without effect: -O -P1 -P2 -p -t -truncDist -aP1 -aP2 -aThresh -S -wl -wr -Rc -confidence_costL\n"
     "-confidence_costR -confidence_pkrL -confidence_pkrR -inputCostVolume, COST and BACKFLOW.\n"
     "Environment, as mgm has it: TESTLRRL=0: no left-right check, which leaves out what the right image hides or does\n"
-    "not have; TESTLRRL_TAU=1: its threshold; REMOVESMALLCC=0: size of the smallest region; OMP_NUM_THREADS.\n"
+    "not have; TESTLRRL_TAU=1: its threshold in whole pixels, fractions rounded up; REMOVESMALLCC=0: size of the\n"
+    "smallest region; OMP_NUM_THREADS.\n"
     "Its own: HDPSTEREO_PRESET=quality: ultrafast, fast, quality or tree; HDPSTEREO_VERBOSE=1: says what has no "
     "effect.\n";
 
@@ -142,6 +143,7 @@ private:
 static Mat readImage(const String& path)
 {
     Mat image = readImage(path, IMREAD_UNCHANGED);
+    requireKnownColors(path, image);
     if (image.channels() > 1)
         cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);
     if (image.depth() != CV_8U && image.depth() != CV_16U)

@@ -160,6 +160,13 @@ Mat readImage(const String& path, int flags)
     return image;
 }
 
+void requireKnownColors(const String& path, const Mat& image)
+{
+    if (image.channels() > 1 && image.depth() != CV_8U && image.depth() != CV_16U)
+        CV_Error(Error::StsUnsupportedFormat,
+                 "'" + path + "' has colours of floats: images are of 8 or 16 bit, or grey floats");
+}
+
 Mat readMask(const String& path) { return readImage(path, IMREAD_GRAYSCALE | IMREAD_ANYDEPTH) != 0; }
 
 Mat toDisparity(const Mat& image, const Mat& mask, const String& path)
@@ -181,10 +188,15 @@ Mat toDisparity(const Mat& image, const Mat& mask, const String& path)
 
 Mat readPicture(const String& path)
 {
+    const auto isFloat = [](const Mat& image) { return image.depth() != CV_8U && image.depth() != CV_16U; };
     Mat image = imread(path, IMREAD_COLOR | IMREAD_ANYDEPTH);
-    if (image.empty()) // TIFF of grey floats is no colour image
+    if (image.empty() || isFloat(image)) // TIFF of grey floats is no colour image, and of others colours are made
+    {
+        image.release();
         image = readImage(path, IMREAD_UNCHANGED);
-    if (image.depth() != CV_8U && image.depth() != CV_16U) // doubles, and numbers with a sign, too
+        requireKnownColors(path, image);
+    }
+    if (isFloat(image)) // doubles, and numbers with a sign, too
         image.convertTo(image, CV_32F);
     if (image.depth() != CV_8U && image.channels() > 1)
         cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);

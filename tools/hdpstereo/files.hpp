@@ -64,6 +64,9 @@ void writeFindings(const cv::String& path, const cv::stereo::PairModel& model);
 
 cv::Mat readImage(const cv::String& path, int flags);
 
+//! Throws if an image has colours that are not of 8 or 16 bit: formats do not agree what white is.
+void requireKnownColors(const cv::String& path, const cv::Mat& image);
+
 //! 255 where a picture of any depth is not black, else 0
 cv::Mat readMask(const cv::String& path);
 

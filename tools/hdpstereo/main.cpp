@@ -75,13 +75,24 @@ static const char* const keys =
 //! Options that have no effect without another one
 static void checkCompany(int argc, const char* const argv[], const CommandLineParser& parser)
 {
-    const String needed[][2] = { { "memory", "tiles" },      { "format", "batch" },
-                                 { "prior-sigma", "prior" }, { "calibration2", "calibration" },
-                                 { "unit", "calibration" },  { "field-of-view", "calibration" } };
+    const String needed[][2] = { { "memory", "tiles" },
+                                 { "format", "batch" },
+                                 { "prior-sigma", "prior" },
+                                 { "calibration2", "calibration" },
+                                 { "unit", "calibration" },
+                                 { "field-of-view", "calibration" },
+                                 { "focal", "point-cloud" },
+                                 { "baseline", "point-cloud" },
+                                 { "reprojection", "point-cloud" } };
     for (int i = 1; i < argc; ++i)
         for (const String* names : needed)
             if (String(argv[i]).compare(0, names[0].size() + 3, "--" + names[0] + "=") == 0 && !parser.has(names[1]))
                 CV_Error(Error::StsBadArg, "--" + names[0] + " needs --" + names[1]);
+    const String ways[] = { "calibration", "reprojection", "focal", "baseline" }; // to points, the first one counts
+    for (int i = 0; i < 2; ++i)
+        for (int j = i + 1; j < 4 && parser.has(ways[i]); ++j)
+            if (parser.has(ways[j]))
+                CV_Error(Error::StsBadArg, "--" + ways[j] + " does not go with --" + ways[i]);
 }
 
 int main(int argc, char** argv)
@@ -102,7 +113,7 @@ int main(int argc, char** argv)
         else if (parser.has("version"))
             std::cout << "hdpstereo " << HDPSTEREO_VERSION << " (OpenCV " << CV_VERSION << ")" << std::endl;
         else if (parser.has("tiles"))
-            matchTiles(parser);
+            status = matchTiles(parser);
         else if (parser.has("batch"))
             status = matchPairs(parser) == 0 ? 0 : 2;
         else

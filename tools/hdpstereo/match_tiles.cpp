@@ -1,6 +1,7 @@
 // This file is part of OpenCV project.
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
+#include "../interrupts.hpp"
 #include "files.hpp"
 #include "options.hpp"
 #include "windowed_pair.hpp"
@@ -207,7 +208,7 @@ void checkFindings(const CommandLineParser& parser, const WindowedPair& pair)
 
 } // namespace
 
-void matchTiles(const CommandLineParser& parser)
+int matchTiles(const CommandLineParser& parser)
 {
     checkTileOptions(parser);
 #ifdef __GLIBC__
@@ -234,9 +235,15 @@ void matchTiles(const CommandLineParser& parser)
         std::cout << "written    " << parser.get<String>("save-findings") << std::endl;
     }
     const Tiling tiling(size, *matcher, layers, pixels);
+    hdp_tools::catchInterrupts(); // so that no part of a map is left
     const Ptr<MapTiles> map = createMap(output, size, tiling.side());
     for (int i = 0; i < tiling.count(); ++i)
     {
+        if (hdp_tools::isInterrupted())
+        {
+            std::cerr << "interrupted: no map is written" << std::endl;
+            return 130;
+        }
         const Rect whole = tiling.whole(i), inside = tiling.inside(i);
         matcher->setPairModel(model.tile(whole));
         const PairPart part = pair.read(whole);
@@ -250,4 +257,5 @@ void matchTiles(const CommandLineParser& parser)
     std::cout << format("tiles      %d of %d x %d pixels, about %d x %d with margins\n", tiling.count(), tiling.side(),
                         tiling.side(), first.width, first.height)
               << "written    " << output << std::endl;
+    return 0;
 }

@@ -47,8 +47,8 @@ private:
 
 void matchPair(const cv::CommandLineParser& parser);
 
-//! --tiles
-void matchTiles(const cv::CommandLineParser& parser);
+//! --tiles. Returns the exit status.
+int matchTiles(const cv::CommandLineParser& parser);
 
 //! --batch. Returns how many pairs are bad.
 size_t matchPairs(const cv::CommandLineParser& parser);

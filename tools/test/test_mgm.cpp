@@ -255,6 +255,12 @@ TEST(HDPStereo_Mgm, wrong_calls)
     const Execution told = test.call("-r -31 -R 0 -O 8", "HDPSTEREO_VERBOSE=1");
     EXPECT_EQ("hdpstereo-mgm: -O has no effect\n", told.errors);
     EXPECT_EQ("", test.call("-r -31 -R 0 -O 8").errors);
+    Mat colors;
+    test.pair.left.convertTo(colors, CV_32F);
+    test.save(colors, test.right);
+    EXPECT_EQ(
+        0u,
+        test.call("-r -31 -R 0").errors.find("error: '" + test.folder.path("left.tif") + "' has colours of floats: "));
 }
 
 #ifdef __linux__

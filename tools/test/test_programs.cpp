@@ -284,6 +284,8 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
     folder.writeText("image.txt", left + " " + right + " left\n");
     folder.write("unknown.png", Mat(120, 160, CV_16U, Scalar(0)));
     folder.write("truth.pfm", Mat(120, 160, CV_32F, Scalar(3)));
+    folder.write("colors.tif", Mat(120, 160, CV_32FC3, Scalar::all(3)));
+    const String colors = folder.path("colors.tif");
     const struct
     {
         String arguments, error;
@@ -342,6 +344,15 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
         { pair + out + ".tif --format=tif", "--format needs --batch" },
         { pair + out + ".tif --prior-sigma=1", "--prior-sigma needs --prior" },
         { pair + out + ".tif --unit=1", "--unit needs --calibration" },
+        { pair + out + ".tif --focal=100", "--focal needs --point-cloud" },
+        { pair + out + ".tif --baseline=1", "--baseline needs --point-cloud" },
+        { pair + out + ".tif --reprojection=" + none, "--reprojection needs --point-cloud" },
+        { pair + "--point-cloud=x.ply --calibration=" + words + " --reprojection=" + words,
+          "--reprojection does not go with --calibration" },
+        { pair + "--point-cloud=x.ply --reprojection=" + words + " --focal=100",
+          "--focal does not go with --reprojection" },
+        { " " + colors + " " + right + " " + out + ".tif", "'" + colors + "' has colours of floats: " },
+        { " --tiles " + left + " " + colors + " " + out + ".tif", "'" + colors + "' has colours of floats: " },
         { pair + out + ".tif --field-of-view=80", "--field-of-view needs --calibration" },
     };
     for (const auto& c : cases)

@@ -194,6 +194,15 @@ TEST(HDPStereo_Tiles, a_map_is_whole_or_not_there)
     EXPECT_TRUE(readText(out) == "an old map");
     EXPECT_FALSE(fs::exists(out + ".part"));
 
+    const String killed = "sh -c '\"$0\" \"$@\" & while [ ! -s " + out +
+                          ".part ] && kill -0 $! 2>/dev/null; do sleep 0.01;" +
+                          " done; kill $!; wait $!'"; // once tiles are matched
+    const Execution interrupted = run(folder, program + tiles + left + " " + right + " " + out, String(), killed);
+    EXPECT_EQ(130, interrupted.status);
+    EXPECT_EQ("interrupted: no map is written\n", interrupted.errors);
+    EXPECT_TRUE(readText(out) == "an old map");
+    EXPECT_FALSE(fs::exists(out + ".part"));
+
     EXPECT_EQ(0, run(folder, program + tiles + left + " " + right + " " + out).status);
     EXPECT_EQ(CV_32FC1, cv::imread(out, IMREAD_UNCHANGED).type());
     EXPECT_FALSE(fs::exists(out + ".part"));
