@@ -4,6 +4,8 @@
 
 // A TreeStrategy of one's own, in comparison with the minimum spanning tree: the errors of both on a rectified pair.
 
+#include "strict_arguments.hpp"
+
 #include <algorithm>
 #include <iostream>
 
@@ -93,9 +95,10 @@ static void run(const CommandLineParser& parser)
 {
     const Mat left = readPicture(parser.get<String>("@left")), right = readPicture(parser.get<String>("@right")),
               truth = parser.has("truth") ? readImage(parser.get<String>("truth"), IMREAD_GRAYSCALE) : Mat();
-    const int numDisparities = parser.get<int>("num-disparities"), maxWeight = parser.get<int>("max-weight");
-    if (!parser.check())
-        CV_Error(Error::StsBadArg, "--num-disparities and --max-weight must be numbers");
+    const int numDisparities = hdp_samples::integerOf(parser, "num-disparities", 0, 2047),
+              maxWeight = hdp_samples::integerOf(parser, "max-weight", 0, 255);
+    if (!truth.empty() && truth.size() != left.size())
+        CV_Error(Error::StsUnmatchedSizes, "--truth must have the size of the images");
 
     //! [use]
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, numDisparities, HDPTreeMatcher::PRESET_TREE);
@@ -131,6 +134,7 @@ int main(int argc, char** argv)
     }
     try
     {
+        hdp_samples::checkArguments(argc, argv, parser, 2);
         run(parser);
     }
     catch (const cv::Exception& e)

@@ -5,6 +5,8 @@
 // Matches a rectified stereo pair with cv::stereo::HDPTreeMatcher, and writes the disparities in grey levels. The program
 // hdpstereo does more.
 
+#include "strict_arguments.hpp"
+
 #include <iostream>
 #include <map>
 
@@ -35,9 +37,7 @@ static void match(const CommandLineParser& parser)
     const Mat left = imread(parser.get<String>("@left")), right = imread(parser.get<String>("@right"));
     if (left.empty() || right.empty())
         CV_Error(Error::StsError, "cannot read the images");
-    const int numDisparities = parser.get<int>("num-disparities");
-    if (!parser.check())
-        CV_Error(Error::StsBadArg, "--num-disparities must be a number");
+    const int numDisparities = hdp_samples::integerOf(parser, "num-disparities", 0, 2047);
     if (!parser.has("@out"))
         CV_Error(Error::StsBadArg, "OUT is missing: hdp_stereo_match LEFT RIGHT OUT.png");
 
@@ -67,6 +67,7 @@ int main(int argc, char** argv)
     }
     try
     {
+        hdp_samples::checkArguments(argc, argv, parser, 3);
         match(parser);
     }
     catch (const cv::Exception& e)

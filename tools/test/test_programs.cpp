@@ -33,6 +33,30 @@ TEST(HDPStereo_Programs, full_disk)
 }
 #endif
 
+//! What cv::CommandLineParser lets pass
+TEST(HDPStereo_Programs, samples_are_strict)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String left = folder.path("dataset/a/left.png"),
+                 images = " " + left + " " + folder.path("dataset/a/right.png"),
+                 match = "example_hdpstereo_hdp_stereo_match" + images + " " + folder.path("map.png"),
+                 tree = "example_hdpstereo_hdp_own_tree" + images;
+    for (const String& program : { match, tree })
+    {
+        EXPECT_EQ("error: --num-disparities=64x: not a whole number from 0 to 2047\n",
+                  run(folder, program + " --num-disparities=64x").errors);
+        EXPECT_EQ("error: unexpected argument 'more.png'\n", run(folder, program + " more.png").errors);
+        EXPECT_EQ(1, run(folder, program + " --num-disparities=32 --unknown=1").status);
+    }
+    EXPECT_EQ(0, run(folder, match + " --num-disparities=32").status);
+    EXPECT_EQ("error: --max-weight=300: not a whole number from 0 to 255\n",
+              run(folder, tree + " --max-weight=300").errors);
+    folder.write("truth.png", Mat(12, 16, CV_8U, Scalar(3)));
+    EXPECT_EQ("error: --truth must have the size of the images\n",
+              run(folder, tree + " --truth=" + folder.path("truth.png")).errors);
+}
+
 TEST(HDPStereo_Programs, stereo_match_writes_all_it_is_asked_for)
 {
     const DatasetFolder folder;
