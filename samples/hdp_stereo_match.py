@@ -16,6 +16,7 @@ Without LEFT and RIGHT it takes the Aloe pair of OpenCV's samples, with ground t
 from __future__ import print_function
 
 import argparse
+import os
 import sys
 
 import numpy as np
@@ -89,6 +90,20 @@ def write_disparity(filename, disparity):
     else:
         known = (disparity >= 0) & (disparity < 256)
         write(filename, np.where(known, np.maximum(np.nan_to_num(disparity) * 256, 1), 0).astype(np.uint16))
+
+
+def check_outputs(args, parser):
+    '''Before the work: what can be written, and is no input.'''
+    inputs = [os.path.realpath(path) for path in (args.left, args.right, args.truth) if path]
+    for path in args.output, args.picture, args.point_cloud:
+        if path and os.path.realpath(path) in inputs:
+            parser.error('cannot write %s: it is an input' % path)
+    extension = os.path.splitext(args.output or '.pfm')[1].lower()
+    if extension not in ('.png', '.pfm'):
+        parser.error('--output=%s: neither .png nor .pfm' % args.output)
+    if extension == '.png' and args.min_disparity < 0:
+        parser.error('PNG has no disparities below 0, and --min-disparity=%d asks for some: take .pfm' %
+                     args.min_disparity)
 
 
 def color_picture(disparity):
@@ -165,8 +180,14 @@ def main():
     args = parser.parse_args()
     if (args.left is None) != (args.right is None):
         parser.error('a left and a right image are needed')
-    if bool(args.point_cloud) != bool(args.focal and args.baseline):
-        parser.error('--point-cloud needs --focal and --baseline, and they need it')
+    for option, value in ('--focal', args.focal), ('--baseline', args.baseline):
+        if (value is None) != (args.point_cloud is None):
+            parser.error('--point-cloud needs --focal and --baseline, and they need it')
+        if value is not None and not 0 < value < float('inf'):
+            parser.error('%s must be above 0' % option)
+    if args.num_disparities == 0 and args.min_disparity != 0:
+        parser.error('--min-disparity does not go with --num-disparities=0, which finds it, too')
+    check_outputs(args, parser)
     if args.runs < 1:
         parser.error('--runs must be at least 1')
     if args.left is None:
@@ -224,8 +245,8 @@ def main():
         for name in disparities:
             cv.imshow(name, color_picture(disparities[name]))
         cv.waitKey()
+        cv.destroyAllWindows()
 
 
 if __name__ == '__main__':
     main()
-    cv.destroyAllWindows()
