@@ -11,6 +11,7 @@ by 15, and all of them by 20. Prints the percentage of wrong pixels. Needs cv2.
 
 import argparse
 import os
+import sys
 
 import cv2
 import numpy as np
@@ -46,13 +47,31 @@ def make_priors(truth, seed, options):
         yield name, prior
 
 
+def read_image(path, flags):
+    image = cv2.imread(path, flags)
+    if image is None:
+        sys.exit(f'cannot read the image {path}')
+    return image
+
+
+def read_scene(folder, options):
+    left, right, truth = (read_image(os.path.join(folder, name + '.png'), flags)
+                          for name, flags in (('left', 1), ('right', 1), ('disp_left', -1)))
+    if truth.shape != left.shape[:2] or right.shape != left.shape:
+        sys.exit(f'{folder}: the images and the truth, of grey levels, must have one size')
+    if np.count_nonzero(truth) < options.points:
+        sys.exit(f'{folder}: the truth has fewer than {options.points} points')
+    return left, right, truth / options.scale
+
+
 def main():
     options = parse_arguments()
+    scenes = sorted(os.listdir(options.folder)) if os.path.isdir(options.folder) else []
+    if not scenes:
+        sys.exit(f'there are no scenes in {options.folder}')
     errors = {}
-    for seed, scene in enumerate(sorted(os.listdir(options.folder))):
-        left, right, truth = (cv2.imread(os.path.join(options.folder, scene, name + '.png'), flags)
-                              for name, flags in (('left', 1), ('right', 1), ('disp_left', -1)))
-        truth = truth / options.scale
+    for seed, scene in enumerate(scenes):
+        left, right, truth = read_scene(os.path.join(options.folder, scene), options)
         matcher = HDPTreeMatcher.create(0, options.num_disparities, preset=options.preset)
         for name, prior in [('no prior', None), *make_priors(truth, seed, options)]:
             if prior is not None:
