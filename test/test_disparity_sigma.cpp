@@ -136,9 +136,9 @@ TEST(HDPStereo_DisparitySigma, rises_with_the_row_error_and_the_noise)
     EXPECT_EQ(sigmaFor(0.12, 0), sigmaFor(0, 0)) << "unknown";
     EXPECT_EQ(sigmaFor(0.03, 0), sigmaFor(1e-6, 0));
     EXPECT_EQ(sigmaFor(0.25, 0), sigmaFor(1e6, 0));
-    EXPECT_NEAR(1.1, sigmaFor(0.1, 1.4641 * 2) / sigmaFor(0.1, 2), 1e-5);
+    EXPECT_NEAR(1.1, sigmaFor(0.1, 1.21 * 1.5) / sigmaFor(0.1, 1.5), 1e-5);
     EXPECT_EQ(sigmaFor(0.1, 1), sigmaFor(0.1, 0)) << "unknown";
-    EXPECT_EQ(sigmaFor(0.1, 4), sigmaFor(0.1, 1e6));
+    EXPECT_EQ(sigmaFor(0.1, 2), sigmaFor(0.1, 1e6));
 }
 
 TEST(HDPStereo_DisparitySigma, is_true_of_a_pair)

@@ -26,7 +26,7 @@ hdp::CoarseMatches makeMatches(RNG& rng, int count, const RowModel& model)
     for (int i = 0; i < count; ++i)
     {
         CornerMatch match;
-        match.left = Point(rng.uniform(40, imageSize.width - 10), rng.uniform(10, imageSize.height - 10));
+        match.left = Point(rng.uniform(40, imageSize.width - 10), rng.uniform(30, imageSize.height - 30));
         match.x = match.left.x - rng.uniform(0., 30.);
         match.y = match.left.y + model.at(fromCentre(Point2d(match.x, match.left.y)));
         match.variance = 1e-4;

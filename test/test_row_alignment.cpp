@@ -258,6 +258,42 @@ TEST(HDPStereo_SlowRowAlignment, noise_level)
         }
 }
 
+//! Defective pixels, one of a hundred in each image, are not noise.
+TEST(HDPStereo_RowAlignment, difference_of_quiet_rows)
+{
+    RNG rng(71);
+    const Size size(640, 480);
+    const double noise = 8, defect = 400;
+    Mat texture(size, CV_32F), images[2];
+    rng.fill(texture, RNG::NORMAL, 512, 300);
+    GaussianBlur(texture, texture, Size(), 2);
+    std::vector<hdp::CornerMatch> matches;
+    for (int y = 20; y < size.height - 20; y += 20)
+        for (int x = 20; x < size.width - 20; x += 20)
+            matches.push_back({ Point(x, y), (double)x, (double)y, 0.1, DBL_MAX, true });
+    for (const bool hasDefects : { false, true })
+    {
+        for (Mat& image : images)
+        {
+            Mat levels(size, CV_32F);
+            rng.fill(levels, RNG::NORMAL, 0, noise);
+            levels += texture;
+            for (int i = hasDefects ? size.area() / 100 : 0; i > 0; --i)
+                levels.at<float>(rng.uniform(0, size.height), rng.uniform(0, size.width)) += (float)defect;
+            levels.convertTo(image, CV_16U);
+        }
+        std::vector<double> quiet;
+        for (const hdp::CornerMatch& match : matches)
+            quiet.push_back(hdp::quietDifference(images[0], images[1], match));
+        std::nth_element(quiet.begin(), quiet.begin() + quiet.size() / 2, quiet.end());
+        EXPECT_NEAR(2 * noise * noise, quiet[quiet.size() / 2], 0.15 * 2 * noise * noise) << hasDefects;
+    }
+    const Mat plain(size, CV_16U, Scalar(500));
+    const hdp::CornerMatch bare = { Point(100, 100), 90.5, 100, 0.1, 7, true };
+    EXPECT_EQ(7, hdp::quietDifference(plain, images[1], bare)) << "its residual";
+    EXPECT_EQ(7, hdp::quietDifference(images[0], images[1], bare)) << "no more than that";
+}
+
 //! Noisy pairs are smoothed: fewer errors. Others are not.
 TEST(HDPStereo_SlowRowAlignment, noise_threshold)
 {

@@ -24,8 +24,8 @@ const int unit = subpixelScale;
 // sets between 50 and 80 %. Beyond the limits there were few pairs to tell it.
 const double minRowError = 0.03, usualRowError = 0.12, maxRowError = 0.25;
 
-// Grey levels. Sigma rises with the fourth root of the noise between these, beyond which the same holds.
-const double minNoise = 1, maxNoise = 4;
+// Grey levels. Sigma rises with the root of the noise between these, beyond which the same holds.
+const double minNoise = 1, maxNoise = 2;
 
 // Errors in pixels by which 50 to 80 % are not larger, at the usual row error and little noise, of FAST, QUALITY and
 // TREE on pairs of Middlebury, ETH3D, SceneFlow and KITTI, each set as much as the others; made to fall with the
@@ -102,8 +102,7 @@ void disparitySigma(const Mat& confidence, const Mat& mismatch, double rowError,
 {
     const double error = rowError > 0 ? clamped(rowError, +minRowError, +maxRowError) : usualRowError;
     // Roots alone, which are the same on all machines
-    const float ofPair =
-        (float)(std::sqrt(error / usualRowError) * std::sqrt(std::sqrt(clamped(noise, +minNoise, +maxNoise))));
+    const float ofPair = (float)(std::sqrt(error / usualRowError) * std::sqrt(clamped(noise, +minNoise, +maxNoise)));
     Place places[256];
     for (int i = 0; i < 256; ++i)
         places[i] = placeOf((float)i, confidenceOf, confidences);

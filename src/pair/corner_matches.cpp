@@ -38,11 +38,15 @@ HDP_TUNABLE(double, maxMove, 2, "pixels", "of a match: one that goes farther has
 HDP_TUNABLE(double, maxResidual, 0.5, "share of the left variance",
             "mean square difference: more lets wrong matches in, less loses noisy images");
 
+HDP_TUNABLE(double, quietRow, 4, "times that of the quietest rows",
+            "mean square difference of rows that tell the noise: less leaves out noise, more takes defects for it");
+
 HDP_DISPATCH(structureTensors)
 HDP_DISPATCH(windowSums)
 HDP_DISPATCH(correlate)
 HDP_DISPATCH(cutWindow)
 HDP_DISPATCH(trackingSums)
+HDP_DISPATCH(sumRows)
 
 //! 255 where the windows around a pixel, and the pixels beside them that gradients need, have data, else 0: CV_8UC1,
 //! empty for an empty mask
@@ -175,14 +179,26 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
     match.isValid = true;
 }
 
+const int fractionBits = CornerMatching::fractionBits, fractions = 1 << fractionBits;
+const Point windowCentre(CornerMatching::trackWidth / 2, CornerMatching::trackHeight / 2);
+
+//! The mean of (L - gain * R)^2 over n pixels, both without their means and of equal variance; negative if one has none
+double meanSquareDifference(const RowSums& sums, int n)
+{
+    const double l = sums.l, r = sums.r, variance = (double)sums.ll * n - l * l, ofRight = (double)sums.rr * n - r * r;
+    if (variance <= 0 || ofRight <= 0)
+        return -1;
+    const double covariance = (double)sums.lr * n - l * r;
+    return std::max(2 * (variance - std::sqrt(variance / ofRight) * covariance) / ((double)n * n), 0.);
+}
+
 //! The method of Lucas and Kanade: moves a window of the right image until it fits the left one, both of equal mean and
 //! variance. Invalid if bare, lost, beyond the image, or unlike
 void track(const Mat& left, const Mat& right, CornerMatch& match)
 {
     match.isValid = false;
     const int width = CornerMatching::trackWidth, height = CornerMatching::trackHeight, n = TrackedWindow::pixels;
-    const int fractionBits = CornerMatching::fractionBits, fractions = 1 << fractionBits;
-    const Point first = match.left - Point(width / 2, height / 2);
+    const Point first = match.left - windowCentre;
     const Rect inside(1, 1, left.cols - 2, left.rows - 2); // has gradients
     if (!inside.contains(first) || !inside.contains(first + Point(width - 1, height - 1)))
         return;
@@ -283,6 +299,34 @@ void keepMutualMatches(const Mat& left, const Mat& right, SearchWindows& windows
         findMatch(right, left, windows, all, -rowOffset, correlations, back);
         match.isValid = back.isValid && std::abs(back.x - match.left.x) <= 1 && std::abs(back.y - match.left.y) <= 1;
     });
+}
+
+double quietDifference(const Mat& left, const Mat& right, const CornerMatch& match)
+{
+    const int count = CornerMatching::trackHeight, width = CornerMatching::trackWidth;
+    const Point first = match.left - windowCentre;
+    const int x = cvRound((match.x - windowCentre.x) * fractions), y = cvRound((match.y - windowCentre.y) * fractions);
+    TrackedWindow window;
+    RowSums rows[CornerMatching::trackHeight], quiet = {};
+    dispatched::cutWindow(left.ptr<ushort>(first.y) + first.x, left.step1(), window);
+    dispatched::sumRows(right.ptr<ushort>(y >> fractionBits) + (x >> fractionBits), right.step1(), x & (fractions - 1),
+                        y & (fractions - 1), window, rows);
+    double differences[CornerMatching::trackHeight], sorted[CornerMatching::trackHeight];
+    for (int i = 0; i < count; ++i)
+        differences[i] = meanSquareDifference(rows[i], width);
+    double* const end = std::remove_copy_if(differences, differences + count, sorted, [](double d) { return d < 0; });
+    double* const sixth = sorted + (end - sorted) / 6; // some are by chance
+    std::nth_element(sorted, sixth, end);
+    const double most = end > sorted ? quietRow * *sixth : -1;
+    int pixels = 0;
+    for (int i = 0; i < count; ++i)
+        if (differences[i] >= 0 && differences[i] <= most)
+        {
+            quiet = quiet + rows[i];
+            pixels += width;
+        }
+    const double difference = meanSquareDifference(quiet, pixels);
+    return difference < 0 ? match.residual : std::min(difference, match.residual);
 }
 
 void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMatch>& matches)

@@ -64,6 +64,17 @@ struct TrackedWindow
     Sums sums;
 };
 
+//! Sums over a row of both tracked windows
+struct RowSums
+{
+    int l, r, ll, rr, lr;
+
+    RowSums operator+(const RowSums& other) const
+    {
+        return { l + other.l, r + other.r, ll + other.ll, rr + other.rr, lr + other.lr };
+    }
+};
+
 //! Sums over a window of the right image: of levels r, and of products with what a TrackedWindow has
 struct RightSums
 {
@@ -86,6 +97,10 @@ CV_EXPORTS void keepMutualMatches(const Mat& left, const Mat& right, SearchWindo
 //! Improves matches to a fraction of a pixel by the method of Lucas and Kanade, on windows of equal mean and variance.
 //! What is lost becomes invalid.
 CV_EXPORTS void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMatch>& matches);
+
+//! The residual of a tracked match over the rows that are about as quiet as the quietest ones: defective pixels are in
+//! others.
+CV_EXPORTS double quietDifference(const Mat& left, const Mat& right, const CornerMatch& match);
 
 //! Matches of a pair's corners on a coarse layer, and its pyramids down to it
 struct CoarseMatches

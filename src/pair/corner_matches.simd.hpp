@@ -35,6 +35,9 @@ void cutWindow(const ushort* left, size_t step, TrackedWindow& window);
 //! fractions of the place, in 1 / 2^fractionBits of a pixel
 RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const TrackedWindow& window);
 
+//! The sums of CornerMatching::trackHeight rows of both windows; arguments as of trackingSums()
+void sumRows(const ushort* right, size_t step, int fx, int fy, const TrackedWindow& window, RowSums* rows);
+
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 static const short middle = 512; // of levels up to 1023: windowSums() and correlate() subtract it
@@ -174,12 +177,12 @@ void cutWindow(const ushort* left, size_t step, TrackedWindow& window)
     window.sums = sums;
 }
 
-RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const TrackedWindow& window)
+//! A window of the right image, whose pixels are between those of the image
+static void mixPixels(const ushort* right, size_t step, int fx, int fy, short* values)
 {
     const int bits = CornerMatching::fractionBits, half = 1 << (2 * bits - 1);
     const short w11 = (short)(fx * fy), w10 = (short)((fy << bits) - w11), w01 = (short)((fx << bits) - w11),
                 w00 = (short)(2 * half - w11 - w10 - w01);
-    short values[TrackedWindow::pixels];
     for (int y = 0; y < CornerMatching::trackHeight; ++y)
     {
         const ushort *const a = right + y * step, *const b = a + step;
@@ -188,6 +191,12 @@ RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const T
             (short)((w00 * (short)a[x] + w01 * (short)a[x + 1] + w10 * (short)b[x] + w11 * (short)b[x + 1] + half) >>
                     (2 * bits));
     }
+}
+
+RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const TrackedWindow& window)
+{
+    short values[TrackedWindow::pixels];
+    mixPixels(right, step, fx, fy, values);
     RightSums sums = {};
     HDP_VECTORIZED for (int i = 0; i < TrackedWindow::pixels; ++i)
     {
@@ -199,6 +208,27 @@ RightSums trackingSums(const ushort* right, size_t step, int fx, int fy, const T
         sums.yr += window.gradientY[i] * r;
     }
     return sums;
+}
+
+void sumRows(const ushort* right, size_t step, int fx, int fy, const TrackedWindow& window, RowSums* rows)
+{
+    short values[TrackedWindow::pixels];
+    mixPixels(right, step, fx, fy, values);
+    for (int y = 0; y < CornerMatching::trackHeight; ++y)
+    {
+        const short* const left = window.values + y * CornerMatching::trackWidth;
+        const short* const own = values + y * CornerMatching::trackWidth;
+        RowSums sums = {};
+        HDP_VECTORIZED for (int x = 0; x < CornerMatching::trackWidth; ++x)
+        {
+            sums.l += left[x];
+            sums.r += own[x];
+            sums.ll += left[x] * left[x];
+            sums.rr += own[x] * own[x];
+            sums.lr += left[x] * own[x];
+        }
+        rows[y] = sums;
+    }
 }
 
 #endif

@@ -24,6 +24,7 @@ HDP_TUNABLE(double, slopeChange, 1e-3, "rows per pixel", "of a slope from border
 // What moves rows by less costs more by interpolation than it gains.
 HDP_TUNABLE(double, minMove, 0.12, "pixels", "root of the mean square of a model that is applied");
 
+HDP_TUNABLE(int, noiseMatches, 200, "matches", "that the noise is measured by: more cost time, fewer vary");
 HDP_TUNABLE(double, noiseFall, 1.7, "factor from a layer to the next",
             "white noise would halve; that of cameras, which neighbours share, falls less");
 
@@ -62,15 +63,19 @@ RowFit fitRows(const std::vector<RowMove>& moves, Size size)
 
 //! Standard deviation of the noise of a layer. White noise is assumed; half of it is left between pixels of the right
 //! window, where interpolation averages it.
-double noiseOf(const std::vector<CornerMatch>& matches)
+double noiseOf(const Mat& left, const Mat& right, const std::vector<CornerMatch>& matches)
 {
-    std::vector<double> residuals;
+    const auto isValid = [](const CornerMatch& match) { return match.isValid; };
+    const int count = (int)std::count_if(matches.begin(), matches.end(), isValid),
+              step = (count - 1) / noiseMatches + 1;
+    std::vector<double> differences;
+    int i = 0;
     for (const CornerMatch& match : matches)
-        if (match.isValid)
-            residuals.push_back(match.residual);
-    const size_t tenth = residuals.size() / 10;
-    std::nth_element(residuals.begin(), residuals.begin() + tenth, residuals.end());
-    return std::sqrt(residuals[tenth] / 1.5);
+        if (match.isValid && i++ % step == 0)
+            differences.push_back(quietDifference(left, right, match));
+    const size_t tenth = differences.size() / 10;
+    std::nth_element(differences.begin(), differences.begin() + tenth, differences.end());
+    return std::sqrt(differences[tenth] / 1.5);
 }
 
 //! Means over the image
@@ -199,7 +204,7 @@ void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         const auto distance = [&](const RowMove& move) { return move.distanceFrom(fit.coefficients); };
         const double deviation = deviationOfMedian * medianOf(moves, distance), own = ownDeviation * (1 << layer);
         findings.rowError = std::sqrt(deviation * deviation + own * own); // not by std::hypot(), either
-        findings.noise.deviation = noiseOf(matches) / greyScale;
+        findings.noise.deviation = noiseOf(coarse.left[layer], coarse.right[layer], matches) / greyScale;
         findings.noise.layer = layer;
         if (ofFit.deviation < ofBest.deviation)
         {

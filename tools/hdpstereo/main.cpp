@@ -35,7 +35,7 @@ static const char* const keys =
     "{calibration2    |      | the other file of --calibration: extrinsics.yml, right.yaml, the right camera's "
     "sensor.yaml }"
     "{unit            | 1    | metres in the unit of OpenCV's extrinsics.yml }"
-    "{field-of-view   | 0    | of the rectified images in degrees; 0: as much as leaves no empty pixels, with "
+    "{field-of-view   | 0    | of the rectified images in degrees; 0: as much as leaves hardly an empty pixel, with "
     "fisheye as much as keeps the focal length }"
     "{findings        |      | matches as --save-findings of another pair of the rig says; nothing is estimated }"
     "{save-findings   |      | what was found in the pair, rows, light, noise and levels: FILE.yml, .xml or .json }"

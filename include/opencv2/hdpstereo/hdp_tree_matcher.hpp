@@ -468,8 +468,8 @@ public:
         /** @brief Noise: the standard deviation of what differs between matched corners, in grey levels of 0 to 255.
 
         It is that of the layer at which matching ends, see Params::finestLayer, and what Params::noiseThreshold is
-        compared with. Texture that is finer than pixels counts as noise, too. 0 if too few corners were matched, or if
-        the parameters of the alignment are all 0. */
+        compared with. Texture that is finer than pixels counts as noise, too; single defective pixels do not. 0 if too
+        few corners were matched, or if the parameters of the alignment are all 0. */
         CV_PROP double noise;
 
         /** @brief First disparity of the range that was searched, in pixels.
