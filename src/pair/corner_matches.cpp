@@ -305,7 +305,9 @@ double quietDifference(const Mat& left, const Mat& right, const CornerMatch& mat
 {
     const int count = CornerMatching::trackHeight, width = CornerMatching::trackWidth;
     const Point first = match.left - windowCentre;
-    const int x = cvRound((match.x - windowCentre.x) * fractions), y = cvRound((match.y - windowCentre.y) * fractions);
+    // Where it was tracked to, but for the rounding of its place
+    const int x = clamped(cvRound((match.x - windowCentre.x) * fractions), 0, (right.cols - width) * fractions - 1);
+    const int y = clamped(cvRound((match.y - windowCentre.y) * fractions), 0, (right.rows - count) * fractions - 1);
     TrackedWindow window;
     RowSums rows[CornerMatching::trackHeight], quiet = {};
     dispatched::cutWindow(left.ptr<ushort>(first.y) + first.x, left.step1(), window);
