@@ -65,6 +65,17 @@ Mat darken(const Mat& image, RNG& rng)
     return addNoise(2)(changed, rng);
 }
 
+//! Pixels that are black or white
+ImageChange defects(double percent)
+{
+    return [percent](const Mat& image, RNG& rng) {
+        Mat changed = image.clone();
+        for (int i = cvRound(percent / 100 * (double)image.total()); i > 0; --i)
+            changed.at<Vec3b>(rng.uniform(0, image.rows), rng.uniform(0, image.cols)) = Vec3b::all(255 * (i % 2));
+        return changed;
+    };
+}
+
 ImageChange blur(double deviation)
 {
     return [deviation](const Mat& image, RNG&) {
@@ -104,9 +115,9 @@ struct NumberRange
     const char* letters;
     double min, max;
 };
-const NumberRange numberRanges[] = { { "gain", 0, 100 },   { "gamma", 0.01, 100 }, { "offset", -255, 255 },
-                                     { "noise", 0, 255 },  { "blur", 0.1, 100 },   { "jpeg", 0, 100 },
-                                     { "dy", -1000, 1000 } };
+const NumberRange numberRanges[] = { { "gain", 0, 100 },  { "gamma", 0.01, 100 }, { "offset", -255, 255 },
+                                     { "noise", 0, 255 }, { "defects", 0, 100 },  { "blur", 0.1, 100 },
+                                     { "jpeg", 0, 100 },  { "dy", -1000, 1000 } };
 
 //! The case of a name, without it; the number is what follows the name's letters.
 bool makeCase(const String& letters, double number, CameraCase& made)
@@ -124,6 +135,10 @@ bool makeCase(const String& letters, double number, CameraCase& made)
         made.right = vignette;
     else if (letters == "noise")
         made.left = made.right = addNoise(number);
+    else if (letters == "defects")
+        made.left = made.right = defects(number);
+    else if (letters == "linear")
+        made.left = made.right = changeLevels([](double value) { return 255 * std::pow(value / 255, 2.2); });
     else if (letters == "dark")
         made.left = made.right = darken;
     else if (letters == "blur")
@@ -144,7 +159,7 @@ bool makeCase(const String& letters, double number, CameraCase& made)
 } // namespace
 
 const char* const ALL_CASES =
-    "clean,gain.7,gain.5,gamma1.5,offset30,vignette,noise2,noise5,noise15,dark,blur1.5,jpeg30,"
+    "clean,gain.7,gain.5,gamma1.5,offset30,vignette,noise2,noise5,noise15,defects.5,dark,linear,blur1.5,jpeg30,"
     "dy.5,dy1,dy2,dy-3,shear,stretch";
 
 std::vector<CameraCase> selectCases(const String& option, const String& list)

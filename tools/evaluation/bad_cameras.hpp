@@ -45,7 +45,8 @@ other number, too.
 - gain.7, gain.5: the right image times this; gamma1.5: its gamma; offset30: added to it
 - vignette: the right image, by 1 - 0.35 r^2, r being 1 at the middles of the borders
 - noise2, noise5, noise15: Gaussian noise of this standard deviation in both images
-- dark: an eighth of the light, and noise of standard deviation 2, in both
+- defects.5: so many percent of the pixels of both images are black or white
+- dark: an eighth of the light, and noise of standard deviation 2, in both; linear: gamma 2.2 in both, as of raw images
 - blur1.5: the right image by a Gaussian of this standard deviation in pixels; jpeg30: both images by this quality
 - dy.5, dy1, dy2, dy-3: the right image so many rows lower
 - shear: the right image's rows, by 0.3 degrees; stretch: moved by 0.7 rows, and by 3 and 4 thousandths of x and y
