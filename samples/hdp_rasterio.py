@@ -13,9 +13,9 @@ usage:
 LEFT and RIGHT are of one size, of any number of columns, in formats of GDAL: 8 bit, 16 bit or float; of more bands
 than one, 8 bit has the first three, all others the first. What a raster declares as no data has no disparity and no
 influence. OUT is a GeoTIFF of floats, NaN = none, with the coordinates of the left raster, its ground control points
-and its rational polynomials; of the window alone, if there is one. Tiles are matched with one model of the pair, found in its overviews, so that there are no seams, and so
-is the range of disparities if --num-disparities is 0; memory is that of a tile. On Debian: apt install
-python3-rasterio python3-opencv
+and its rational polynomials; of the window alone, if there is one. Tiles are matched with one model of the pair, found
+in its overviews, so that there are no seams, and so is the range of disparities if --num-disparities is 0; memory is
+that of a tile. On Debian: apt install python3-rasterio python3-opencv
 '''
 
 import argparse

@@ -182,14 +182,20 @@ void findMatch(const Mat& left, const Mat& right, const SearchWindows& windows, 
 const int fractionBits = CornerMatching::fractionBits, fractions = 1 << fractionBits;
 const Point windowCentre(CornerMatching::trackWidth / 2, CornerMatching::trackHeight / 2);
 
-//! The mean of (L - gain * R)^2 over n pixels, both without their means and of equal variance; negative if one has none
+//! The mean of (L - gain * R)^2 over n pixels, both without their means: 2 (variance - covariance), as the gain makes
+//! their variances equal. Rounding may make it less than 0. Variance and covariance are n^2 times theirs.
+double meanSquareDifference(double variance, double gain, double covariance, int n)
+{
+    return std::max(2 * (variance - gain * covariance) / ((double)n * n), 0.);
+}
+
+//! The same of rows; negative if one of both has no contrast
 double meanSquareDifference(const RowSums& sums, int n)
 {
     const double l = sums.l, r = sums.r, variance = (double)sums.ll * n - l * l, ofRight = (double)sums.rr * n - r * r;
     if (variance <= 0 || ofRight <= 0)
         return -1;
-    const double covariance = (double)sums.lr * n - l * r;
-    return std::max(2 * (variance - std::sqrt(variance / ofRight) * covariance) / ((double)n * n), 0.);
+    return meanSquareDifference(variance, std::sqrt(variance / ofRight), (double)sums.lr * n - l * r, n);
 }
 
 //! The method of Lucas and Kanade: moves a window of the right image until it fits the left one, both of equal mean and
@@ -231,9 +237,7 @@ void track(const Mat& left, const Mat& right, CornerMatch& match)
         if (rightVariance <= 0)
             return;
         const double gain = std::sqrt(variance / rightVariance);
-        // The mean of (L - gain * R)^2, both without their means: 2 (variance - covariance), as their variances are
-        // equal then. Rounding may make it less than 0.
-        residual = std::max(2 * (variance - gain * ((double)other.lr * n - sum * other.r)) / ((double)n * n), 0.);
+        residual = meanSquareDifference(variance, gain, (double)other.lr * n - sum * other.r, n);
         if (iteration == iterations)
             break;
         // Sums of the gradient times (gain * R - L), both without their means

@@ -190,7 +190,7 @@ void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         ++finestLayer;
 
     // Noise and other light may leave more to be seen on a coarse layer than on the image: the most certain fit counts.
-    std::vector<CornerMatch> matches = coarse.matches;
+    std::vector<CornerMatch> matches = coarse.matches, measured; // those of the last layer that tells
     RowModel best;
     MeanSquares ofBest = { 0, DBL_MAX };
     for (int layer = coarse.layer;; --layer)
@@ -204,8 +204,8 @@ void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         const auto distance = [&](const RowMove& move) { return move.distanceFrom(fit.coefficients); };
         const double deviation = deviationOfMedian * medianOf(moves, distance), own = ownDeviation * (1 << layer);
         findings.rowError = std::sqrt(deviation * deviation + own * own); // not by std::hypot(), either
-        findings.noise.deviation = noiseOf(coarse.left[layer], coarse.right[layer], matches) / greyScale;
         findings.noise.layer = layer;
+        measured = matches;
         if (ofFit.deviation < ofBest.deviation)
         {
             ofBest = ofFit;
@@ -216,6 +216,9 @@ void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, R
         enterFinerLayer(fitted, layer, size, matches);
         trackCornerMatches(coarse.left[layer - 1], coarse.right[layer - 1], matches);
     }
+    const int layer = findings.noise.layer;
+    if (!measured.empty())
+        findings.noise.deviation = noiseOf(coarse.left[layer], coarse.right[layer], measured) / greyScale;
     if (ofBest.deviation == DBL_MAX || maxMoveAtCorners(best, size) > maxOffset)
         return;
     findings.rows = best;
