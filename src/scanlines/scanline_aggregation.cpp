@@ -23,8 +23,8 @@ HDP_DISPATCH(aggregateStripe)
 void ScanlineScratch::Windows::prepare(size_t pairs)
 {
     const size_t columns = pairs + 2 * margin;
-    for (std::vector<uchar>* stored : { &priors, &intoSide, &intoNext })
-        stored->resize(columns * CandidateWindow::candidates);
+    for (std::vector<uchar>* ofCandidates : { &priors, &intoSide, &intoNext })
+        ofCandidates->resize(columns * CandidateWindow::candidates);
     isContiguous.assign(columns, 0);
     small.resize(columns + 16); // some more to read
     for (int run = 0; run < CandidateWindow::runs; ++run)
