@@ -61,6 +61,8 @@ void defFields(py::class_<PairModel>& type)
     type.def_readwrite("black", &PairModel::black,
                        "level of float32 that is matched as 0 of uint16; 0 for other depths");
     type.def_readwrite("white", &PairModel::white, "level of float32 that is matched as 65535, >= black");
+    type.def_readwrite("borderLevel", &PairModel::borderLevel,
+                       "level that ends black borders of the images, which are no data, 0 to 65535; 0: there are none");
     type.def_readwrite("bits", &PairModel::bits, "that levels of uint16 have: 8 to 16. For uint8 8");
     type.def_readwrite("brightness", &PairModel::brightness,
                        "what a dark pair is brightened by, for COST_CENSUS: 1..4");

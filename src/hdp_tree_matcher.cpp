@@ -84,8 +84,8 @@ public:
         result_.isMatched = true;
         result_.model = pairPlan.given.isGiven
                             ? pairModel_
-                            : toPairModel(pairPlan.pyramids, left.size(), left.depth(), pairPlan.numDisparities,
-                                          pair_.floats, pyramids_.levels, result_.findings);
+                            : toPairModel(pairPlan.pyramids, left.size(), left.depth(), pairPlan.numDisparities, pair_,
+                                          pyramids_.levels, result_.findings);
     }
 
     // cv::StereoMatcher
@@ -280,15 +280,11 @@ private:
     //! The images and their masks, what is missing filled, in pair_
     void completeImages(const Mat& left, const Mat& right)
     {
-        const FloatLevels given = { pairModel_.black, pairModel_.white };
-        const auto complete = [&] {
+        const GivenPixels given = toGivenPixels(pairModel_);
+        clock_.run("missing pixels", [&] {
             completePair(left, right, inputs_.leftMask, inputs_.rightMask, pairModel_.empty() ? nullptr : &given,
                          pair_);
-        };
-        if (inputs_.hasMasks() || left.depth() == CV_32F)
-            clock_.run("missing pixels", complete);
-        else
-            complete(); // nothing is to be done
+        });
     }
 
     //! The parameters with the range that is found in the pair

@@ -247,8 +247,7 @@ private:
     //! residual: of the winners
     void fillOcclusions(const Mat& residual)
     {
-        clock_.run("occlusions",
-                   [&] { fillOccluded(result_.winners, residual, in_.images.right, in_.images.masks.right); });
+        clock_.run("occlusions", [&] { fillOccluded(result_.winners, residual, in_.images.masks); });
     }
 
     //! Scanlines over windows of candidates. The first pass takes them from the layer above, each other one from the

@@ -21,6 +21,12 @@ namespace opencv_test { namespace oracle {
 
 inline int clamped(int i, int size) { return std::max(0, std::min(i, size - 1)); }
 
+//! Whether a pixel has no data, and another one on its left in its row has some
+inline bool isMissing(const Mat& mask, Point p)
+{
+    return mask.at<uchar>(p) < 128 && p.x > 0 && countNonZero(mask(Rect(0, p.y, p.x, 1)) >= 128) > 0;
+}
+
 //! Grey levels in 8 bit
 inline Mat grey(const Mat& image)
 {
@@ -752,8 +758,8 @@ private:
     {
         if (masks_.isEmpty())
             return cost;
-        const bool hasMatch = masks_.right.at<uchar>(p.y, clamped(p.x - d, size_.width)) >= 128;
-        return masks_.left.at<uchar>(p) < 128 ? 0 : hasMatch ? cost : std::min(cost, +hdp::CostLimits::ordinary);
+        const bool isLimited = isMissing(masks_.right, Point(clamped(p.x - d, size_.width), p.y));
+        return masks_.left.at<uchar>(p) < 128 ? 0 : isLimited ? std::min(cost, +hdp::CostLimits::ordinary) : cost;
     }
 
     //! L(p, d), from that of the pixel before
@@ -947,9 +953,9 @@ private:
             for (int i = 0; i < 3; ++i)
             {
                 const Point q = Point(2 * x, 2 * y) + parts[i];
-                if (masks.isEmpty() || masks.left.at<uchar>(q) >= 128)
+                if (hasData(q))
                     bits += census.count(q.y, q.x, h, i % planes, planes);
-                if (!masks.isEmpty() && masks.right.at<uchar>(q.y, clamped(q.x - h, right.cols)) < 128)
+                if (!masks.isEmpty() && isMissing(masks.right, Point(clamped(q.x - h, right.cols), q.y)))
                     most = hdp::CostLimits::ordinary;
             }
             return std::min(bits, most);
@@ -959,14 +965,19 @@ private:
             {
                 const double above = upper.at<ushort>(clamped(y / 2, upper.rows), clamped(x / 2, upper.cols)) / 16.;
                 const int predicted = std::min(cvFloor(4 * above + 0.5), candidates);
+                const bool isPredicted = std::any_of(
+                    parts, parts + 3, [&](const Point& part) { return hasData(Point(2 * x, 2 * y) + part); });
+                const int maxPrior = isPredicted ? penalties.maxPrior : 0;
                 const Vec2w own = intervals.empty() ? Vec2w(0, (ushort)(candidates - 1)) : intervals.at<Vec2w>(y, x);
                 for (int h = own[0]; h <= own[1]; ++h)
                     all(y * weights.cols + x, h) =
-                        2 * ofBelow(y, x, h) +
-                        std::min(std::abs(h - predicted) / penalties.priorDistance, penalties.maxPrior);
+                        2 * ofBelow(y, x, h) + std::min(std::abs(h - predicted) / penalties.priorDistance, maxPrior);
             }
         return all;
     }
+
+    //! Of a pixel of the left image below
+    bool hasData(const Point& q) const { return masks.isEmpty() || masks.left.at<uchar>(q) >= 128; }
 
     //! E of a direction, from the pixel that is step away
     static Mat_<int> excess(const Mat_<int>& costs, const Mat& weights, const hdp::RangePenalties& penalties,

@@ -204,6 +204,20 @@ inline double badPixels(const Mat& disparity, const Mat& truth, const Mat& mask,
     return 100. * bad / cv::countNonZero(mask);
 }
 
+//! A BGR image as one of another type: grey, with four times the levels in CV_16UC1, or with alpha
+inline Mat ofType(const Mat& bgr, int type)
+{
+    Mat grey, image;
+    cv::cvtColor(bgr, grey, COLOR_BGR2GRAY);
+    if (type == CV_8UC4)
+        cv::cvtColor(bgr, image, COLOR_BGR2BGRA);
+    else if (CV_MAT_CN(type) == 3)
+        image = bgr.clone();
+    else
+        grey.convertTo(image, type, type == CV_16UC1 ? 4 : 1);
+    return image;
+}
+
 } // namespace opencv_test
 
 #endif

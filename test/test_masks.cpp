@@ -4,6 +4,7 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "matching_costs.hpp"
+#include "oracles.hpp"
 #include "synthetic_pair.hpp"
 #include "systems.hpp"
 #include "../src/cost/census_cost.hpp"
@@ -23,8 +24,8 @@ struct MaskedPair
         : scene(makeSyntheticPair(size, numDisparities, 3)), leftMask(size, CV_8UC1, Scalar(255)),
           rightMask(size, CV_8UC1, Scalar(7)) // any but 0
     {
-        left = converted(scene.left, type);
-        right = converted(scene.right, type);
+        left = ofType(scene.left, type);
+        right = ofType(scene.right, type);
         leftMask.rowRange(size.height - 20, size.height).setTo(0);
         rightMask.rowRange(size.height - 17, size.height).setTo(0);
         leftMask.colRange(0, 9).setTo(0);
@@ -38,19 +39,6 @@ struct MaskedPair
                 const int y = rng.uniform(0, size.height), x = rng.uniform(0, size.width);
                 mask->at<uchar>(y, x) = 0;
             }
-    }
-
-    static Mat converted(const Mat& bgr, int type)
-    {
-        Mat grey, image;
-        cv::cvtColor(bgr, grey, COLOR_BGR2GRAY);
-        if (type == CV_8UC4)
-            cv::cvtColor(bgr, image, COLOR_BGR2BGRA);
-        else if (CV_MAT_CN(type) == 3)
-            image = bgr.clone();
-        else
-            grey.convertTo(image, type, type == CV_16UC1 ? 4 : 1);
-        return image;
     }
 
     //! Other levels, brighter than any of the pair's, where there is no data
@@ -377,9 +365,9 @@ TEST(HDPStereo_Masks, costs_of_pixels_without_data)
                 for (int k = 0; k < lanes && first + k < numDisparities; ++k)
                 {
                     const int matched = std::max(x - first - k, 0);
-                    const float cost = masks.left.at<uchar>(y, x) < 128          ? 0
-                                       : masks.right.at<uchar>(y, matched) < 128 ? std::min(expected[k], 8.f)
-                                                                                 : expected[k];
+                    const float cost = masks.left.at<uchar>(y, x) < 128                    ? 0
+                                       : oracle::isMissing(masks.right, Point(matched, y)) ? std::min(expected[k], 8.f)
+                                                                                           : expected[k];
                     ASSERT_EQ(cost, costs[k]);
                     ASSERT_EQ(cost, bytes[k]);
                 }

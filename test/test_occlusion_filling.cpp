@@ -8,7 +8,8 @@
 namespace opencv_test { namespace {
 
 // In one row; whole disparities.
-Mat filled(const std::vector<int>& disparities, const std::vector<int>& residuals, const Mat& right = Mat())
+Mat filled(const std::vector<int>& disparities, const std::vector<int>& residuals,
+           const hdp::PairMasks& masks = hdp::PairMasks())
 {
     Mat disparity(1, (int)disparities.size(), CV_16UC1), residual(disparity.size(), CV_8UC1);
     for (int x = 0; x < disparity.cols; ++x)
@@ -16,7 +17,7 @@ Mat filled(const std::vector<int>& disparities, const std::vector<int>& residual
         disparity.at<ushort>(x) = (ushort)(16 * disparities[x]);
         residual.at<uchar>(x) = (uchar)residuals[x];
     }
-    hdp::fillOccluded(disparity, residual, right);
+    hdp::fillOccluded(disparity, residual, masks);
     return disparity / 16;
 }
 
@@ -93,12 +94,36 @@ TEST(HDPStereo_OcclusionFilling, what_a_nearer_surface_hides_is_not_visible)
     std::fill(residuals.begin(), residuals.begin() + blockEnd, 1);
     expectIdentical(Mat(1, width, CV_16UC1, Scalar(14)), filled(disparities, residuals));
 
-    // Four columns are left to the block: it is visible, unless they are black in the right image.
+    // Four columns are left to the block: it is visible, unless the right image has no data there.
     std::fill(disparities.begin() + blockEnd, disparities.end(), 12);
-    Mat right(1, width, CV_16UC1, Scalar(400));
-    EXPECT_EQ(0, filled(disparities, residuals, right).at<ushort>(0));
-    right.colRange(0, 4).setTo(Scalar(0));
-    expectIdentical(Mat(1, width, CV_16UC1, Scalar(12)), filled(disparities, residuals, right));
+    const Mat all(1, width, CV_8UC1, Scalar(255));
+    hdp::PairMasks masks = { all, all.clone() };
+    EXPECT_EQ(0, filled(disparities, residuals, masks).at<ushort>(0));
+    masks.right.colRange(0, 4).setTo(Scalar(0));
+    expectIdentical(Mat(1, width, CV_16UC1, Scalar(12)), filled(disparities, residuals, masks));
+}
+
+//! Columns that neither image shows on its left are as if they were cut off.
+TEST(HDPStereo_OcclusionFilling, rows_begin_with_data)
+{
+    RNG rng(31);
+    const int height = 3;
+    for (int round = 0; round < 100; ++round)
+    {
+        const int width = rng.uniform(20, 80), blank = rng.uniform(1, width);
+        Mat disparity = randomImage(rng, Size(width, height), CV_16UC1, 12 * 16),
+            part = disparity.colRange(blank, width);
+        const Mat residual = randomImage(rng, disparity.size(), CV_8UC1, 9),
+                  before = disparity.colRange(0, blank).clone();
+        Mat expected = part.clone();
+        hdp::fillOccluded(expected, residual.colRange(blank, width).clone());
+        hdp::PairMasks masks = { Mat(disparity.size(), CV_8UC1, Scalar(255)), Mat() };
+        masks.left.colRange(0, blank).setTo(Scalar(0));
+        masks.right = masks.left.clone();
+        hdp::fillOccluded(disparity, residual, masks);
+        expectIdentical(expected, part);
+        expectIdentical(before, disparity.colRange(0, blank));
+    }
 }
 
 //! On the left of the right image's border a surface goes on, half as steep.

@@ -77,6 +77,7 @@ PairModel makeUnusualModel()
     model.noiseLayer = 1;
     model.black = -1. / 3;
     model.white = 7.25;
+    model.borderLevel = 17. / 3;
     model.bits = 12;
     model.brightness = 2.59375;
     model.isGrey = true;
@@ -198,7 +199,7 @@ TEST(HDPStereo_PairModel, levels_of_a_tile)
             levels.rightBlocks.begin = 6;
             levels.leftBlocks.step = levels.rightBlocks.step = 5;
             hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, pyramids, whole, &levels);
-            model = hdp::toPairModel(plan, size, CV_8U, 16, hdp::FloatLevels(), levels, hdp::PairFindings());
+            model = hdp::toPairModel(plan, size, CV_8U, 16, hdp::CompletePair(), levels, hdp::PairFindings());
         }
         const Rect tile(84, 40, 160, 120);
         const hdp::GivenPair given = hdp::toGivenPair(model.tile(tile), plan, tile.size());
@@ -378,7 +379,7 @@ TEST(HDPStereo_PairModel, files)
         expectRejected([&] { readFrom(without); }, name);
         ++fields;
     }
-    EXPECT_EQ(26, fields);
+    EXPECT_EQ(27, fields);
 }
 
 TEST(HDPStereo_PairModel, bad_values)

@@ -6,6 +6,8 @@
 
 #include "opencv2/core.hpp"
 
+#include <algorithm>
+
 namespace cv { namespace stereo { namespace hdp {
 
 /** Which pixels of a pair have data, CV_8UC1 each: 255 where, else 0, and on the layers above means of these. Both are
@@ -22,6 +24,13 @@ inline bool hasData(uchar share) { return share >= 128; }
 
 //! hasData() of all pixels of a mask: CV_8UC1, 255 where, else 0
 inline Mat pixelsWithData(const Mat& mask) { return mask >= 128; }
+
+//! The number of columns of a mask's row without data, from the left border on
+inline int countBlank(const Mat& mask, int y)
+{
+    const uchar* const row = mask.ptr(y);
+    return (int)(std::find_if(row, row + mask.cols, hasData) - row);
+}
 
 }}} // namespace cv::stereo::hdp
 

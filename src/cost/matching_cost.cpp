@@ -13,14 +13,19 @@ void CostLimits::prepare(const PairMasks& masks, int numDisparities)
     const Mat &left = masks.left, &right = masks.right;
     if (left.empty())
     {
-        left_.release();
-        right_.release();
+        *this = CostLimits();
         return;
     }
     width_ = left.cols;
     copyMakeBorder(pixelsWithData(left), left_, 0, 0, margin, margin, BORDER_REPLICATE);
-    Mat mirrored;
-    flip(max(pixelsWithData(right), +ordinary), mirrored, 1);
+    Mat limits = max(pixelsWithData(right), +ordinary), mirrored;
+    blank_.resize(right.rows);
+    for (int y = 0; y < right.rows; ++y)
+    {
+        blank_[y] = countBlank(right, y);
+        limits.row(y).colRange(0, blank_[y]).setTo(Scalar(none));
+    }
+    flip(limits, mirrored, 1);
     copyMakeBorder(mirrored, right_, 0, 0, margin, numDisparities + costPadding + margin, BORDER_REPLICATE);
 }
 
@@ -73,7 +78,10 @@ void CostLimits::hideUnmatched(int y, const ushort* disparity, uchar* visible) c
         return;
     const uchar* const limit = right(y) + width_ - 1;
     for (int x = 0; x < width_; ++x)
-        visible[x] = limit[wholeDisparity(disparity[x]) - x] == none ? visible[x] : 0;
+    {
+        const int whole = wholeDisparity(disparity[x]);
+        visible[x] = x - whole >= blank(y) && limit[whole - x] == none ? visible[x] : 0;
+    }
 }
 
 void MatchingCost::ofDisparities(const Mat& disparity, Mat& costs) const

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_OCCLUSION_FILLING_HPP
 #define OPENCV_HDPSTEREO_OCCLUSION_FILLING_HPP
 
-#include "opencv2/core.hpp"
+#include "../base/mask.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -34,17 +34,15 @@ shown are
   winners of their columns, that
   - begins in the first three columns of the right image;
   - or has at most one winner among seven pixels before it;
-  - or is nearer than what is before it, of which at most one pixel in eight is visible in columns that are not blank,
-    and three quarters map to columns of nearer pixels, or to none.
+  - or is nearer than what is before it, of which at most one pixel in eight is visible, and three quarters map to
+    columns of nearer pixels, or to none.
 
-The surface at the border is continued to the left border, half as steep as its first columns are.
+The surface at the border is continued to the left border, half as steep as its first columns are. A row of an image
+begins with its first pixel that has data.
 @param disparity CV_16UC1, a disparity map; changed.
 @param residual Matching costs, CV_8UC1.
-@param right Grey levels of the right image, CV_16UC1, see greyLevels(): columns on its left are blank that are black,
-as rectification leaves them. None if empty.
-@param rightMask If not empty, the mask of the right image: columns on its left without data are blank instead. */
-CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual, const Mat& right = Mat(),
-                             const Mat& rightMask = Mat());
+@param masks Of both images, or empty. */
+CV_EXPORTS void fillOccluded(Mat& disparity, const Mat& residual, const PairMasks& masks = PairMasks());
 
 }}} // namespace cv::stereo::hdp
 

@@ -10,8 +10,9 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! A row of fillOccluded(). blank: columns of the right image, from its left border on, that show nothing
-void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int blank, OcclusionScratch& scratch);
+//! A row of fillOccluded(), from its first pixel with data on. shift: that many columns farther on in the left image
+//! than in the right one
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -53,7 +54,7 @@ struct RowLimits
 };
 
 //! Maps the pixels of a row to the right image: OcclusionScratch::columns and keys.
-inline RowLimits mapToRight(const ushort* disparity, const uchar* residual, int width, int blank,
+inline RowLimits mapToRight(const ushort* disparity, const uchar* residual, int width, int shift,
                             OcclusionScratch& scratch)
 {
     int* columns = scratch.columns.data();
@@ -61,12 +62,12 @@ inline RowLimits mapToRight(const ushort* disparity, const uchar* residual, int 
     int border = 0, hiding = 0, maxDisparity = 0;
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
-        const int column = std::max(x + 1 - wholeDisparity(disparity[x]), 0);
+        const int column = std::max(x + 1 + shift - wholeDisparity(disparity[x]), 0);
         columns[x] = column;
         maxDisparity = std::max(maxDisparity, (int)disparity[x]);
         border = std::max(border, column <= nearBorder ? x + 1 : 0);
         // The columns that pixels on the left of x can have: of the visible ones, and of those that are not hidden
-        const bool leavesFew = pixelsPerVisible * (column - blank) <= (1 + pixelsPerVisible / pixelsPerShown) * x;
+        const bool leavesFew = pixelsPerVisible * column <= (1 + pixelsPerVisible / pixelsPerShown) * x;
         hiding = std::max(hiding, leavesFew ? x + 1 : 0);
         keys[x] = ((unsigned)residual[x] << 16) + (0xffffu - disparity[x]); // the nearer one, if equal
     }
@@ -119,8 +120,7 @@ inline int findBorder(const ushort* disparity, const OcclusionScratch& scratch, 
 
 //! The same if matches by chance are the best ones of their columns: at the last surface that hides what is on its
 //! left, whatever the residuals are. border: what findBorder() has found; limit: RowLimits::hiding
-inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int width, int blank, int border,
-                             int limit)
+inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int width, int border, int limit)
 {
     const int* columns = scratch.columns.data();
     int last = limit - 1;
@@ -147,7 +147,7 @@ inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch,
                 border = x;
         }
         hiddenBefore += isHidden(x);
-        visibleBefore += !isHidden(x) && columns[x] > blank;
+        visibleBefore += !isHidden(x);
     }
     return border;
 }
@@ -207,13 +207,13 @@ inline void fillGaps(ushort* disparity, const uchar* isShown, int width, int max
 
 } // namespace
 
-void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int blank, OcclusionScratch& scratch)
+void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch)
 {
-    const RowLimits limits = mapToRight(disparity, residual, width, blank, scratch);
+    const RowLimits limits = mapToRight(disparity, residual, width, shift, scratch);
     markBestMatches(disparity, width, scratch);
     const int border = findBorder(disparity, scratch, width, limits.border);
     uchar* const isShown = scratch.isBest.data();
-    std::fill(isShown, isShown + findHidingSurface(disparity, scratch, width, blank, border, limits.hiding), (uchar)0);
+    std::fill(isShown, isShown + findHidingSurface(disparity, scratch, width, border, limits.hiding), (uchar)0);
     fillGaps(disparity, isShown, width, limits.maxDisparity);
 }
 

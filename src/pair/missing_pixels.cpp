@@ -100,19 +100,29 @@ void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, M
 } // namespace
 
 void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
-                  const FloatLevels* given, CompletePair& complete)
+                  const GivenPixels* given, CompletePair& complete)
 {
     complete.left = left;
     complete.right = right;
     complete.masks = PairMasks();
     complete.floats = FloatLevels();
-    const bool isFloat = left.depth() == CV_32F;
-    if (!isFloat && leftMask.empty() && rightMask.empty())
-        return;
-    const PairMasks masks = { maskOf(left, leftMask), maskOf(right, rightMask) };
+    complete.borderLevel = 0;
+    const bool isFloat = left.depth() == CV_32F, isMasked = !leftMask.empty() || !rightMask.empty();
+    PairMasks masks;
+    if (isFloat || isMasked)
+        masks = { maskOf(left, leftMask), maskOf(right, rightMask) };
+    else
+    {
+        const double level = complete.borderLevel = given ? given->borderLevel : findBorderLevel(left, right);
+        if (level == 0)
+            return;
+        const ImageSides sides = given ? given->sides : ImageSides();
+        maskBorders(left, level, sides, masks.left);
+        maskBorders(right, level, sides, masks.right);
+    }
     if (isFloat)
     {
-        complete.floats = given ? *given : findLevels(left, right, masks);
+        complete.floats = given ? given->floats : findLevels(left, right, masks);
         wholeLevels(left, masks.left, complete.floats, complete.left);
         wholeLevels(right, masks.right, complete.floats, complete.right);
     }

@@ -53,6 +53,7 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("noiseLayer", m.noiseLayer, m.noiseLayer >= 0 && m.noiseLayer <= 15, "0..15");
     visit("black", m.black, std::isfinite(m.black), "finite");
     visit("white", m.white, std::isfinite(m.white) && m.white >= m.black, "finite and >= black");
+    visit("borderLevel", m.borderLevel, m.borderLevel >= 0 && m.borderLevel <= USHRT_MAX, "0..65535");
     visit("bits", m.bits, m.bits >= 8 && m.bits <= (m.depth == CV_8U ? 8 : 16), "8..16, and 8 for CV_8U");
     visit("brightness", m.brightness, m.brightness >= 1 && m.brightness <= 4, "1..4");
     visit("isGrey", m.isGrey, true, "");
@@ -72,8 +73,8 @@ int blockStart(int column) { return (column % BlockGrid::side + BlockGrid::side)
 PairModel::PairModel()
     : width(0), height(0), depth(CV_8U), x(0), y(0), tileWidth(0), tileHeight(0), minDisparity(0), numDisparities(0),
       addedColumns(0), rows(RowModel::terms, 0.), areRowsMoved(false), light(LightModel::terms, 0.),
-      isLightChanged(false), rowError(0), noise(0), noiseLayer(0), black(0), white(0), bits(8), brightness(1),
-      isGrey(false), leftBlockStart(0), leftBlockStep(0), rightBlockStart(0), rightBlockStep(0)
+      isLightChanged(false), rowError(0), noise(0), noiseLayer(0), black(0), white(0), borderLevel(0), bits(8),
+      brightness(1), isGrey(false), leftBlockStart(0), leftBlockStep(0), rightBlockStart(0), rightBlockStep(0)
 {
     light[LightModel::gain] = 1; // changes nothing
 }
@@ -235,7 +236,17 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     return given;
 }
 
-PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities, const FloatLevels& floats,
+GivenPixels toGivenPixels(const PairModel& model)
+{
+    GivenPixels given = { { model.black, model.white }, model.borderLevel, ImageSides() };
+    given.sides.left = model.x == 0;
+    given.sides.above = model.y == 0;
+    given.sides.right = model.x + model.tileWidth == model.width;
+    given.sides.below = model.y + model.tileHeight == model.height;
+    return given;
+}
+
+PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities, const CompletePair& pair,
                       const LevelFindings& levels, const PairFindings& findings)
 {
     PairModel model;
@@ -255,8 +266,9 @@ PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisp
     model.rowError = findings.rowError;
     model.noise = findings.noise.deviation / brightness;
     model.noiseLayer = findings.noise.layer;
-    model.black = floats.black;
-    model.white = floats.white;
+    model.black = pair.floats.black;
+    model.white = pair.floats.white;
+    model.borderLevel = pair.borderLevel;
     model.bits = levels.bits;
     model.brightness = levels.brightness;
     model.isGrey = levels.isGrey;

@@ -21,10 +21,12 @@ void checkPairModelOf(const PairModel& model, Size size, int type, int layers);
 //! From a model to what it says of a pair; if it is empty, that is the frame alone of images of this size
 CV_EXPORTS GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size);
 
-//! From what was found in a pair to a model. size, depth and numDisparities are those of its images; floats, too, if
-//! these are of floats.
+//! What a model that is not empty says of the pixels of its images, or of its tile
+GivenPixels toGivenPixels(const PairModel& model);
+
+//! From what was found in a pair to a model. size, depth and numDisparities are those of its images.
 CV_EXPORTS PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities,
-                                 const FloatLevels& floats, const LevelFindings& levels, const PairFindings& findings);
+                                 const CompletePair& pair, const LevelFindings& levels, const PairFindings& findings);
 
 }}} // namespace cv::stereo::hdp
 

@@ -89,8 +89,8 @@ C(p, h) = 2 (b_0((2 x, 2 y), h) + b_1((2 x + 1, 2 y + 1), h) + b_2((2 x + 1, 2 y
           + min(floor(|h - predicted| / priorDistance), maxPrior),
 
 predicted being the candidate next to what the layer above has found; 255 if h is not in the pixel's interval. Pixels
-below without data limit the bits, see CostLimits: of the left image each its own, of the right one their sum. With
-E(p, h) of a direction and q the pixel before p,
+below without data limit the bits, see CostLimits: of the left image each its own, of the right one their sum. If none
+of the left image's three has data, nothing is predicted. With E(p, h) of a direction and q the pixel before p,
 
 L(p, h) = C(p, h) + min(E(q, h), E(q, h - 1) + small, E(q, h + 1) + small, large(p, q)),
 E(p, h) = L(p, h) - min_k L(p, k),

@@ -162,21 +162,22 @@ private:
         }
     }
 
-    //! Where some pixels have no data
+    //! Where some pixels have no data: without any, nothing is predicted either.
     void addLimitedBits(const Row& row, int x, Pixel& costs) const
     {
         for (int k = 0; k < lanes_.vectors(); ++k)
         {
             const int at = k * Lanes::vector;
-            ByteLanes bits = ByteLanes::repeat(0), limit = ByteLanes::repeat(CostLimits::none);
+            ByteLanes bits = ByteLanes::repeat(0), haveData = bits, limit = ByteLanes::repeat(CostLimits::none);
             for (int i = 0; i < parts; ++i)
             {
                 const ByteLanes hasData = ByteLanes::repeat(row.leftLimits[i][2 * x]);
+                haveData = haveData | hasData;
                 bits = bits + (differences(row, i, x, at).countBits() & hasData);
                 limit = limit.min(ByteLanes::load(row.rightLimits[i] - 2 * x + at));
             }
             bits = bits.min(limit);
-            costs.of[k] = costs.of[k] + (bits + bits);
+            costs.of[k] = (costs.of[k] & haveData) + (bits + bits);
         }
     }
 

@@ -144,7 +144,7 @@ public:
     {
         REASON_MATCHED = 0,  //!< the right image shows it
         REASON_OCCLUDED = 1, //!< something nearer hides it in the right image; it has the disparity of what is beside
-        REASON_OUTSIDE = 2,  //!< the right image ends before; likewise
+        REASON_OUTSIDE = 2,  //!< the right image, or what is not masked of its row, begins after it; likewise
         REASON_MASKED = 3,   //!< it is masked, or its range has nothing in common with the matcher's
         REASON_UNSTABLE = 4, //!< rejected by the left-right check, see setDisp12MaxDiff()
         REASON_SPECKLE = 5,  //!< rejected by the filter for speckles, see setSpeckleWindowSize()
@@ -545,6 +545,10 @@ public:
     They get minDisparity - 1, the confidence 0, and have no influence: their levels may be any, and neither the other
     disparities nor the findings change. What only one of the images shows continues the surface beside it. The masks
     stay until others are set. They are no parameters: files do not have them.
+
+    Without masks, black borders of images of whole numbers, as rectification leaves them, are no data either: what is
+    black from a corner of the image on along its sides, if it ends at once, and is more than a hundredth of an image.
+    Masks of which no pixel is 0 let it be matched.
     @param leftMask CV_8UC1 of the images' size, 0 where the left image has no data; copied. Empty: it has everywhere.
     @param rightMask The same of the right image.
     @throws cv::Exception if a mask is of another type; both are unchanged.

@@ -91,7 +91,10 @@ struct CV_EXPORTS_W_SIMPLE PairModel
 
     CV_PROP_RW double black; //!< level of CV_32F that is matched as 0 of CV_16U: finite; 0 for other depths
     CV_PROP_RW double white; //!< level of CV_32F that is matched as 65535: finite, >= black
-    CV_PROP_RW int bits;     //!< that levels of CV_16U have: 8..16. For CV_8U 8
+    //! Level that ends black borders of the images, as rectification leaves them, which are no data, see
+    //! HDPTreeMatcher::setMasks(): 0..65535; 0: there are none
+    CV_PROP_RW double borderLevel;
+    CV_PROP_RW int bits; //!< that levels of CV_16U have: 8..16. For CV_8U 8
     //! What the dark levels of a dark pair are brightened by, for HDPTreeMatcher::COST_CENSUS: 1..4. From 1 to 2 and
     //! from 2 to 4, fewer and fewer of the bright levels are compressed.
     CV_PROP_RW double brightness;

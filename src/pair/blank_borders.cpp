@@ -1,0 +1,179 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#include "../precomp.hpp"
+#include "blank_borders.hpp"
+
+namespace cv { namespace stereo { namespace hdp {
+
+namespace {
+
+HDP_TUNABLE(int, maxBlack, 2, "levels of 8 bits", "of borders, as JPEG leaves them: more takes dark scenes for them");
+HDP_TUNABLE(double, shareOfMean, 0.25, "share of the mean",
+            "that ends a border: more takes shadows for it, less leaves what JPEG blurs at its end");
+HDP_TUNABLE(int, mostMixed, 10, "pixels", "between black and that level, as in a block of JPEG: shadows have more");
+HDP_TUNABLE(int, mostStep, 4, "pixels", "between the ends of two rows: outlines of black things have larger ones");
+HDP_TUNABLE(double, minRegular, 0.75, "share of the rows", "of a border that end so: others end at dark things");
+HDP_TUNABLE(int, sidesPerBorder, 4, "lengths of a side",
+            "of which one is in a border, from a corner on: less takes black things in corners for it");
+HDP_TUNABLE(int, pixelsPerBorder, 100, "pixels", "of an image, of which one is in borders: fewer do no harm");
+HDP_TUNABLE(double, mostBlank, 0.5, "share of an image", "that is in borders: more is a dark scene");
+HDP_TUNABLE(int, minSide, 32, "pixels", "of an image: of fewer, a percent is single pixels");
+
+//! The highest level that is black
+int blackOf(const Mat& image) { return image.depth() == CV_8U ? maxBlack : 0; }
+
+//! Of the channels of a pixel
+template <typename T> T brightest(const Mat& image, const Point& p)
+{
+    const int channels = image.channels();
+    const T* const pixel = image.ptr<T>(p.y) + (ptrdiff_t)p.x * channels;
+    return channels == 1 ? *pixel : std::max(pixel[0], std::max(pixel[1], pixel[2]));
+}
+
+//! The border of an image that begins at one of its sides, row by row or column by column
+template <typename T> class SideBorder
+{
+public:
+    /** @param first,along,count The pixels of the side.
+    @param inwards,length Those of a row or column, from there to the opposite side.
+    @param isCut Whether the image goes on there. */
+    SideBorder(const Mat& image, double level, Point first, Point along, int count, Point inwards, int length,
+               bool isCut)
+        : image_(image), level_(level), first_(first), along_(along), inwards_(inwards), length_(length), isCut_(isCut),
+          lines_(count)
+    {
+        for (int i = 0; i < count; ++i)
+            lines_[i] = findLine(first + along * i);
+        const int fromFirst = countBorder(lines_.begin(), lines_.end()),
+                  fromLast = countBorder(lines_.rbegin(), lines_.rend());
+        std::fill(lines_.begin() + fromFirst, lines_.end() - std::min(fromLast, count - fromFirst), Line());
+    }
+
+    //! Masks rows or columns up to the ends that they have.
+    void mask(Mat& mask) const
+    {
+        for (size_t i = 0; i < lines_.size(); ++i)
+            for (int k = 0; k < lines_[i].blank && !lines_[i].isOpen; ++k)
+                mask.at<uchar>(first_ + along_ * (int)i + inwards_ * k) = 0;
+    }
+
+    //! Whether a row or column is black up to the opposite side. Where the border ends, the others tell.
+    bool isOpen(int i) const { return lines_[i].isOpen; }
+
+private:
+    //! A row or column
+    struct Line
+    {
+        int blank; // pixels, with those that are mixed
+        bool isSharp, isOpen;
+    };
+
+    Line findLine(const Point& side) const
+    {
+        const auto brightness = [&](int i) { return (int)brightest<T>(image_, side + inwards_ * i); };
+        int black = 0;
+        while (black < length_ && brightness(black) <= blackOf(image_))
+            ++black;
+        if (black == 0 || black == length_)
+            return { black, true, black > 0 && !isCut_ };
+        const int last = std::min(black + mostMixed, length_ - 1);
+        int end = black;
+        while (end < last && brightness(end) < level_)
+            ++end;
+        return brightness(end) >= level_ ? Line({ end + 1, true, false }) : Line({ black, false, false });
+    }
+
+    //! From a corner on, a border goes to the first line that shows something. Too short a one, or one whose lines do
+    //! not end sharply in a line, is a part of the scene.
+    template <typename Iterator> int countBorder(Iterator begin, Iterator end) const
+    {
+        int count = 0, ending = 0, regular = 0, before = begin->blank;
+        for (Iterator line = begin; line != end && line->blank > 0; before = line->blank, ++line, ++count)
+        {
+            ending += !line->isOpen;
+            regular += !line->isOpen && line->isSharp && std::abs(line->blank - before) <= mostStep;
+        }
+        return ending * sidesPerBorder < (int)lines_.size() || regular < minRegular * ending ? 0 : count;
+    }
+
+    const Mat& image_;
+    const double level_;
+    const Point first_, along_, inwards_;
+    const int length_;
+    const bool isCut_;
+    std::vector<Line> lines_;
+};
+
+template <typename T> void maskBordersOf(const Mat& image, double level, const ImageSides& sides, Mat& mask)
+{
+    typedef SideBorder<T> Border;
+    const int width = image.cols, height = image.rows;
+    const Point x(1, 0), y(0, 1);
+    const Border left(image, level, Point(), y, height, x, width, !sides.right),
+        right(image, level, x * (width - 1), y, height, -x, width, !sides.left),
+        above(image, level, Point(), x, width, y, height, !sides.below),
+        below(image, level, y * (height - 1), x, width, -y, height, !sides.above);
+    const std::pair<bool, const Border*> borders[] = {
+        { sides.left, &left }, { sides.right, &right }, { sides.above, &above }, { sides.below, &below }
+    };
+    for (const auto& border : borders)
+        if (border.first)
+            border.second->mask(mask);
+    // Where black rows cross black columns, in a corner
+    for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width && (left.isOpen(row) || right.isOpen(row)); ++column)
+            if (above.isOpen(column) || below.isOpen(column))
+                mask.at<uchar>(row, column) = 0;
+}
+
+//! Whether a corner is black: no border is without one.
+bool hasBlackCorner(const Mat& image)
+{
+    for (int x : { 0, image.cols - 1 })
+        for (int y : { 0, image.rows - 1 })
+        {
+            const Point p(x, y);
+            const int level = image.depth() == CV_8U ? +brightest<uchar>(image, p) : +brightest<ushort>(image, p);
+            if (level <= blackOf(image))
+                return true;
+        }
+    return false;
+}
+
+//! Over all pixels, and red, green and blue
+double meanLevel(const Mat& image)
+{
+    const Scalar means = mean(image);
+    return image.channels() == 1 ? means[0] : (means[0] + means[1] + means[2]) / 3;
+}
+
+} // namespace
+
+double findBorderLevel(const Mat& left, const Mat& right)
+{
+    if (std::min(left.cols, left.rows) < minSide || (!hasBlackCorner(left) && !hasBlackCorner(right)))
+        return 0;
+    const double least = left.depth() == CV_8U ? 4 * maxBlack : 1;
+    const double level = std::max((meanLevel(left) + meanLevel(right)) / 2 * shareOfMean, least);
+    for (const Mat& image : { left, right })
+    {
+        Mat mask;
+        maskBorders(image, level, ImageSides(), mask);
+        const int blank = (int)mask.total() - countNonZero(mask);
+        const double total = (double)mask.total();
+        if (blank * (double)pixelsPerBorder > total && blank < mostBlank * total)
+            return level;
+    }
+    return 0;
+}
+
+void maskBorders(const Mat& image, double level, const ImageSides& sides, Mat& mask)
+{
+    mask.create(image.size(), CV_8U);
+    mask.setTo(Scalar(255));
+    const auto maskOfDepth = image.depth() == CV_8U ? maskBordersOf<uchar> : maskBordersOf<ushort>;
+    maskOfDepth(image, level, sides, mask);
+}
+
+}}} // namespace cv::stereo::hdp
