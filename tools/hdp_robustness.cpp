@@ -16,6 +16,8 @@
 #include "evaluation/tables.hpp"
 #include "evaluation/tunables.hpp"
 
+#include "opencv2/imgproc.hpp"
+
 using namespace cv;
 using namespace hdp_tools;
 
@@ -51,6 +53,29 @@ static Table toTable(const String& set, Pair::Protocol protocol, size_t pairs, c
         table.addNumbers(means);
     }
     return table;
+}
+
+//! Judges the pixels that both images of a case show, but for two at the ends of what is blank, which resampling mixes
+//! from both.
+static void judgeShown(const CameraCase& made, Pair& pair)
+{
+    if (!made.shownLeft)
+        return;
+    const int mixed = 2;
+    Mat shown, right;
+    erode(made.shownLeft(pair.truth.size()), shown, Mat(), Point(-1, -1), mixed);
+    erode(made.shownRight(pair.truth.size()), right, Mat(), Point(-1, -1), mixed);
+    for (int y = 0; y < shown.rows; ++y)
+        for (int x = 0; x < shown.cols; ++x)
+        {
+            const float disparity = pair.truth.at<float>(y, x);
+            const double column = disparity == NO_DISPARITY ? -1. : x - (double)disparity;
+            if (!(column >= 0 && column < right.cols && right.at<uchar>(y, (int)column)))
+                shown.at<uchar>(y, x) = 0;
+        }
+    pair.judged = pair.judged & shown;
+    if (!pair.judgedNonOccluded.empty())
+        pair.judgedNonOccluded = pair.judgedNonOccluded & shown;
 }
 
 static int run(const CommandLineParser& parser)
@@ -100,12 +125,14 @@ static int run(const CommandLineParser& parser)
             {
                 RNG rng(s - first + 1); // every method gets the same noise
                 const Mat left = cases[i].left(pair.left, rng), right = cases[i].right(pair.right, rng);
+                Pair judged = pair;
+                judgeShown(cases[i], judged);
                 for (size_t m = 0; m < methods.size(); ++m)
                 {
                     const Ptr<StereoMatcher> matcher = methods[m].create(pair.disparities);
                     const std::array<Mat, 2> images = imagesFor(methods[m], left, right);
                     const Mat disparity = matchDensely(methods[m], *matcher, images[0], images[1]);
-                    scores[i][m].push_back(mainScore(scoreMap(disparity, pair), protocol));
+                    scores[i][m].push_back(mainScore(scoreMap(disparity, judged), protocol));
                 }
             }
             progress.step(scenes[s].title());

@@ -32,8 +32,8 @@ public:
     //! A row of the left image: 0 where a pixel has no data, else none. There are 32 more bytes to read before and
     //! behind it.
     const uchar* left(int y) const { return left_.ptr(y) + margin; }
-    //! A row of the right image, from right to left, as CensusCost::rightPlane(): ordinary where there is no data but on
-    //! the left of all, else none. Candidate d of pixel x is at [width - 1 - x + d].
+    //! A row of the right image, from right to left, as CensusCost::rightPlane(): ordinary where there is no data, but
+    //! on the left of all; else none. Candidate d of pixel x is at [width - 1 - x + d].
     const uchar* right(int y) const { return right_.ptr(y) + margin; }
 
     //! Limits what MatchingCost::evaluate() has found, in floats or bytes. unit: the cost of a bit; steps: candidates

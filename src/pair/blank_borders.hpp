@@ -24,9 +24,9 @@ CV_EXPORTS double findBorderLevel(const Mat& left, const Mat& right);
 
 /** Masks black borders: they show nothing, and their edges are at the same place in both images, whatever the disparity
 is. Along a side of the image, a border goes from a corner on, over at least a quarter of the side, to the first row (or
-column) that does not begin with black: up to 2 of 8 bits, 0 of 16. In three quarters of its rows, 10 pixels after the
-black ones or less there is one that ends it, about where the row before ends. These pixels belong to it, too: resampling
-and JPEG mix them from both. The brightest channel counts.
+column) that does not begin with black: up to 2 of 8 bits, 0 of 16. Three quarters of its rows end sharply, about where
+the row before ends: at most 10 pixels after the black ones, one has the level that ends a border. These pixels belong
+to it, too: resampling and JPEG mix them from both. The brightest channel counts.
 @param image As above.
 @param level That ends a border, > 0.
 @param sides From which borders begin. What is black in a tile from there on to a cut is one, too.

@@ -109,6 +109,34 @@ ImageChange rows(double offset, double shear, double stretch)
     };
 }
 
+//! What turned cameras show of an image, the left one or the right one: all but black wedges on its sides, so many
+//! percent of it wide at one end
+std::function<Mat(Size)> shownWithinBorders(double percent, bool isRight)
+{
+    return [=](const Size& size) {
+        const double share = percent / 100;
+        const auto corner = [&](double x, double y) {
+            return Point(cvRound(x * (size.width - 1)), cvRound(y * (size.height - 1)));
+        };
+        const std::vector<Point> corners =
+            isRight
+                ? std::vector<Point>{ corner(0, share), corner(1 - share, 0), corner(1, 1 - share), corner(share, 1) }
+                : std::vector<Point>{ corner(share, 0), corner(1, share), corner(1 - share, 1), corner(0, 1 - share) };
+        Mat shown(size, CV_8U, Scalar(0));
+        fillConvexPoly(shown, corners, Scalar(255));
+        return shown;
+    };
+}
+
+ImageChange keepShown(const std::function<Mat(Size)>& shown)
+{
+    return [shown](const Mat& image, RNG&) {
+        Mat changed(image.size(), image.type(), Scalar(0));
+        image.copyTo(changed, shown(image.size()));
+        return changed;
+    };
+}
+
 //! Which numbers a case may have; others leave nothing of an image, or take hours.
 struct NumberRange
 {
@@ -117,7 +145,7 @@ struct NumberRange
 };
 const NumberRange numberRanges[] = { { "gain", 0, 100 },  { "gamma", 0.01, 100 }, { "offset", -255, 255 },
                                      { "noise", 0, 255 }, { "defects", 0, 100 },  { "blur", 0.1, 100 },
-                                     { "jpeg", 0, 100 },  { "dy", -1000, 1000 } };
+                                     { "jpeg", 0, 100 },  { "dy", -1000, 1000 },  { "borders", 0, 40 } };
 
 //! The case of a name, without it; the number is what follows the name's letters.
 bool makeCase(const String& letters, double number, CameraCase& made)
@@ -145,6 +173,13 @@ bool makeCase(const String& letters, double number, CameraCase& made)
         made.right = blur(number);
     else if (letters == "jpeg")
         made.left = made.right = compress((int)number);
+    else if (letters == "borders")
+    {
+        made.shownLeft = shownWithinBorders(number, false);
+        made.shownRight = shownWithinBorders(number, true);
+        made.left = keepShown(made.shownLeft);
+        made.right = keepShown(made.shownRight);
+    }
     else if (letters == "dy")
         made.right = rows(number, 0, 0);
     else if (letters == "shear")
@@ -160,7 +195,7 @@ bool makeCase(const String& letters, double number, CameraCase& made)
 
 const char* const ALL_CASES =
     "clean,gain.7,gain.5,gamma1.5,offset30,vignette,noise2,noise5,noise15,defects.5,dark,linear,blur1.5,jpeg30,"
-    "dy.5,dy1,dy2,dy-3,shear,stretch";
+    "borders6,dy.5,dy1,dy2,dy-3,shear,stretch";
 
 std::vector<CameraCase> selectCases(const String& option, const String& list)
 {

@@ -36,6 +36,7 @@ struct CameraCase
 {
     String name; // for --cases, and in the table
     ImageChange left, right;
+    std::function<Mat(cv::Size)> shownLeft, shownRight; // masks of what is not blank then; none: nothing is
 };
 
 /** The cases of a list of names that is separated by commas, in this order; each once. A name with a number takes any
@@ -49,6 +50,8 @@ other number, too.
 - dark: an eighth of the light, and noise of standard deviation 2, in both; linear: gamma 2.2 in both, as of raw images
 - blur1.5: the right image by a Gaussian of this standard deviation in pixels; jpeg30: both images by this quality
 - dy.5, dy1, dy2, dy-3: the right image so many rows lower
+- borders6: wedges on all sides are black, up to so many percent of the image wide, other ones in each image, as
+  rectification leaves them
 - shear: the right image's rows, by 0.3 degrees; stretch: moved by 0.7 rows, and by 3 and 4 thousandths of x and y
 
 @param option The name of the option, for messages.

@@ -77,10 +77,11 @@ TEST(HDPStereo_EvaluationPrograms, robustness)
     const DatasetFolder folder;
     writePair(folder);
     const String common = "hdp_robustness --num-disparities=32 " + folder.path("dataset") + " --methods=fast,sgbm-hh4";
-    const Execution good = run(folder, common + " --cases=clean,dy3,gain.5,noise4,defects1,linear,jpeg40,shear");
+    const Execution good =
+        run(folder, common + " --cases=clean,dy3,gain.5,noise4,defects1,linear,jpeg40,borders8,shear");
     EXPECT_EQ(0, good.status) << good.errors;
     for (const char* row : { "means of 3 pairs", "| case | fast | sgbm-hh4 |", "| clean |", "| dy3 |", "| gain.5 |",
-                             "| noise4 |", "| defects1 |", "| linear |", "| jpeg40 |", "| shear |" })
+                             "| noise4 |", "| defects1 |", "| linear |", "| jpeg40 |", "| borders8 |", "| shear |" })
         EXPECT_NE(String::npos, good.output.find(row)) << row;
     testUnknown(folder, common, "--cases", "case", { "dy", "dy1x", "clean2", "rain" });
     for (const char* name : { "blur0", "blur99999", "jpeg101", "noise-1", "dy1e99" })
