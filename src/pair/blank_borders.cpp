@@ -31,23 +31,30 @@ template <typename T> T brightest(const Mat& image, const Point& p)
     return channels == 1 ? *pixel : std::max(pixel[0], std::max(pixel[1], pixel[2]));
 }
 
-//! The border of an image that begins at one of its sides, row by row or column by column
+//! A side of an image, and its rows or columns from there to the opposite side
+struct Side
+{
+    Point first, along; // its pixels
+    int count;
+    Point inwards; // from a pixel of a row or column to the next
+    int length;
+    bool isCut, isCutOpposite; // whether the image goes on there
+};
+
+//! The border of an image that begins at one of its sides
 template <typename T> class SideBorder
 {
 public:
-    /** @param first,along,count The pixels of the side.
-    @param inwards,length Those of a row or column, from there to the opposite side.
-    @param isCut Whether the image goes on there. */
-    SideBorder(const Mat& image, double level, Point first, Point along, int count, Point inwards, int length,
-               bool isCut)
-        : image_(image), level_(level), first_(first), along_(along), inwards_(inwards), length_(length), isCut_(isCut),
-          lines_(count)
+    SideBorder(const Mat& image, double level, const Side& side)
+        : image_(image), level_(level), side_(side), lines_(side.count)
     {
-        for (int i = 0; i < count; ++i)
-            lines_[i] = findLine(first + along * i);
+        if (side.isCut)
+            return;
+        for (int i = 0; i < side.count; ++i)
+            lines_[i] = findLine(side.first + side.along * i);
         const int fromFirst = countBorder(lines_.begin(), lines_.end()),
                   fromLast = countBorder(lines_.rbegin(), lines_.rend());
-        std::fill(lines_.begin() + fromFirst, lines_.end() - std::min(fromLast, count - fromFirst), Line());
+        std::fill(lines_.begin() + fromFirst, lines_.end() - std::min(fromLast, side.count - fromFirst), Line());
     }
 
     //! Masks rows or columns up to the ends that they have.
@@ -55,7 +62,7 @@ public:
     {
         for (size_t i = 0; i < lines_.size(); ++i)
             for (int k = 0; k < lines_[i].blank && !lines_[i].isOpen; ++k)
-                mask.at<uchar>(first_ + along_ * (int)i + inwards_ * k) = 0;
+                mask.at<uchar>(side_.first + side_.along * (int)i + side_.inwards * k) = 0;
     }
 
     //! Whether a row or column is black up to the opposite side. Where the border ends, the others tell.
@@ -69,23 +76,25 @@ private:
         bool isSharp, isOpen;
     };
 
-    Line findLine(const Point& side) const
+    //! first: its pixel at the side
+    Line findLine(const Point& first) const
     {
-        const auto brightness = [&](int i) { return (int)brightest<T>(image_, side + inwards_ * i); };
+        const auto brightness = [&](int i) { return (int)brightest<T>(image_, first + side_.inwards * i); };
+        const int length = side_.length;
         int black = 0;
-        while (black < length_ && brightness(black) <= blackOf(image_))
+        while (black < length && brightness(black) <= blackOf(image_))
             ++black;
-        if (black == 0 || black == length_)
-            return { black, true, black > 0 && !isCut_ };
-        const int last = std::min(black + mostMixed, length_ - 1);
+        if (black == 0 || black == length)
+            return { black, true, black > 0 && !side_.isCutOpposite };
+        const int last = std::min(black + mostMixed, length - 1);
         int end = black;
         while (end < last && brightness(end) < level_)
             ++end;
         return brightness(end) >= level_ ? Line({ end + 1, true, false }) : Line({ black, false, false });
     }
 
-    //! From a corner on, a border goes to the first line that shows something. Too short a one, or one whose lines do
-    //! not end sharply in a line, is a part of the scene.
+    //! From a corner on, a border goes to the first line that shows something. Too short a one, or one whose end is not
+    //! sharp and about straight, is a part of the scene.
     template <typename Iterator> int countBorder(Iterator begin, Iterator end) const
     {
         int count = 0, ending = 0, regular = 0, before = begin->blank;
@@ -99,27 +108,20 @@ private:
 
     const Mat& image_;
     const double level_;
-    const Point first_, along_, inwards_;
-    const int length_;
-    const bool isCut_;
+    const Side side_;
     std::vector<Line> lines_;
 };
 
 template <typename T> void maskBordersOf(const Mat& image, double level, const ImageSides& sides, Mat& mask)
 {
-    typedef SideBorder<T> Border;
     const int width = image.cols, height = image.rows;
     const Point x(1, 0), y(0, 1);
-    const Border left(image, level, Point(), y, height, x, width, !sides.right),
-        right(image, level, x * (width - 1), y, height, -x, width, !sides.left),
-        above(image, level, Point(), x, width, y, height, !sides.below),
-        below(image, level, y * (height - 1), x, width, -y, height, !sides.above);
-    const std::pair<bool, const Border*> borders[] = {
-        { sides.left, &left }, { sides.right, &right }, { sides.above, &above }, { sides.below, &below }
-    };
-    for (const auto& border : borders)
-        if (border.first)
-            border.second->mask(mask);
+    const SideBorder<T> left(image, level, { Point(), y, height, x, width, !sides.left, !sides.right }),
+        right(image, level, { x * (width - 1), y, height, -x, width, !sides.right, !sides.left }),
+        above(image, level, { Point(), x, width, y, height, !sides.above, !sides.below }),
+        below(image, level, { y * (height - 1), x, width, -y, height, !sides.below, !sides.above });
+    for (const SideBorder<T>* border : { &left, &right, &above, &below })
+        border->mask(mask);
     // Where black rows cross black columns, in a corner
     for (int row = 0; row < height; ++row)
         for (int column = 0; column < width && (left.isOpen(row) || right.isOpen(row)); ++column)
