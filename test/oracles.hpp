@@ -21,10 +21,18 @@ namespace opencv_test { namespace oracle {
 
 inline int clamped(int i, int size) { return std::max(0, std::min(i, size - 1)); }
 
-//! Whether a pixel has no data, and another one on its left in its row has some
-inline bool isMissing(const Mat& mask, Point p)
+//! Whether a pixel of the right image has no data, but is not before the place where its row begins
+inline bool isMissing(const hdp::PairMasks& masks, Point p)
 {
-    return mask.at<uchar>(p) < 128 && p.x > 0 && countNonZero(mask(Rect(0, p.y, p.x, 1)) >= 128) > 0;
+    const auto first = [&](const Mat& mask) {
+        int x = 0;
+        while (x < mask.cols && mask.at<uchar>(p.y, x) < 128)
+            ++x;
+        return x;
+    };
+    const int right = first(masks.right);
+    const bool isBefore = p.x < right && right - first(masks.left) <= masks.left.cols / 8;
+    return masks.right.at<uchar>(p) < 128 && !isBefore;
 }
 
 //! Grey levels in 8 bit
@@ -758,7 +766,7 @@ private:
     {
         if (masks_.isEmpty())
             return cost;
-        const bool isLimited = isMissing(masks_.right, Point(clamped(p.x - d, size_.width), p.y));
+        const bool isLimited = isMissing(masks_, Point(clamped(p.x - d, size_.width), p.y));
         return masks_.left.at<uchar>(p) < 128 ? 0 : isLimited ? std::min(cost, +hdp::CostLimits::ordinary) : cost;
     }
 
@@ -955,7 +963,7 @@ private:
                 const Point q = Point(2 * x, 2 * y) + parts[i];
                 if (hasData(q))
                     bits += census.count(q.y, q.x, h, i % planes, planes);
-                if (!masks.isEmpty() && isMissing(masks.right, Point(clamped(q.x - h, right.cols), q.y)))
+                if (!masks.isEmpty() && isMissing(masks, Point(clamped(q.x - h, right.cols), q.y)))
                     most = hdp::CostLimits::ordinary;
             }
             return std::min(bits, most);

@@ -365,13 +365,32 @@ TEST(HDPStereo_Masks, costs_of_pixels_without_data)
                 for (int k = 0; k < lanes && first + k < numDisparities; ++k)
                 {
                     const int matched = std::max(x - first - k, 0);
-                    const float cost = masks.left.at<uchar>(y, x) < 128                    ? 0
-                                       : oracle::isMissing(masks.right, Point(matched, y)) ? std::min(expected[k], 8.f)
-                                                                                           : expected[k];
+                    const float cost = masks.left.at<uchar>(y, x) < 128              ? 0
+                                       : oracle::isMissing(masks, Point(matched, y)) ? std::min(expected[k], 8.f)
+                                                                                     : expected[k];
                     ASSERT_EQ(cost, costs[k]);
                     ASSERT_EQ(cost, bytes[k]);
                 }
             }
+}
+
+TEST(HDPStereo_Masks, where_rows_begin)
+{
+    const int width = 80;
+    const Mat all(4, width, CV_8UC1, Scalar(255));
+    hdp::PairMasks masks = { all.clone(), all.clone() };
+    masks.left.colRange(0, 5).setTo(Scalar(127));
+    masks.right.colRange(0, 15).setTo(Scalar(0)); // an eighth of the width farther on
+    masks.right.row(1).col(15).setTo(Scalar(0));  // more
+    masks.left.row(2).setTo(Scalar(0));
+    masks.right.row(3).setTo(Scalar(0));
+    const int left[] = { 5, 0, width, 0 }, right[] = { 15, 0, 15, 0 };
+    for (int y = 0; y < all.rows; ++y)
+    {
+        EXPECT_EQ(left[y], hdp::rowStart(masks, y).left) << y;
+        EXPECT_EQ(right[y], hdp::rowStart(masks, y).right) << y;
+    }
+    EXPECT_EQ(0, hdp::rowStart(hdp::PairMasks(), 0).right);
 }
 
 TEST(HDPStereo_Masks, reason_and_sigma)

@@ -25,11 +25,25 @@ inline bool hasData(uchar share) { return share >= 128; }
 //! hasData() of all pixels of a mask: CV_8UC1, 255 where, else 0
 inline Mat pixelsWithData(const Mat& mask) { return mask >= 128; }
 
-//! The number of columns of a mask's row without data, from the left border on
-inline int countBlank(const Mat& mask, int y)
+//! The columns in which a row of both images begins
+struct RowStart
 {
-    const uchar* const row = mask.ptr(y);
-    return (int)(std::find_if(row, row + mask.cols, hasData) - row);
+    int left, right;
+};
+
+//! The first ones with data. If that is farther on in the right image by more than an eighth of the width, a row is
+//! masked from above or below: then it begins at the border of the images.
+inline RowStart rowStart(const PairMasks& masks, int y)
+{
+    const auto first = [y](const Mat& mask) {
+        const uchar* const row = mask.ptr(y);
+        return (int)(std::find_if(row, row + mask.cols, hasData) - row);
+    };
+    const RowStart none = { 0, 0 };
+    if (masks.isEmpty())
+        return none;
+    const RowStart start = { first(masks.left), first(masks.right) };
+    return start.right - start.left > masks.left.cols / 8 ? none : start;
 }
 
 }}} // namespace cv::stereo::hdp

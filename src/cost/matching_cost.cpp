@@ -19,11 +19,11 @@ void CostLimits::prepare(const PairMasks& masks, int numDisparities)
     width_ = left.cols;
     copyMakeBorder(pixelsWithData(left), left_, 0, 0, margin, margin, BORDER_REPLICATE);
     Mat limits = max(pixelsWithData(right), +ordinary), mirrored;
-    blank_.resize(right.rows);
+    firstColumns_.resize(right.rows);
     for (int y = 0; y < right.rows; ++y)
     {
-        blank_[y] = countBlank(right, y);
-        limits.row(y).colRange(0, blank_[y]).setTo(Scalar(none));
+        firstColumns_[y] = rowStart(masks, y).right;
+        limits.row(y).colRange(0, firstColumns_[y]).setTo(Scalar(none));
     }
     flip(limits, mirrored, 1);
     copyMakeBorder(mirrored, right_, 0, 0, margin, numDisparities + costPadding + margin, BORDER_REPLICATE);
@@ -80,7 +80,7 @@ void CostLimits::hideUnmatched(int y, const ushort* disparity, uchar* visible) c
     for (int x = 0; x < width_; ++x)
     {
         const int whole = wholeDisparity(disparity[x]);
-        visible[x] = x - whole >= blank(y) && limit[whole - x] == none ? visible[x] : 0;
+        visible[x] = x - whole >= firstColumn(y) && limit[whole - x] == none ? visible[x] : 0;
     }
 }
 

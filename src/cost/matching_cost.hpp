@@ -10,8 +10,8 @@ namespace cv { namespace stereo { namespace hdp {
 
 /** What pixels without data may cost. One of the left image costs nothing, whatever its candidate is: it prefers none.
 A candidate in the right image that has no data costs no more than an ordinary pixel: it is neither preferred to a
-match nor avoided as a bad one would be. Left of all data in its row it has no limit, as columns beside the image have
-none: it looks like the last one with data. */
+match nor avoided as a bad one would be. Before its row begins, see rowStart(), it has no limit, as columns beside the
+image have none: it looks like the first one with data. */
 class CV_EXPORTS CostLimits
 {
 public:
@@ -26,14 +26,14 @@ public:
 
     bool isEmpty() const { return left_.empty(); }
 
-    //! The number of columns of a row of the right image that are left of all data
-    int blank(int y) const { return blank_.empty() ? 0 : blank_[y]; }
+    //! The column in which a row of the right image begins, see rowStart()
+    int firstColumn(int y) const { return firstColumns_.empty() ? 0 : firstColumns_[y]; }
 
     //! A row of the left image: 0 where a pixel has no data, else none. There are 32 more bytes to read before and
     //! behind it.
     const uchar* left(int y) const { return left_.ptr(y) + margin; }
     //! A row of the right image, from right to left, as CensusCost::rightPlane(): ordinary where there is no data, but
-    //! on the left of all; else none. Candidate d of pixel x is at [width - 1 - x + d].
+    //! before it begins; else none. Candidate d of pixel x is at [width - 1 - x + d].
     const uchar* right(int y) const { return right_.ptr(y) + margin; }
 
     //! Limits what MatchingCost::evaluate() has found, in floats or bytes. unit: the cost of a bit; steps: candidates
@@ -51,7 +51,7 @@ private:
     static const int margin = 32;
     int width_ = 0;
     Mat left_, right_;
-    std::vector<int> blank_; // by row
+    std::vector<int> firstColumns_; // by row
 };
 
 //! The matching cost M(p, x) of a layer (section 3.3): how unlike are pixel p of the left and p - x of the right image.

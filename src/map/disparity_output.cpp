@@ -185,7 +185,7 @@ void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const 
             const int64 column = ((int64)x * scale - plan.extension - plan.minDisparity) * subpixelScale -
                                  (int64)disparity.at<ushort>(y, x) * scale;
             const bool isInside = column > -half && column <= (width - 1) * (int64)subpixelScale + half &&
-                                  x - wholeDisparity(disparity.at<ushort>(y, x)) >= limits.blank(y);
+                                  x - wholeDisparity(disparity.at<ushort>(y, x)) >= limits.firstColumn(y);
             const bool isStable = stable.at<uchar>(y, x) != 0;
             reasons.at<uchar>(y, x) = (uchar)(!isInside  ? HDPTreeMatcher::REASON_OUTSIDE
                                               : isStable ? HDPTreeMatcher::REASON_MATCHED

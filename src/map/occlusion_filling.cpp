@@ -20,11 +20,11 @@ HDP_DISPATCH(fillOccludedRow)
 void fillOccluded(Mat& disparity, const Mat& residual, const PairMasks& masks)
 {
     parallelForRows(disparity.size(), OcclusionScratch(disparity.cols), [&](int y, OcclusionScratch& scratch) {
-        const int first = masks.isEmpty() ? 0 : countBlank(masks.left, y), width = disparity.cols - first;
-        const int border = masks.isEmpty() ? 0 : countBlank(masks.right, y);
+        const RowStart start = rowStart(masks, y);
+        const int width = disparity.cols - start.left;
         if (width > 0)
-            dispatched::fillOccludedRow(disparity.ptr<ushort>(y) + first, residual.ptr(y) + first, width,
-                                        first - border, scratch);
+            dispatched::fillOccludedRow(disparity.ptr<ushort>(y) + start.left, residual.ptr(y) + start.left, width,
+                                        start.left - start.right, scratch);
     });
 }
 

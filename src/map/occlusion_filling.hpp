@@ -37,8 +37,8 @@ shown are
   - or is nearer than what is before it, of which at most one pixel in eight is visible, and three quarters map to
     columns of nearer pixels, or to none.
 
-The surface at the border is continued to the left border, half as steep as its first columns are. A row of an image
-begins with its first pixel that has data.
+The surface at the border is continued to the left border, half as steep as its first columns are. The borders are
+where the rows of the images begin, see rowStart().
 @param disparity CV_16UC1, a disparity map; changed.
 @param residual Matching costs, CV_8UC1.
 @param masks Of both images, or empty. */

@@ -10,8 +10,8 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! A row of fillOccluded(), from its first pixel with data on. shift: that many columns farther on in the left image
-//! than in the right one
+//! A row of fillOccluded(), from where it begins on. shift: that many columns farther on in the left image than in the
+//! right one
 void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY

@@ -40,18 +40,31 @@ std::vector<int> nearestWithData(const uchar* has, int count)
     return nearest;
 }
 
+//! Fills the pixels of a row that have no data; returns whether others have. pixel: bytes of one
+bool fillRow(uchar* row, const uchar* has, int width, size_t pixel)
+{
+    const uchar* const end = has + width;
+    for (const uchar* begin = std::find(has, end, 0); begin < end; begin = std::find(begin, end, 0))
+    {
+        const uchar* const next = std::find_if(begin, end, [](uchar data) { return data != 0; });
+        const int first = (int)(begin - has), count = (int)(next - begin);
+        if (count == width)
+            return false;
+        const int fromLeft = first == 0 ? 0 : next == end ? count : (count + 1) / 2;
+        for (int i = 0; i < count; ++i)
+            std::memcpy(row + (first + i) * pixel, row + (i < fromLeft ? first - 1 : first + count) * pixel, pixel);
+        begin = next;
+    }
+    return true;
+}
+
 //! Of 8 or 16 bits and any number of channels; mask: CV_8UC1, 255 where there is data, else 0
 void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
 {
-    const size_t pixel = image.elemSize();
-    filled.create(image.size(), image.type());
     std::vector<uchar> has(image.rows);
-    parallelForRows(image.size(), [&](int y) {
-        const std::vector<int> columns = nearestWithData(mask.ptr(y), image.cols);
-        has[y] = columns[0] >= 0;
-        for (int x = 0; x < image.cols && has[y]; ++x)
-            std::memcpy(filled.ptr(y) + x * pixel, image.ptr(y) + columns[x] * pixel, pixel);
-    });
+    image.copyTo(filled);
+    parallelForRows(image.size(),
+                    [&](int y) { has[y] = fillRow(filled.ptr(y), mask.ptr(y), image.cols, image.elemSize()); });
     const std::vector<int> rows = nearestWithData(has.data(), image.rows);
     for (int y = 0; y < image.rows; ++y)
         if (rows[y] < 0)
