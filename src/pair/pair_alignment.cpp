@@ -39,23 +39,25 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
         findings.hasLight = estimateLight(buffers.coarse, findings.light);
 }
 
+//! A row of smoothNoise(). columns: memory, and one more element at both ends
+void smoothRow(const ushort* above, const ushort* own, const ushort* below, int width, int* columns, ushort* smoothed)
+{
+    const int side = sideWeight, middle = 256 - 2 * side;
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) columns[x] = middle * own[x] + side * (above[x] + below[x]);
+    columns[-1] = columns[0];
+    columns[width] = columns[width - 1];
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) smoothed[x] =
+        (ushort)((middle * columns[x] + side * (columns[x - 1] + columns[x + 1]) + (1 << 15)) >> 16);
+}
+
 } // namespace
 
 void smoothNoise(const Mat& image, Mat& smoothed)
 {
-    const int width = image.cols, side = sideWeight, middle = 256 - 2 * side;
     smoothed.create(image.size(), CV_16U);
-    parallelForRows(image.size(), std::vector<int>(width + 2),
-                    [=, &image, &smoothed](int y, std::vector<int>& columns) {
-        const ushort *const own = image.ptr<ushort>(y), *const above = image.ptr<ushort>(std::max(y - 1, 0)),
-                            *const below = image.ptr<ushort>(std::min(y + 1, image.rows - 1));
-        int* const column = &columns[1]; // and one more at both ends
-        ushort* const row = smoothed.ptr<ushort>(y);
-        HDP_VECTORIZED for (int x = 0; x < width; ++x) column[x] = middle * own[x] + side * (above[x] + below[x]);
-        column[-1] = column[0];
-        column[width] = column[width - 1];
-        HDP_VECTORIZED for (int x = 0; x < width; ++x) row[x] =
-            (ushort)((middle * column[x] + side * (column[x - 1] + column[x + 1]) + (1 << 15)) >> 16);
+    parallelForRows(image.size(), std::vector<int>(image.cols + 2), [&](int y, std::vector<int>& columns) {
+        smoothRow(image.ptr<ushort>(std::max(y - 1, 0)), image.ptr<ushort>(y),
+                  image.ptr<ushort>(std::min(y + 1, image.rows - 1)), image.cols, &columns[1], smoothed.ptr<ushort>(y));
     });
 }
 
