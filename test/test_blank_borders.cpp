@@ -113,7 +113,10 @@ TEST(HDPStereo_BlankBorders, survive_compression)
 //! Scenes have dark places at their sides, too.
 TEST(HDPStereo_BlankBorders, darkness_is_none)
 {
-    const auto hasBorders = [](const Mat& left, const Mat& right) { return hdp::findBorderLevel(left, right) > 0; };
+    const auto hasBorders = [](const Mat& left, const Mat& right) {
+        hdp::PairMasks masks;
+        return hdp::findBorders(left, right, masks) > 0 || !masks.isEmpty();
+    };
     const Size size(240, 160);
     const SyntheticPair scene = makeSyntheticPair(size, 40, 3);
     EXPECT_FALSE(hasBorders(scene.left, scene.right));

@@ -28,6 +28,7 @@ inline Mat pixelsWithData(const Mat& mask) { return mask >= 128; }
 //! The columns in which a row of both images begins
 struct RowStart
 {
+    static const int widthsPerLag = 8; // of the right image behind the left one: more is no border on the left
     int left, right;
 };
 
@@ -43,7 +44,7 @@ inline RowStart rowStart(const PairMasks& masks, int y)
     if (masks.isEmpty())
         return none;
     const RowStart start = { first(masks.left), first(masks.right) };
-    return start.right - start.left > masks.left.cols / 8 ? none : start;
+    return start.right - start.left > masks.left.cols / RowStart::widthsPerLag ? none : start;
 }
 
 }}} // namespace cv::stereo::hdp

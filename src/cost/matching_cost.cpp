@@ -77,10 +77,11 @@ void CostLimits::hideUnmatched(int y, const ushort* disparity, uchar* visible) c
     if (isEmpty())
         return;
     const uchar* const limit = right(y) + width_ - 1;
+    const int first = firstColumn(y);
     for (int x = 0; x < width_; ++x)
     {
         const int whole = wholeDisparity(disparity[x]);
-        visible[x] = x - whole >= firstColumn(y) && limit[whole - x] == none ? visible[x] : 0;
+        visible[x] = x - whole >= first && limit[whole - x] == none ? visible[x] : 0;
     }
 }
 

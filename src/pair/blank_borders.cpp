@@ -112,14 +112,17 @@ private:
     std::vector<Line> lines_;
 };
 
-template <typename T> void maskBordersOf(const Mat& image, double level, const ImageSides& sides, Mat& mask)
+template <typename T> void maskBordersOf(const Mat& image, double level, const ImageFrame& frame, Mat& mask)
 {
     const int width = image.cols, height = image.rows;
+    const bool isCutLeft = frame.origin.x > 0,
+               isCutRight = frame.origin.x + width<frame.whole.width, isCutAbove = frame.origin.y> 0,
+               isCutBelow = frame.origin.y + height < frame.whole.height;
     const Point x(1, 0), y(0, 1);
-    const SideBorder<T> left(image, level, { Point(), y, height, x, width, !sides.left, !sides.right }),
-        right(image, level, { x * (width - 1), y, height, -x, width, !sides.right, !sides.left }),
-        above(image, level, { Point(), x, width, y, height, !sides.above, !sides.below }),
-        below(image, level, { y * (height - 1), x, width, -y, height, !sides.below, !sides.above });
+    const SideBorder<T> left(image, level, { Point(), y, height, x, width, isCutLeft, isCutRight }),
+        right(image, level, { x * (width - 1), y, height, -x, width, isCutRight, isCutLeft }),
+        above(image, level, { Point(), x, width, y, height, isCutAbove, isCutBelow }),
+        below(image, level, { y * (height - 1), x, width, -y, height, isCutBelow, isCutAbove });
     for (const SideBorder<T>* border : { &left, &right, &above, &below })
         border->mask(mask);
     // Where black rows cross black columns, in a corner
@@ -150,32 +153,36 @@ double meanLevel(const Mat& image)
     return image.channels() == 1 ? means[0] : (means[0] + means[1] + means[2]) / 3;
 }
 
+//! Whether these are borders: neither so few that they do no harm, nor a dark scene
+bool areBorders(const Mat& mask)
+{
+    const double total = (double)mask.total(), blank = total - countNonZero(mask);
+    return blank * pixelsPerBorder > total && blank < mostBlank * total;
+}
+
 } // namespace
 
-double findBorderLevel(const Mat& left, const Mat& right)
+double findBorders(const Mat& left, const Mat& right, PairMasks& masks)
 {
     if (std::min(left.cols, left.rows) < minSide || (!hasBlackCorner(left) && !hasBlackCorner(right)))
         return 0;
     const double least = left.depth() == CV_8U ? 4 * maxBlack : 1;
     const double level = std::max((meanLevel(left) + meanLevel(right)) / 2 * shareOfMean, least);
-    for (const Mat& image : { left, right })
-    {
-        Mat mask;
-        maskBorders(image, level, ImageSides(), mask);
-        const int blank = (int)mask.total() - countNonZero(mask);
-        const double total = (double)mask.total();
-        if (blank * (double)pixelsPerBorder > total && blank < mostBlank * total)
-            return level;
-    }
-    return 0;
+    PairMasks found;
+    maskBorders(left, level, ImageFrame(left.size()), found.left);
+    maskBorders(right, level, ImageFrame(right.size()), found.right);
+    if (!areBorders(found.left) && !areBorders(found.right))
+        return 0;
+    masks = found;
+    return level;
 }
 
-void maskBorders(const Mat& image, double level, const ImageSides& sides, Mat& mask)
+void maskBorders(const Mat& image, double level, const ImageFrame& frame, Mat& mask)
 {
     mask.create(image.size(), CV_8U);
     mask.setTo(Scalar(255));
     const auto maskOfDepth = image.depth() == CV_8U ? maskBordersOf<uchar> : maskBordersOf<ushort>;
-    maskOfDepth(image, level, sides, mask);
+    maskOfDepth(image, level, frame, mask);
 }
 
 }}} // namespace cv::stereo::hdp

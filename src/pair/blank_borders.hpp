@@ -4,23 +4,19 @@
 #ifndef OPENCV_HDPSTEREO_BLANK_BORDERS_HPP
 #define OPENCV_HDPSTEREO_BLANK_BORDERS_HPP
 
+#include "../base/image_frame.hpp"
 #include "../base/mask.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The sides of an image that are no cuts through a larger one
-struct ImageSides
-{
-    bool left = true, right = true, above = true, below = true;
-};
-
-/** Finds out whether a pair has black borders, as rectification leaves them: more than one pixel in 100 of an
-image, and less than half of it.
+/** Finds black borders in a pair, as rectification leaves them: more than one pixel in 100 of an image, and less than
+half of it.
 @param left CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param right Of the same type and size.
-@return The level that ends them, see maskBorders(): a quarter of the mean over both images, at least 8 of 8 bits and 1
-of 16; 0 if there are none. */
-CV_EXPORTS double findBorderLevel(const Mat& left, const Mat& right);
+@param masks Receives those of maskBorders(), if there are any.
+@return The level that ends them: a quarter of the mean over both images, at least 8 of 8 bits and 1 of 16; 0 if there
+are none. */
+CV_EXPORTS double findBorders(const Mat& left, const Mat& right, PairMasks& masks);
 
 /** Masks black borders: they show nothing, and their edges are at the same place in both images, whatever the disparity
 is. Along a side of the image, a border goes from a corner on, over at least a quarter of the side, to the first row (or
@@ -29,9 +25,9 @@ the row before ends: at most 10 pixels after the black ones, one has the level t
 to it, too: resampling and JPEG mix them from both. The brightest channel counts.
 @param image As above.
 @param level That ends a border, > 0.
-@param sides From which borders begin. What is black in a tile from there on to a cut is one, too.
+@param frame Where the image lies, if it is a tile: borders begin at the sides of the whole, and may go on to a cut.
 @param mask Receives CV_8UC1 of the size of the image, 0 in borders, else 255. */
-CV_EXPORTS void maskBorders(const Mat& image, double level, const ImageSides& sides, Mat& mask);
+CV_EXPORTS void maskBorders(const Mat& image, double level, const ImageFrame& frame, Mat& mask);
 
 }}} // namespace cv::stereo::hdp
 

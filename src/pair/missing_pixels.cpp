@@ -124,15 +124,16 @@ void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const 
     PairMasks masks;
     if (isFloat || isMasked)
         masks = { maskOf(left, leftMask), maskOf(right, rightMask) };
-    else
+    else if (!given)
+        complete.borderLevel = findBorders(left, right, masks);
+    else if (given->borderLevel > 0)
     {
-        const double level = complete.borderLevel = given ? given->borderLevel : findBorderLevel(left, right);
-        if (level == 0)
-            return;
-        const ImageSides sides = given ? given->sides : ImageSides();
-        maskBorders(left, level, sides, masks.left);
-        maskBorders(right, level, sides, masks.right);
+        complete.borderLevel = given->borderLevel;
+        maskBorders(left, given->borderLevel, given->frame, masks.left);
+        maskBorders(right, given->borderLevel, given->frame, masks.right);
     }
+    if (masks.isEmpty())
+        return;
     if (isFloat)
     {
         complete.floats = given ? given->floats : findLevels(left, right, masks);

@@ -29,7 +29,7 @@ struct GivenPixels
 {
     FloatLevels floats;
     double borderLevel;
-    ImageSides sides; // of the tile
+    ImageFrame frame; // of the images
 };
 
 /** Gives the pixels without data levels that depend on the others alone, and images of type CV_32FC1 16 bits. A run of

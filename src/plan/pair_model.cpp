@@ -238,12 +238,8 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
 
 GivenPixels toGivenPixels(const PairModel& model)
 {
-    GivenPixels given = { { model.black, model.white }, model.borderLevel, ImageSides() };
-    given.sides.left = model.x == 0;
-    given.sides.above = model.y == 0;
-    given.sides.right = model.x + model.tileWidth == model.width;
-    given.sides.below = model.y + model.tileHeight == model.height;
-    return given;
+    const Size whole(model.width, model.height);
+    return { { model.black, model.white }, model.borderLevel, ImageFrame(whole, Point(model.x, model.y)) };
 }
 
 PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities, const CompletePair& pair,
