@@ -126,6 +126,32 @@ TEST(HDPStereo_OcclusionFilling, rows_begin_with_data)
     }
 }
 
+//! What only the left image has no data for hides nothing, and rows do not depend on those before them.
+TEST(HDPStereo_OcclusionFilling, rows_that_begin_farther_on_in_the_left_image)
+{
+    RNG rng(32);
+    const Size size(230, 4);
+    hdp::PairMasks masks = { Mat(size, CV_8UC1, Scalar(255)), Mat(size, CV_8UC1, Scalar(255)) };
+    for (int y = 0; y < size.height; ++y)
+        masks.left(Rect(0, y, 40 * y, 1)).setTo(Scalar(0));
+    const Mat flat(size, CV_16UC1, Scalar(16 * 3)), matched(size, CV_8UC1, Scalar(0));
+    Mat filled = flat.clone();
+    hdp::fillOccluded(filled, matched, masks);
+    expectIdentical(Mat(flat.rowRange(1, size.height)), Mat(filled.rowRange(1, size.height)));
+    for (int round = 0; round < 20; ++round)
+    {
+        const Mat disparity = randomImage(rng, size, CV_16UC1, 40 * 16), residual = randomImage(rng, size, CV_8UC1, 9);
+        Mat together = disparity.clone();
+        hdp::fillOccluded(together, residual, masks);
+        for (int y = 0; y < size.height; ++y)
+        {
+            Mat alone = disparity.row(y).clone();
+            hdp::fillOccluded(alone, residual.row(y).clone(), { masks.left.row(y), masks.right.row(y) });
+            expectIdentical(alone, together.row(y));
+        }
+    }
+}
+
 //! On the left of the right image's border a surface goes on, half as steep.
 TEST(HDPStereo_OcclusionFilling, slanted_surface_at_the_border)
 {
