@@ -391,6 +391,61 @@ TEST(HDPStereo_Masks, where_rows_begin)
         EXPECT_EQ(right[y], hdp::rowStart(masks, y).right) << y;
     }
     EXPECT_EQ(0, hdp::rowStart(hdp::PairMasks(), 0).right);
+    masks.wholeWidth = width - 8; // tiles of images of which this is more than an eighth
+    EXPECT_EQ(0, hdp::rowStart(masks, 0).right);
+    masks.rightBegin = 1; // what is masked is a column less
+    EXPECT_EQ(15, hdp::rowStart(masks, 0).right);
+    masks.leftBegin = 1; // in both
+    EXPECT_EQ(0, hdp::rowStart(masks, 0).right);
+}
+
+//! Whatever the range begins with
+TEST(HDPStereo_Masks, rows_of_any_range_begin_with_data)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(240, 120), 64, 41);
+    Mat mask(pair.right.size(), CV_8U, Scalar(255)), map, reasons;
+    mask.colRange(0, 20).setTo(Scalar(0));
+    for (int minDisparity : { -32, 0, 30 })
+    {
+        Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, 64 - minDisparity);
+        matcher->setMasks(noArray(), mask);
+        matcher->setDisparityDepth(CV_32F);
+        matcher->compute(pair.left, pair.right, map);
+        matcher->getReasons(reasons);
+        int hidden = 0, outside = 0;
+        for (int y = 0; y < map.rows; ++y)
+            for (int x = 0; x < map.cols; ++x)
+            {
+                const float column = x - map.at<float>(y, x);
+                hidden += column > 0 && column < 19;
+                outside += column > 0 && column < 19 && reasons.at<uchar>(y, x) == HDPTreeMatcher::REASON_OUTSIDE;
+            }
+        EXPECT_GT(hidden, 100) << minDisparity;
+        EXPECT_EQ(hidden, outside) << minDisparity;
+    }
+}
+
+//! What the right image does not show because it is masked is not matched.
+TEST(HDPStereo_Masks, what_matches_masked_pixels_is_occluded)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(240, 120), 32, 42);
+    Mat mask(pair.right.size(), CV_8U, Scalar(255)), map, reasons;
+    const Rect hole(120, 40, 40, 40);
+    mask(hole).setTo(Scalar(0));
+    Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 32);
+    matcher->setMasks(noArray(), mask);
+    matcher->setDisparityDepth(CV_32F);
+    matcher->compute(pair.left, pair.right, map);
+    matcher->getReasons(reasons);
+    int masked = 0;
+    for (int y = hole.y; y < hole.br().y; ++y)
+        for (int x = 0; x < map.cols; ++x)
+            if (hole.contains(Point(cvRound(x - map.at<float>(y, x)), y)))
+            {
+                ++masked;
+                EXPECT_NE(HDPTreeMatcher::REASON_MATCHED, (int)reasons.at<uchar>(y, x)) << x << ", " << y;
+            }
+    EXPECT_GT(masked, 1000);
 }
 
 TEST(HDPStereo_Masks, reason_and_sigma)
@@ -411,7 +466,8 @@ TEST(HDPStereo_Masks, reason_and_sigma)
     }
 }
 
-//! Pixels without data hide none of the others: those that the filter does not reject are not occluded.
+//! Pixels without data hide none of the others: those that the filter does not reject are not occluded, unless they match
+//! such pixels.
 TEST(HDPStereo_Masks, reasons_are_those_of_the_filter)
 {
     const MaskedPair pair(CV_8UC1);
@@ -422,7 +478,7 @@ TEST(HDPStereo_Masks, reasons_are_those_of_the_filter)
             const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45, minDisparity);
             matcher->setMasks(pair.leftMask, pair.rightMask);
             matcher->setDisp12MaxDiff(-1);
-            match(*matcher, pair.left, pair.right);
+            const Mat map = match(*matcher, pair.left, pair.right).clone();
             Mat reasons, filtered;
             matcher->getReasons(reasons);
             matcher->setDisp12MaxDiff(1);
@@ -430,7 +486,13 @@ TEST(HDPStereo_Masks, reasons_are_those_of_the_filter)
             matcher->getReasons(filtered);
             const Mat isOccluded = reasons == HDPTreeMatcher::REASON_OCCLUDED,
                       isKept = filtered != HDPTreeMatcher::REASON_UNSTABLE;
-            EXPECT_EQ(0, countNonZero(isOccluded & isKept));
+            for (int y = 0; y < map.rows; ++y)
+                for (int x = 0; x < map.cols; ++x)
+                {
+                    const int column = x - cvFloor(map.at<short>(y, x) / 16. + 0.5);
+                    const bool isMatched = isOccluded.at<uchar>(y, x) & isKept.at<uchar>(y, x);
+                    EXPECT_TRUE(!isMatched || pair.rightMask.at<uchar>(y, column) == 0) << x << ", " << y;
+                }
         }
 }
 

@@ -188,7 +188,7 @@ TEST(HDPStereo_PairModel, levels_of_a_tile)
     Mat left = patchyImage(rng, size, CV_8UC1, 8), right = patchyImage(rng, size, CV_8UC1, 8);
     for (const int minDisparity : { 0, -7, 5 })
     {
-        const hdp::PyramidPlan plan = { minDisparity, minDisparity < 0 ? 8 : 0, 3, true, true };
+        const hdp::PyramidPlan plan = { minDisparity, minDisparity < 0 ? 8 : 0, 3, true, true, 0 };
         hdp::PairPyramids pyramids, ofTile;
         std::vector<hdp::LayerImages> whole, part;
         PairModel model;
@@ -256,7 +256,7 @@ TEST(HDPStereo_PairModel, another_range)
     model.areRowsMoved = model.isLightChanged = true;
     model.light[1] = 0.3;
     const auto align = [&](int minDisparity, int extension) {
-        const hdp::PyramidPlan plan = { minDisparity, extension, 1, true, false };
+        const hdp::PyramidPlan plan = { minDisparity, extension, 1, true, false, 0 };
         Mat memory;
         const Mat shifted = hdp::shiftColumns(right, minDisparity, extension, memory);
         const hdp::GivenPair given = hdp::toGivenPair(model, plan, size);

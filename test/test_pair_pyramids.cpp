@@ -46,7 +46,7 @@ TEST(HDPStereo_PairPyramids, layers_of_both_images)
         const int levels = round % 3 == 0 ? 256 : round % 3 == 1 ? 110 : 50;
         const Size size(rng.uniform(9, 40), rng.uniform(9, 40));
         const int minDisparity = rng.uniform(-8, 9), extension = minDisparity < 0 ? rng.uniform(0, 3) * 4 : 0;
-        const hdp::PyramidPlan plan = { minDisparity, extension, 3, round % 5 != 0, false };
+        const hdp::PyramidPlan plan = { minDisparity, extension, 3, round % 5 != 0, false, 0 };
         SCOPED_TRACE(testing::Message() << "round " << round << ", type " << type << ", " << size);
         Mat left = darkImage(rng, size, type, levels), right = darkImage(rng, size, type, levels);
         const bool isGrey = left.channels() == 1 || round % 7 == 0;

@@ -14,9 +14,14 @@ namespace cv { namespace stereo { namespace hdp {
 empty if all pixels have. */
 struct PairMasks
 {
-    Mat left, right;
+    PairMasks() {}
+    PairMasks(const Mat& leftMask, const Mat& rightMask) : left(leftMask), right(rightMask) {}
 
     bool isEmpty() const { return left.empty(); }
+
+    Mat left, right;
+    int leftBegin = 0, rightBegin = 0; // the columns of the images' first ones: before them there are copies of these
+    int wholeWidth = 0;                // of the image that they are tiles of; 0: that of the masks
 };
 
 //! Of the pixel of a mask: whether half of the image's pixels that it stands for have data
@@ -32,8 +37,8 @@ struct RowStart
     int left, right;
 };
 
-//! The first ones with data. If that is farther on in the right image by more than an eighth of the width, a row is
-//! masked from above or below: then it begins at the border of the images.
+//! The first ones with data. If that is farther on in the right image by more than an eighth of the whole width, a row
+//! is masked from above or below: then it begins at the border of the images.
 inline RowStart rowStart(const PairMasks& masks, int y)
 {
     const auto first = [y](const Mat& mask) {
@@ -44,7 +49,9 @@ inline RowStart rowStart(const PairMasks& masks, int y)
     if (masks.isEmpty())
         return none;
     const RowStart start = { first(masks.left), first(masks.right) };
-    return start.right - start.left > masks.left.cols / RowStart::widthsPerLag ? none : start;
+    const int width = masks.wholeWidth > 0 ? masks.wholeWidth : masks.left.cols,
+              lag = std::max(start.right - masks.rightBegin, 0) - std::max(start.left - masks.leftBegin, 0);
+    return lag > width / RowStart::widthsPerLag ? none : start;
 }
 
 }}} // namespace cv::stereo::hdp

@@ -179,6 +179,7 @@ void findReasons(const Mat& disparity, const OutputPlan& plan, int width, const 
     const int scale = 1 << plan.finestLayer, half = subpixelScale / 2;
     reasons.create(disparity.size(), CV_8U);
     parallelForRows(reasons.size(), [&](int y) {
+        limits.hideUnmatched(y, disparity.ptr<ushort>(y), stable.ptr(y));
         for (int x = 0; x < reasons.cols; ++x)
         {
             // The column of the right image, in 1 / subpixelScale pixel

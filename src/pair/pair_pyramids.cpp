@@ -76,6 +76,16 @@ void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, doubl
     smoothBlocks(leftLevels, rightLevels, found.leftBlocks, found.rightBlocks);
 }
 
+//! The masks of a layer, and what became of the columns of the images
+PairMasks layerMasks(const Mat& left, const Mat& right, const PyramidPlan& plan, int layer)
+{
+    PairMasks masks(left, right);
+    masks.leftBegin = plan.extension >> layer;
+    masks.rightBegin = (int)clamped<int64>((int64)plan.extension + plan.minDisparity, 0, INT_MAX) >> layer;
+    masks.wholeWidth = plan.wholeWidth >> layer;
+    return masks;
+}
+
 } // namespace
 
 void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks, const PyramidPlan& plan,
@@ -111,11 +121,8 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
     images.resize(layers);
     const bool seesLevels = plan.isCensus && levels.isGrey;
     for (int layer = 0; layer < layers; ++layer)
-        images[layer] = { l.colours[layer],
-                          seesLevels ? l.matched[layer] : l.colours[layer],
-                          l.matched[layer],
-                          r.matched[layer],
-                          { l.mask[layer], r.mask[layer] } };
+        images[layer] = { l.colours[layer], seesLevels ? l.matched[layer] : l.colours[layer], l.matched[layer],
+                          r.matched[layer], layerMasks(l.mask[layer], r.mask[layer], plan, layer) };
     for (std::vector<Mat>* pyramid : { &l.colours, &l.matched, &r.matched, &l.mask, &r.mask })
         pyramid->front().release(); // may be the caller's
 }

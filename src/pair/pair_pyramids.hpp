@@ -56,6 +56,7 @@ struct PyramidPlan
     int layers;         // their number
     bool isCensus;      // whether the matching cost gets grey levels, see greyLevels(), instead of byteLevels()
     bool smoothsBlocks; // of grey levels, see smoothBlocks()
+    int wholeWidth;     // of the image that the pair is a tile of; 0: its own
 };
 
 /** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,

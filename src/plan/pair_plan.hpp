@@ -112,7 +112,7 @@ struct PairPlan
 
 /** What is done for a pair, as far as it depends on nothing but this: parameters and a model of which each value is
 valid by itself, size and type of the images as checkPair() accepts them, and inputs as checkInputs() does. If
-numDisparities is 0, the range is that of the model.
+numDisparities is 0, the range is that of the model, or of the inputs.
 @throws cv::Exception if the parameters do not go with one another or with the images. */
 CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int type, const PairModel& model = PairModel(),
                          const PairInputs& inputs = PairInputs());
@@ -120,9 +120,9 @@ CV_EXPORTS PairPlan plan(const MatcherParameters& parameters, Size size, int typ
 //! What is done now that the pair has been seen. findings: of alignPair(); video: FIRST without one
 CV_EXPORTS PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFindings& video);
 
-/** Number of pyramid layers for so many disparities, in images of any size: numLayers or more, until the top layer has
-maxTopDisparities or less or there are maxLayers. A layer that would leave it less than 16 is left out, but for the
-first two. See HDPTreeMatcher::Params::maxTopDisparities. */
+/** Number of pyramid layers for so many disparities, in images of any size: numLayers; more, up to maxLayers, while the
+top layer has more than maxTopDisparities; fewer, but for the first two, where it would have less than 16. See
+HDPTreeMatcher::Params::maxTopDisparities. */
 CV_EXPORTS int chooseLayers(int numDisparities, int numLayers, int maxTopDisparities, int maxLayers);
 
 }}} // namespace cv::stereo::hdp
