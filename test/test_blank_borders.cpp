@@ -110,6 +110,41 @@ TEST(HDPStereo_BlankBorders, survive_compression)
     }
 }
 
+//! What is rectified to a larger view has bent sides: black between the corners, which show something.
+TEST(HDPStereo_BlankBorders, of_bent_sides)
+{
+    const Size size(240, 160);
+    for (int type : { CV_8UC1, CV_16UC1 })
+    {
+        SyntheticPair pair = makeSyntheticPair(size, 40, 5);
+        Mat images[2] = { ofType(pair.left, type), ofType(pair.right, type) }, blank[2];
+        for (int side = 0; side < 2; ++side)
+        {
+            images[side].convertTo(images[side], -1, 1, type == CV_8UC1 ? 60 : 240);
+            blank[side] = Mat(size, CV_8UC1, Scalar(0));
+            for (int y = 0; y < size.height; ++y)
+                for (int x = 0; x < size.width; ++x)
+                {
+                    const double u = (x - 119.5) / 120, v = (y - 79.5) / 80, bend = 0.08 + 0.02 * side;
+                    const bool isShown =
+                        std::abs(u) < 1 - bend * (1 - 1.2 * v * v) && std::abs(v) < 1 - bend * (1 - 1.2 * u * u);
+                    blank[side].at<uchar>(y, x) = isShown ? 0 : 255;
+                }
+            images[side].setTo(Scalar::all(0), blank[side]);
+        }
+        hdp::PairMasks masks;
+        ASSERT_GT(hdp::findBorders(images[0], images[1], masks), 0);
+        for (int side = 0; side < 2; ++side)
+        {
+            const Mat found = (side ? masks.right : masks.left) == 0;
+            Mat grown;
+            dilate(blank[side], grown, getStructuringElement(MORPH_CROSS, Size(3, 3)));
+            EXPECT_EQ(0, countNonZero(blank[side] & ~found)) << side;
+            EXPECT_EQ(0, countNonZero(found & ~grown)) << side;
+        }
+    }
+}
+
 //! Scenes have dark places at their sides, too.
 TEST(HDPStereo_BlankBorders, darkness_is_none)
 {
@@ -135,7 +170,8 @@ TEST(HDPStereo_BlankBorders, darkness_is_none)
     EXPECT_FALSE(hasBorders(noisy, noisy));
 
     const Mat bright = scene.left + Scalar::all(20);
-    for (const Rect& spot : { Rect(0, 40, 10, 10), Rect(100, 40, 60, 60) }) // too small; inside
+    for (const Rect& spot :
+         { Rect(0, 40, 10, 10), Rect(100, 40, 60, 60), Rect(0, 40, 30, 80) }) // small; inside; square
     {
         Mat image = bright.clone();
         image(spot).setTo(Scalar::all(0));

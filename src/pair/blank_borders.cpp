@@ -12,10 +12,11 @@ HDP_TUNABLE(int, maxBlack, 2, "levels of 8 bits", "of borders, as JPEG leaves th
 HDP_TUNABLE(double, shareOfMean, 0.25, "share of the mean",
             "that ends a border: more takes shadows for it, less leaves what JPEG blurs at its end");
 HDP_TUNABLE(int, mostMixed, 10, "pixels", "between black and that level, as in a block of JPEG: shadows have more");
-HDP_TUNABLE(int, mostStep, 4, "pixels", "between the ends of two rows: outlines of black things have larger ones");
+HDP_TUNABLE(int, mostStep, 4, "pixels",
+            "between the ends of two rows: dark things in textured scenes have larger ones");
 HDP_TUNABLE(double, minRegular, 0.75, "share of the rows", "of a border that end so: others end at dark things");
 HDP_TUNABLE(int, sidesPerBorder, 4, "lengths of a side",
-            "of which one is in a border, from a corner on: less takes black things in corners for it");
+            "of which one is in a border: less takes black things at the sides for it");
 HDP_TUNABLE(int, pixelsPerBorder, 100, "pixels", "of an image, of which one is in borders: fewer do no harm");
 HDP_TUNABLE(double, mostBlank, 0.5, "share of an image", "that is in borders: more is a dark scene");
 HDP_TUNABLE(int, minSide, 32, "pixels", "of an image: of fewer, a percent is single pixels");
@@ -38,7 +39,7 @@ struct Side
     int count;
     Point inwards; // from a pixel of a row or column to the next
     int length;
-    bool isCut, isCutOpposite; // whether the image goes on there
+    bool isCut, isCutOpposite, isCutBefore, isCutBehind; // whether the image goes on there, and beside its ends
 };
 
 //! The border of an image that begins at one of its sides
@@ -52,9 +53,14 @@ public:
             return;
         for (int i = 0; i < side.count; ++i)
             lines_[i] = findLine(side.first + side.along * i);
-        const int fromFirst = countBorder(lines_.begin(), lines_.end()),
-                  fromLast = countBorder(lines_.rbegin(), lines_.rend());
-        std::fill(lines_.begin() + fromFirst, lines_.end() - std::min(fromLast, side.count - fromFirst), Line());
+        for (int begin = 0, end; begin < side.count; begin = end)
+        {
+            end = begin + 1;
+            while (end < side.count && (lines_[end].blank > 0) == (lines_[begin].blank > 0))
+                ++end;
+            if (!isBorder(begin, end))
+                std::fill(lines_.begin() + begin, lines_.begin() + end, Line());
+        }
     }
 
     //! Masks rows or columns up to the ends that they have.
@@ -93,17 +99,21 @@ private:
         return brightness(end) >= level_ ? Line({ end + 1, true, false }) : Line({ black, false, false });
     }
 
-    //! From a corner on, a border goes to the first line that shows something. Too short a one, or one whose end is not
-    //! sharp and about straight, is a part of the scene.
-    template <typename Iterator> int countBorder(Iterator begin, Iterator end) const
+    //! Whether black lines are one. What is too short, or has no sharp and smooth outline, is a part of the scene. One
+    //! that reaches no corner begins and ends with nothing: that is how distortion bends the sides of an image.
+    bool isBorder(int begin, int end) const
     {
-        int count = 0, ending = 0, regular = 0, before = begin->blank;
-        for (Iterator line = begin; line != end && line->blank > 0; before = line->blank, ++line, ++count)
+        int ending = 0, regular = 0;
+        for (int i = begin; i < end; ++i)
         {
-            ending += !line->isOpen;
-            regular += !line->isOpen && line->isSharp && std::abs(line->blank - before) <= mostStep;
+            const Line &line = lines_[i], &before = lines_[std::max(i - 1, begin)];
+            ending += !line.isOpen;
+            regular += !line.isOpen && line.isSharp && std::abs(line.blank - before.blank) <= mostStep;
         }
-        return ending * sidesPerBorder < (int)lines_.size() || regular < minRegular * ending ? 0 : count;
+        const bool goesOn = (begin == 0 && side_.isCutBefore) || (end == side_.count && side_.isCutBehind);
+        const bool isInside = begin > 0 && end < side_.count;
+        return (goesOn || ending * sidesPerBorder >= side_.count) && regular >= minRegular * ending &&
+               (!isInside || std::max(lines_[begin].blank, lines_[end - 1].blank) <= mostMixed);
     }
 
     const Mat& image_;
@@ -115,14 +125,15 @@ private:
 template <typename T> void maskBordersOf(const Mat& image, double level, const ImageFrame& frame, Mat& mask)
 {
     const int width = image.cols, height = image.rows;
-    const bool isCutLeft = frame.origin.x > 0,
-               isCutRight = frame.origin.x + width<frame.whole.width, isCutAbove = frame.origin.y> 0,
-               isCutBelow = frame.origin.y + height < frame.whole.height;
+    const Point end = frame.origin + Point(width, height);
+    const bool isCutLeft = frame.origin.x > 0, isCutRight = end.x < frame.whole.width;
+    const bool isCutAbove = frame.origin.y > 0, isCutBelow = end.y < frame.whole.height;
     const Point x(1, 0), y(0, 1);
-    const SideBorder<T> left(image, level, { Point(), y, height, x, width, isCutLeft, isCutRight }),
-        right(image, level, { x * (width - 1), y, height, -x, width, isCutRight, isCutLeft }),
-        above(image, level, { Point(), x, width, y, height, isCutAbove, isCutBelow }),
-        below(image, level, { y * (height - 1), x, width, -y, height, isCutBelow, isCutAbove });
+    const SideBorder<T> left(image, level,
+                             { Point(), y, height, x, width, isCutLeft, isCutRight, isCutAbove, isCutBelow }),
+        right(image, level, { x * (width - 1), y, height, -x, width, isCutRight, isCutLeft, isCutAbove, isCutBelow }),
+        above(image, level, { Point(), x, width, y, height, isCutAbove, isCutBelow, isCutLeft, isCutRight }),
+        below(image, level, { y * (height - 1), x, width, -y, height, isCutBelow, isCutAbove, isCutLeft, isCutRight });
     for (const SideBorder<T>* border : { &left, &right, &above, &below })
         border->mask(mask);
     // Where black rows cross black columns, in a corner
@@ -132,17 +143,20 @@ template <typename T> void maskBordersOf(const Mat& image, double level, const I
                 mask.at<uchar>(row, column) = 0;
 }
 
-//! Whether a corner is black: no border is without one.
-bool hasBlackCorner(const Mat& image)
+//! Whether one of some pixels of the sides is black: every border has one of them, as it is long enough.
+bool hasBlackSide(const Mat& image)
 {
-    for (int x : { 0, image.cols - 1 })
-        for (int y : { 0, image.rows - 1 })
+    const int parts = 2 * sidesPerBorder;
+    for (int i = 0; i <= parts; ++i)
+    {
+        const int right = image.cols - 1, bottom = image.rows - 1, x = right * i / parts, y = bottom * i / parts;
+        for (const Point& p : { Point(x, 0), Point(x, bottom), Point(0, y), Point(right, y) })
         {
-            const Point p(x, y);
             const int level = image.depth() == CV_8U ? +brightest<uchar>(image, p) : +brightest<ushort>(image, p);
             if (level <= blackOf(image))
                 return true;
         }
+    }
     return false;
 }
 
@@ -164,7 +178,7 @@ bool areBorders(const Mat& mask)
 
 double findBorders(const Mat& left, const Mat& right, PairMasks& masks)
 {
-    if (std::min(left.cols, left.rows) < minSide || (!hasBlackCorner(left) && !hasBlackCorner(right)))
+    if (std::min(left.cols, left.rows) < minSide || (!hasBlackSide(left) && !hasBlackSide(right)))
         return 0;
     const double least = left.depth() == CV_8U ? 4 * maxBlack : 1;
     const double level = std::max((meanLevel(left) + meanLevel(right)) / 2 * shareOfMean, least);

@@ -19,13 +19,15 @@ are none. */
 CV_EXPORTS double findBorders(const Mat& left, const Mat& right, PairMasks& masks);
 
 /** Masks black borders: they show nothing, and their edges are at the same place in both images, whatever the disparity
-is. Along a side of the image, a border goes from a corner on, over at least a quarter of the side, to the first row (or
-column) that does not begin with black: up to 2 of 8 bits, 0 of 16. Three quarters of its rows end sharply, about where
-the row before ends: at most 10 pixels after the black ones, one has the level that ends a border. These pixels belong
-to it, too: resampling and JPEG mix them from both. The brightest channel counts.
+is. Along a side of the image, a border has at least a quarter of its rows (or columns), one after the other, that begin
+with black: up to 2 of 8 bits, 0 of 16. Three quarters of these end sharply, about where the row before ends: at most 10
+pixels after the black ones, one has the level that ends a border. These pixels belong to it, too: resampling and JPEG
+mix them from both. A border that reaches no corner has 10 pixels at most in its first and its last row. The brightest
+channel counts. Round outlines after JPEG are not found: they end less smoothly.
 @param image As above.
 @param level That ends a border, > 0.
-@param frame Where the image lies, if it is a tile: borders begin at the sides of the whole, and may go on to a cut.
+@param frame Where the image lies, if it is a tile: borders begin at the sides of the whole that it has, and may go on
+behind a cut, where they may be of any length.
 @param mask Receives CV_8UC1 of the size of the image, 0 in borders, else 255. */
 CV_EXPORTS void maskBorders(const Mat& image, double level, const ImageFrame& frame, Mat& mask);
 
