@@ -326,15 +326,21 @@ private:
             keepIntervals(result_.disparity);
     }
 
-    //! With ranges, winners are nearly in them, as their candidates are.
+    //! What a prior says stays in the ranges; other winners need not yet, see filter().
     void joinWithPrior()
     {
-        if (in_.pair.hasPrior)
-            clock_.run("prior", [&] {
-                joinPrior(in_.known.points[plan_.layer], in_.images.colours, own_.census, plan_.layer,
-                          plan_.maxDisparity, result_.winners);
-                keepIntervals(result_.winners);
-            });
+        if (!in_.pair.hasPrior)
+            return;
+        clock_.run("prior", [&] {
+            const Mat before = in_.pair.hasRanges ? result_.winners.clone() : Mat();
+            joinPrior(in_.known.points[plan_.layer], in_.images.colours, own_.census, plan_.layer, plan_.maxDisparity,
+                      result_.winners);
+            if (before.empty())
+                return;
+            Mat moved = result_.winners.clone();
+            keepIntervals(moved);
+            moved.copyTo(result_.winners, result_.winners != before);
+        });
     }
 
     void keepIntervals(Mat& disparity) const

@@ -353,4 +353,26 @@ TEST(HDPStereo_DisparityRanges, windows_have_candidates_of_their_pixels)
         }
 }
 
+//! It moves no winner into its range that would not be there without it.
+TEST(HDPStereo_DisparityRanges, a_prior_that_says_nothing_changes_nothing)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(240, 160), 48, 8);
+    Mat smallest(pair.left.size(), CV_32F), largest;
+    RNG rng(8);
+    rng.fill(smallest, RNG::UNIFORM, 0, 30);
+    largest = smallest + 12;
+    for (const System& preset : presets)
+    {
+        if (preset.preset == HDPTreeMatcher::PRESET_PAPER)
+            continue; // a prior needs the census
+        SCOPED_TRACE(preset.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 48);
+        matcher->setDisparityRange(smallest, largest);
+        const Mat expected = match(*matcher, pair.left, pair.right).clone();
+        Mat prior(pair.left.size(), CV_32F, Scalar(unlimited));
+        matcher->setPriorDisparity(prior, 0.5);
+        expectIdentical(expected, match(*matcher, pair.left, pair.right));
+    }
+}
+
 }} // namespace opencv_test
