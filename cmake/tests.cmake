@@ -211,10 +211,12 @@ add_optional_check(python python "${missing}"
 add_optional_check(sample_stereo_match_python "samples;python" "${missing}"
   "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/samples/hdp_stereo_match.py" ${aloe} --compare --runs=1
   --output=aloe_python.pfm --picture=aloe_python.jpg)
+add_optional_check(sample_stereo_match_python_alone "samples;python" "${missing}"
+  "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/samples/hdp_stereo_match.py" --runs=1)
 add_optional_check(drop_in "samples;python" "${missing}"
   "${PROJECT_SOURCE_DIR}/scripts/check_drop_in.sh" "${CMAKE_BINARY_DIR}" "${OPENCV_SOURCE_DIR}" "${Python3_EXECUTABLE}")
 if(NOT missing)
-  set_property(TEST python sample_stereo_match_python drop_in APPEND PROPERTY ENVIRONMENT
+  set_property(TEST python sample_stereo_match_python sample_stereo_match_python_alone drop_in APPEND PROPERTY ENVIRONMENT
     "PYTHONPATH=${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/python3")
   set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "OK \\(skipped=")
 endif()

@@ -10,6 +10,7 @@
 #include "stereo_files.hpp"
 #include "stereo_source.hpp"
 #include "stereo_view.hpp"
+#include "strict_arguments.hpp"
 
 #include <iostream>
 
@@ -109,6 +110,9 @@ static void run(const CommandLineParser& parser)
             parser.get<int>(number); // check() tells whether it is one
     for (const char* number : { "unit", "field-of-view" })
         parser.get<double>(number);
+    for (const char* option : { "calibration2", "watch" })
+        if (parser.has(option) && !parser.has("calibration"))
+            fail("--" + String(option) + " needs --calibration");
     if (!parser.has("@left"))
         fail("a source is needed: a file, a folder, a video or a camera; --help says more");
     if (!parser.check() || !(scale >= 0.05 && scale <= 1))
@@ -191,6 +195,7 @@ int main(int argc, char** argv)
     }
     try
     {
+        checkArguments(argc, argv, parser, 2);
         run(parser);
     }
     catch (const cv::Exception& e)

@@ -65,7 +65,7 @@ def read(path, window=None, size=None):
 
     raster, mask = open_raster(path), None
     if raster:
-        from rasterio.enums import Resampling
+        from rasterio.enums import MaskFlags, Resampling
         from rasterio.windows import Window
 
         with raster:
@@ -74,7 +74,8 @@ def read(path, window=None, size=None):
             bands = [3, 2, 1] if raster.count >= 3 else [1]
             image = raster.read(bands, window=part, out_shape=(len(bands),) + shape, resampling=Resampling.average)
             image = np.ascontiguousarray(image.transpose(1, 2, 0)) if len(bands) > 1 else image[0]
-            mask = raster.dataset_mask(window=part, out_shape=shape, resampling=Resampling.nearest)
+            if any(flags != [MaskFlags.all_valid] for flags in raster.mask_flag_enums):
+                mask = raster.dataset_mask(window=part, out_shape=shape, resampling=Resampling.nearest)
     else:
         image = cv2.imread(str(path), cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH)
         if image is None:  # TIFF of grey floats is no colour image

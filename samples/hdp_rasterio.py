@@ -25,19 +25,21 @@ import sys
 import hdpstereo
 import numpy as np
 import rasterio
-from rasterio.enums import Resampling
+from rasterio.enums import MaskFlags, Resampling
 from rasterio.windows import Window
 
 GRID, MARGIN = 384, 128  # pixels of all layers begin at its multiples; what scanlines need
 
 
 def read(raster, window, size):
-    '''Levels and mask of a window, at this size (width, height).'''
+    '''Levels and mask of a window, at this size (width, height). No mask if the raster has none: black borders are
+    found then.'''
     bands = [3, 2, 1] if raster.count >= 3 and raster.dtypes[0] == 'uint8' else 1
     shape = (size[1], size[0])
     levels = raster.read(bands, window=window, resampling=Resampling.average,
                          out_shape=shape if bands == 1 else (3,) + shape)
-    mask = raster.dataset_mask(window=window, out_shape=shape, resampling=Resampling.nearest)
+    is_masked = any(flags != [MaskFlags.all_valid] for flags in raster.mask_flag_enums)
+    mask = raster.dataset_mask(window=window, out_shape=shape, resampling=Resampling.nearest) if is_masked else None
     return np.ascontiguousarray(levels if bands == 1 else levels.transpose(1, 2, 0)), mask
 
 

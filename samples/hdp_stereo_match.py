@@ -98,7 +98,9 @@ def check_outputs(args, parser):
     for path in args.output, args.picture, args.point_cloud:
         if path and os.path.realpath(path) in inputs:
             parser.error('cannot write %s: it is an input' % path)
-    extension = os.path.splitext(args.output or '.pfm')[1].lower()
+    if not args.output:
+        return
+    extension = os.path.splitext(args.output)[1].lower()
     if extension not in ('.png', '.pfm'):
         parser.error('--output=%s: neither .png nor .pfm' % args.output)
     if extension == '.png' and args.min_disparity < 0:

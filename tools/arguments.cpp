@@ -11,6 +11,14 @@ namespace hdp_tools {
 
 static void fail(const String& message) { CV_Error(cv::Error::StsBadArg, message); }
 
+String optionName(const String& argument)
+{
+    if (argument.size() < 2 || argument[0] != '-')
+        return String();
+    const size_t begin = argument[1] == '-' ? 2 : 1;
+    return argument.substr(begin, std::max(argument.find('='), begin) - begin);
+}
+
 void checkArguments(int argc, const char* const argv[], const cv::CommandLineParser& parser, std::vector<String> flags,
                     int maxPositional)
 {
@@ -25,8 +33,7 @@ void checkArguments(int argc, const char* const argv[], const cv::CommandLinePar
                 fail("unexpected argument '" + argument + "'");
             continue;
         }
-        const String option = argument.substr(0, argument.find('='));
-        const String name = option.substr(option.compare(0, 2, "--") == 0 ? 2 : 1);
+        const String option = argument.substr(0, argument.find('=')), name = optionName(argument);
         try
         {
             parser.has(name);

@@ -10,6 +10,9 @@
 
 namespace hdp_tools {
 
+//! NAME of --NAME=VALUE, and with one dash; empty if it is no option
+cv::String optionName(const cv::String& argument);
+
 /** Checks the arguments more strictly than cv::CommandLineParser does: unknown options, options without a value, flags
 with one, and too many positional arguments are errors, cv::Exception.
 @param flags Options without a value; --help is one anyway. "NAME=" is one that may have a value or not. */

@@ -33,6 +33,7 @@ using hdp_tools::placeOf;
 static const char* const usage =
     "HDPTreeMatcher behind the command line of mgm\n"
     "usage: hdpstereo-mgm [OPTION VALUE]... LEFT RIGHT OUT [COST [BACKFLOW]]\n"
+    "       hdpstereo-mgm --help | --version\n"
     "LEFT, RIGHT: a rectified pair, 8 or 16 bit or grey floats, NaN = no data. OUT: NaN = no disparity.\n"
     "All maps are files of floats: .tif, .pfm, and .exr if OpenCV has it.\n"
     "A left pixel (x, y) is (x + d, y) in the right image: the sign is the opposite of OpenCV's.\n"

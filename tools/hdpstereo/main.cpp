@@ -63,8 +63,8 @@ static const char* const keys =
     "{picture         |      | disparities in colors: far is blue, near is orange, none is black }"
     "{truth           |      | true disparities: PNG, 8 bit or 16 bit (times 256), 0 = unknown }"
     "{compare         |      | also by cv::StereoSGBM: times, errors, and its picture between the left image and ours }"
-    "{depth           |      | FILE.png (16 bit, millimetres, 0 = none) or FILE.pfm (float, metres, nan = none); needs "
-    "--calibration }"
+    "{depth           |      | FILE.png (16 bit, millimetres, 0 = none), or FILE.pfm or .tif (float, metres, nan = none); "
+    "needs --calibration }"
     "{point-cloud     |      | colored points: FILE.ply; needs --calibration, --reprojection, or --focal and "
     "--baseline }"
     "{reprojection    |      | file with the matrix Q of cv::stereoRectify, as stereo_calib.cpp of OpenCV's samples "
@@ -86,7 +86,7 @@ static void checkCompany(int argc, const char* const argv[], const CommandLinePa
                                  { "reprojection", "point-cloud" } };
     for (int i = 1; i < argc; ++i)
         for (const String* names : needed)
-            if (String(argv[i]).compare(0, names[0].size() + 3, "--" + names[0] + "=") == 0 && !parser.has(names[1]))
+            if (hdp_tools::optionName(argv[i]) == names[0] && !parser.has(names[1]))
                 CV_Error(Error::StsBadArg, "--" + names[0] + " needs --" + names[1]);
     const String ways[] = { "calibration", "reprojection", "focal", "baseline" }; // to points, the first one counts
     for (int i = 0; i < 2; ++i)

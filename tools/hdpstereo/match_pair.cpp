@@ -76,11 +76,11 @@ static void printTimes(const HDPTreeMatcher& matcher)
     std::cout << format("%-11s%-24s%10.1f ms\n", "", "all stages", sum);
 }
 
-//! If rows tell that something is wrong with the pair. A swapped one has hardly a corner in common.
+//! If rows tell that something is wrong with the pair. A swapped one has hardly a corner in common, or by chance.
 static void warnOfPair(const HDPTreeMatcher& matcher)
 {
     const HDPTreeMatcher::Findings findings = matcher.getFindings();
-    const double believable = 3; // pixels
+    const double believable = 3, believableError = 1; // pixels
     if (matcher.getMaxRowOffset() == 0)
         return;
     if (findings.rowError == 0) // too few corners were matched
@@ -91,6 +91,11 @@ static void warnOfPair(const HDPTreeMatcher& matcher)
         std::cerr << format("warning: the rows of the right image are off by %.1f pixels: is the pair rectified, or "
                             "swapped?\n",
                             std::abs(findings.rows[0]));
+    else if (findings.rowError > believableError)
+        std::cerr << format(
+            "warning: corners are %.1f pixels off their rows in the right image: is the pair rectified, "
+            "or swapped?\n",
+            findings.rowError);
 }
 
 //! Pixels of known truth that the right image shows: inside of it, and behind no other pixel

@@ -365,6 +365,7 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
         { " --tiles" + pair + out + ".tif --findings=" + none, "filename: '" + none + "' does not hold a pair model" },
         { " --tiles" + pair + out + ".tif --calibration=" + none, "--calibration does not go with --tiles" },
         { pair + out + ".tif --memory=100", "--memory needs --tiles" },
+        { pair + out + ".tif -unit=mm", "--unit needs --calibration" },
         { pair + out + ".tif --format=tif", "--format needs --batch" },
         { pair + out + ".tif --prior-sigma=1", "--prior-sigma needs --prior" },
         { pair + out + ".tif --unit=1", "--unit needs --calibration" },
@@ -608,6 +609,9 @@ TEST(HDPStereo_Programs, camera_sequences)
     const String single = run(folder, frames.sequences + " --frames=2 --scale=0.5 --single-frames").output;
     EXPECT_EQ(0u, single.find("2 frames, ")) << single;
     EXPECT_EQ(1, run(folder, frames.sequences + " --preset=tree").status);
+    const String uncalibrated = frames.program + folder.path("lefts") + " " + folder.path("rights") + " --no-gui";
+    for (const String wrong : { " --num-disparites=32", " lefts", " --watch", " --calibration2=extrinsics.yml" })
+        EXPECT_EQ(1, run(folder, uncalibrated + wrong).status) << wrong;
 }
 
 TEST(HDPStereo_Programs, camera_folders_and_their_results)

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Maps as files: the same as those of samples/hdp_stereo_match.cpp
+// Maps as files: the same as those of samples/hdp_stereo_match.py
 
 import { scale } from './disparities.mjs';
 import { channelsOf, levelsOf } from './image_data.mjs';

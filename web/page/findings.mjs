@@ -17,18 +17,18 @@ function addFinding(term, text) {
 }
 
 // What seems to be wrong with a pair, by its rows; null if nothing does
-export function pairProblem({ noise, rows }) {
+export function pairProblem({ rows }) {
     if (!rows.sought) return null;
-    if (noise === 0 && rows.model.every(value => value === 0))
+    if (rows.error === 0)
         return (
             'Hardly a corner of the left image was found in the right one. Are the two swapped? Is the pair rectified, ' +
             'which means that a point is in the same row of both? Do the disparities begin and end where they should?'
         );
     const off = Math.abs(rows.model[0]);
-    return off > 3
-        ? `The rows of the right image are off by ${off.toFixed(1)} pixels. Are the images swapped, or not rectified? ` +
-              'A point should be in the same row of both.'
-        : null;
+    const hint = 'Are the images swapped, or not rectified? A point should be in the same row of both.';
+    if (off > 3) return `The rows of the right image are off by ${off.toFixed(1)} pixels. ${hint}`;
+    if (rows.error > 1) return `Corners are ${rows.error.toFixed(1)} pixels off their rows in the right image. ${hint}`;
+    return null;
 }
 
 export function showFindings(result) {

@@ -11,6 +11,7 @@ export const reasonWords = [
     { text: 'without data', color: [20, 22, 26] },
     { text: 'rejected: left and right disagree', color: [195, 36, 2] },
     { text: 'rejected: a small patch by itself', color: [160, 90, 200] },
+    { text: 'found outside of its range, moved into it', color: [40, 150, 70] },
 ];
 
 // The colours with their words, and how many of the pixels they are

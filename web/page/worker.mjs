@@ -90,7 +90,12 @@ function findings(matcher) {
     return {
         noise: found.noise,
         noiseThreshold: matcher.getNoiseThreshold(),
-        rows: { sought: matcher.getMaxRowOffset() > 0, moved: found.areRowsMoved, model: found.rows },
+        rows: {
+            sought: matcher.getMaxRowOffset() > 0,
+            moved: found.areRowsMoved,
+            model: found.rows,
+            error: found.rowError,
+        },
         light: { sought: matcher.getUseLightAlignment(), changed: found.isLightChanged, model: found.light },
         range: { sought: matcher.getNumDisparities() === 0 },
         ratios: found.searchRatios,

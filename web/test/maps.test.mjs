@@ -12,6 +12,7 @@ import test from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { floatsOfPfm, matchNatively, pageFolder, pairs, presets } from './pictures.mjs';
 
+const { reasonWords } = await import(pathToFileURL(join(pageFolder, 'reasons.mjs')));
 const { default: create } = await import(pathToFileURL(join(pageFolder, 'hdpstereo.mjs')));
 const hdp = await create({ wasmBinary: readFileSync(join(pageFolder, 'hdpstereo.wasm')) });
 
@@ -95,6 +96,8 @@ test('all results of a run', () => {
         reasons = matcher.getReasons();
     assert.ok(sigma.data instanceof Float32Array && sigma.data.every(value => value > 0 && value < 100));
     assert.ok(reasons.data.includes(hdp.REASON_MATCHED) && reasons.data.includes(hdp.REASON_OCCLUDED));
+    const codes = Object.keys(hdp).filter(name => name.startsWith('REASON_'));
+    assert.deepEqual(codes.map(name => hdp[name]).sort(), [...reasonWords.keys()]);
     const { data } = matcher.compute(left, right);
     assert.ok(data instanceof Float32Array && data.every((value, i) => 16 * value === map.data[i]));
     matcher.delete();
