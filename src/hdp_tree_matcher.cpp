@@ -62,7 +62,7 @@ public:
         completeImages(left, right);
         const bool keepsRange = pairPlan.looksForRange && pairPlan.followsVideo;
         if (pairPlan.looksForRange)
-            pairPlan = makePlan(withFoundRange(pairPlan.followsVideo));
+            pairPlan = makePlan(withFoundRange(pairPlan));
         if (!keepsRange)
             rangeSearch_.forgetFrames();
         if (inputs_.hasRanges() || inputs_.hasPrior())
@@ -288,11 +288,13 @@ private:
     }
 
     //! The parameters with the range that is found in the pair
-    MatcherParameters withFoundRange(bool isFrame)
+    MatcherParameters withFoundRange(const PairPlan& pairPlan)
     {
         Range found;
-        clock_.run("disparity range",
-                   [&] { found = rangeSearch_.find(pair_.left, pair_.right, pair_.masks, p_.maxRowOffset, isFrame); });
+        clock_.run("disparity range", [&] {
+            found = rangeSearch_.find(pair_.left, pair_.right, pair_.masks, pairPlan.alignment.maxRowOffset,
+                                      pairPlan.followsVideo);
+        });
         return withRange(p_, found.start, found.size());
     }
 

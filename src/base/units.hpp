@@ -8,8 +8,9 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-// Candidates are whole disparities, in pixels of their layer. Disparity maps are CV_16UC1, in 1 / subpixelScale pixel
-// of their layer. Both count from minDisparity.
+// Candidates are whole disparities, in pixels of their layer, or in those of the layer below, where a layer of all
+// candidates compares both. Disparity maps are CV_16UC1, in 1 / subpixelScale pixel of their layer. Both count from
+// minDisparity.
 
 const int subpixelScale = 16;
 

@@ -87,7 +87,8 @@ s(p) = floor(unit S(p, parent) w(p) / w(parent)), t(p) = floor(unit S(p, parent)
 MeanNode::unit, both less than unit,
 U(p) = M(p) + sum over p's children c of round(s(c) (U(c) - M(p)) / unit), from the leaves to the root, and
 V(p) = U(p) + round(t(p) (V(parent) - U(p)) / unit), from the root to the leaves; V = U at the root.
-Halves are rounded up. So means of equal costs are these costs, and all means are in the range of the costs.
+Halves are rounded up. So means of equal costs are these costs, and all means are in the range of the costs, but for
+some 1 / 1024 of a bit.
 @param volume Receives V times CostVolume::scale, rounded. */
 CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const TwoLayerCost& cost, double gamma,
                                AggregationBuffers& buffers, CostVolume& volume);

@@ -14,8 +14,8 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-// Pixels; side of the square whose levels are compared: a smaller one has noise, a larger one edges, and more than sums
-// of 32 bits hold
+// Pixels; side of the square whose levels are compared: a smaller one has noise, a larger one edges; from 13 on sums
+// of 32 bits do not hold them
 const int window = 9;
 
 const int unit = subpixelScale;

@@ -35,9 +35,8 @@ void checkParameters(const MatcherParameters& parameters);
 //! All parameters by name
 void writeParameters(const MatcherParameters& parameters, FileStorage& fs);
 
-//! What writeParameters() has written; a parameter that is missing gets the value of PRESET_PAPER, but for
-//! treeStrategy. Throws if that is missing or a value is not valid. ownStrategy: the strategy of the caller, for files
-//! that name it.
+//! What writeParameters() has written; a parameter that is missing gets the value of PRESET_PAPER. Throws if a value is
+//! not valid. ownStrategy: the strategy of the caller, for files that name it.
 MatcherParameters readParameters(const FileNode& fn, const Ptr<TreeStrategy>& ownStrategy);
 
 }}} // namespace cv::stereo::hdp

@@ -126,7 +126,7 @@ void setPrior(InputArray disparityArray, InputArray sigmaArray, PairInputs& inpu
 
 Range rangeOf(const PairInputs& inputs, int width)
 {
-    if (!inputs.hasRanges() || !checkRange(inputs.smallest) || !checkRange(inputs.largest)) // NaN
+    if (!inputs.hasRanges() || !checkRange(inputs.smallest) || !checkRange(inputs.largest)) // not all are limited
         return Range();
     double first, last;
     minMaxLoc(inputs.smallest, &first, nullptr);

@@ -20,7 +20,6 @@ struct PairInputs
     double highestSmallest = 0, lowestLargest = 0; // of the ranges
     int changes = 0;                               // of the ranges or of the prior
 
-    bool hasMasks() const { return !leftMask.empty() || !rightMask.empty(); }
     bool hasRanges() const { return !smallest.empty(); }
     //! Whether a pixel may not have all of these disparities
     bool limit(const Range& disparities) const

@@ -74,7 +74,7 @@ public:
         if (rows.size() != rowTerms || !checkRange(rows))
             CV_Error(Error::StsBadArg, "rows must be five finite numbers");
         for (const Point2d& place : places_)
-            if (!(std::abs(rowOf(rows, place)) < size_.height / 4))
+            if (!(std::abs(rowOf(rows, place)) < 0.25 * size_.height))
                 CV_Error(Error::StsOutOfRange, "rows must be off by less than a quarter of the image's height");
         if (std::count(rows.begin(), rows.end(), 0.) == rowTerms)
             return false;

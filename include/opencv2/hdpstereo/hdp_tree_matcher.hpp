@@ -47,11 +47,11 @@ column. getConfidence() tells how reliable each disparity is, getFindings() what
 - minDisparity, numDisparities: the range of disparities in pixels, minDisparity to minDisparity + numDisparities - 1.
   minDisparity has any sign; a negative one adds as many columns on the left of the images, numDisparities at most,
   rounded up for the layers. numDisparities is > 0, and not necessarily a multiple of 16, or 0: both are found in the
-  pair, see Findings::numDisparities, and the parameter minDisparity has no meaning. This takes 20 to 150 ms, and
-  the range is about twice as large as necessary. Where setDisparityRange() limits all pixels, it is that of all of
-  them, within the images' width. Otherwise a pair in which fewer than 10 corners have matches, as in images without
-  texture, is an error. The frames of a video keep the range of the first one while it has all disparities that are
-  found, and is not twice as large.
+  pair, see Findings::numDisparities, and the parameter minDisparity has no meaning. This takes time of its own, see
+  BENCHMARK.md, and the range is about twice as large as necessary. Where setDisparityRange() limits all pixels, it is
+  that of all of them, within the images' width. Otherwise a pair in which fewer than 10 corners have matches, as in
+  images without texture, is an error. The frames of a video keep the range of the first one while it has all
+  disparities that are found, and is not twice as large.
 - the preset, see HDPTreeMatcher::Preset: what to spend on accuracy.
 - Params::useTemporalPrediction: on for videos.
 - Params::maxRowOffset, Params::useLightAlignment, Params::noiseThreshold: what is done about pairs that are not quite
@@ -91,7 +91,8 @@ time; two matchers never share state. Its buffers are kept for the next pair. cl
 **Levels.** Parameters in intensity levels are for 8 bits. Of CV_16UC1, the upper 8 of the bits in use stand for them.
 These are as few, 8 to 16, as are enough for all but one in 1024 pixels of the pair; what is brighter, such as
 highlights and defective pixels, is white. So images of 8 bits times 2^k give the same map as without the
-factor, unless they are dark: darker ones gain contrast. With COST_CENSUS, a dark pair of any type is brightened, by a
+factor, unless they are dark: darker ones gain contrast; or have black borders that are not all 0, see setMasks().
+With COST_CENSUS, a dark pair of any type is brightened, by a
 factor of 2 or 4 if not more than one pixel in 128 becomes white by that, and less and less up to one in 16. Findings
 are about the levels of the images.
 CV_32FC1 is scaled to CV_16UC1, by one scale for both images: the darkest pixel that counts is black and the brightest
@@ -143,8 +144,8 @@ public:
     enum Reason
     {
         REASON_MATCHED = 0,  //!< the right image shows it
-        REASON_OCCLUDED = 1, //!< something nearer hides it in the right image; it has the disparity of what is beside
-        REASON_OUTSIDE = 2,  //!< the right image, or what is not masked of its row, begins after it; likewise
+        REASON_OCCLUDED = 1, //!< something nearer hides it in the right image, or a mask does; it has what is beside
+        REASON_OUTSIDE = 2,  //!< it is beyond an end of the right image, or of its row without masks; likewise
         REASON_MASKED = 3,   //!< it is masked, or its range has nothing in common with the matcher's
         REASON_UNSTABLE = 4, //!< rejected by the left-right check, see setDisp12MaxDiff()
         REASON_SPECKLE = 5,  //!< rejected by the filter for speckles, see setSpeckleWindowSize()
@@ -547,8 +548,8 @@ public:
     stay until others are set. They are no parameters: files do not have them.
 
     Without masks, black borders of images of whole numbers, as rectification leaves them, are no data either: what is
-    black from a corner of the image on along its sides, if it ends at once, and is more than a hundredth of an image.
-    Masks of which no pixel is 0 let it be matched.
+    black along a quarter of a side or more, if it ends at once, along a smooth line, and is more than a hundredth and
+    less than half of an image. Black is up to 2 of 8 bits, and 0 of 16. Masks of which no pixel is 0 let it be matched.
     @param leftMask CV_8UC1 of the images' size, 0 where the left image has no data; copied. Empty: it has everywhere.
     @param rightMask The same of the right image.
     @throws cv::Exception if a mask is of another type; both are unchanged.
@@ -596,7 +597,8 @@ public:
     more of the wrong ones, and a quarter to a half of the right ones. BENCHMARK.md has the shares. How wrong a
     disparity is, in pixels, getDisparitySigma() tells.
     @param confidence Receives CV_8UC1 of the left image's size: from 0 to 255, larger is more reliable; 0 where a
-    pixel has no data or a filter rejected it. Empty before the first compute() and after one that threw an exception.
+    pixel has no data, a filter rejected it or its reason is REASON_RANGE. Empty before the first compute() and after
+    one that threw an exception.
      */
     CV_WRAP virtual void getConfidence(OutputArray confidence) const = 0;
 
@@ -615,8 +617,9 @@ public:
 
     /** @brief Returns why each pixel has its disparity in the last compute().
 
-    Pixels that are not REASON_MATCHED are those that the left-right check finds in the map, within a pixel of the layer
-    at which matching ends, whether a filter rejects them or not. It is computed by this call.
+    REASON_OCCLUDED is what the left-right check finds in the map, within a pixel of the layer at which matching ends,
+    whether a filter rejects it or not, and what matches masked pixels. REASON_OUTSIDE has nothing in the right image to
+    be compared with, so disp12MaxDiff does not reject it. It is computed by this call.
     @param reasons Receives CV_8UC1 of the left image's size: values of HDPTreeMatcher::Reason. Empty before the first
     compute() and after one that threw an exception.
      */
@@ -647,7 +650,8 @@ public:
     @param trees Receives the number of each pixel's tree, from 0: CV_32SC1 of the layer's size. Empty before the first
     compute(), after one that threw an exception, and without trees, see Params::topAggregation.
     @param intervals Receives the first and the last candidate of each pixel's tree, TreeIntv, counted from
-    minDisparity: CV_16UC2 of the same size.
+    minDisparity: CV_16UC2 of the same size, in pixels of the layer; in halves of them on a top layer of scanlines that
+    is not the finest one.
      */
     CV_WRAP virtual void getForest(OutputArray trees, OutputArray intervals) const = 0;
 

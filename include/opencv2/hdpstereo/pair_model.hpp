@@ -38,7 +38,9 @@ struct CV_EXPORTS_W_SIMPLE PairModel
 
     /** @brief Returns the model for a part of the images.
 
-    Rows and light depend on the place in the image; the tile's pixels get those of the whole there.
+    Rows and light depend on the place in the image; the tile's pixels get those of the whole there. Black borders are
+    those of the sides of the whole that the tile has: what lies in a border and shows none of these sides is matched,
+    unless HDPTreeMatcher::setMasks() says otherwise.
     @param x First column of the tile in the whole images: a multiple of 2^(layers - 1), or compute() throws. So the
     pyramid is the same. 32 is one for up to 6 layers, 1400 disparities.
     @param y First row of the tile, likewise.
@@ -78,7 +80,7 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     //! Whether the rows of the right image are moved by them
     CV_PROP_RW bool areRowsMoved;
 
-    //! Coefficients of HDPTreeMatcher::Findings::light: 10 finite numbers.
+    //! Coefficients of HDPTreeMatcher::Findings::light: 10 numbers from -10^6 to 10^6.
     CV_PROP_RW std::vector<double> light;
     //! Whether the light of the right image is changed by them, for HDPTreeMatcher::COST_CENSUS
     CV_PROP_RW bool isLightChanged;

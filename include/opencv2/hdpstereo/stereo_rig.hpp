@@ -170,8 +170,8 @@ public:
     /** @brief Takes a frame into account.
     @param rows HDPTreeMatcher::Findings::rows of a pair that is rectified by the calibration.
     @return Whether it was: false if all are 0, as too few corners were matched or a row was off by more than
-    HDPTreeMatcher::Params::maxRowOffset, or it contradicts those before. After five contradictions in a row those are
-    forgotten: something has hit the rig.
+    HDPTreeMatcher::Params::maxRowOffset, or it contradicts those before, which are five at least. At the fifth
+    contradiction in a row those are forgotten, and the estimate begins with it: something has hit the rig.
     @throws cv::Exception if there are not five finite numbers, or they move a row by a quarter of the image's height.
      */
     CV_WRAP virtual bool add(const std::vector<double>& rows) = 0;
