@@ -15,6 +15,8 @@ HDP_TUNABLE(int, mostMixed, 10, "pixels", "between black and that level, as in a
 HDP_TUNABLE(int, mostStep, 4, "pixels",
             "between the ends of two rows: dark things in textured scenes have larger ones");
 HDP_TUNABLE(double, minRegular, 0.75, "share of the rows", "of a border that end so: others end at dark things");
+HDP_TUNABLE(double, minShallow, 0.9, "share of these",
+            "of a border between corners that end within a pixel of the one before: others end at dark things");
 HDP_TUNABLE(int, sidesPerBorder, 4, "lengths of a side",
             "of which one is in a border: less takes black things at the sides for it");
 HDP_TUNABLE(int, pixelsPerBorder, 100, "pixels", "of an image, of which one is in borders: fewer do no harm");
@@ -100,20 +102,25 @@ private:
     }
 
     //! Whether black lines are one. What is too short, or has no sharp and smooth outline, is a part of the scene. One
-    //! that reaches no corner begins and ends with nothing: that is how distortion bends the sides of an image.
+    //! that reaches no corner is shallow, from nothing to nothing: that is how distortion bends the sides of an image.
     bool isBorder(int begin, int end) const
     {
-        int ending = 0, regular = 0;
-        for (int i = begin; i < end; ++i)
+        const bool isInside = begin > 0 && end < side_.count;
+        int ending = 0, sharp = 0, regular = 0;
+        for (int i = begin, before = begin; i < end; ++i)
         {
-            const Line &line = lines_[i], &before = lines_[std::max(i - 1, begin)];
-            ending += !line.isOpen;
-            regular += !line.isOpen && line.isSharp && std::abs(line.blank - before.blank) <= mostStep;
+            ending += !lines_[i].isOpen;
+            if (lines_[i].isOpen || !lines_[i].isSharp)
+                continue;
+            ++sharp;
+            regular += std::abs(lines_[i].blank - lines_[before].blank) <= (isInside ? i - before : mostStep);
+            before = i;
         }
         const bool goesOn = (begin == 0 && side_.isCutBefore) || (end == side_.count && side_.isCutBehind);
-        const bool isInside = begin > 0 && end < side_.count;
+        const bool isShallow =
+            regular >= minShallow * sharp && std::max(lines_[begin].blank, lines_[end - 1].blank) <= mostMixed;
         return (goesOn || ending * sidesPerBorder >= side_.count) && regular >= minRegular * ending &&
-               (!isInside || std::max(lines_[begin].blank, lines_[end - 1].blank) <= mostMixed);
+               (!isInside || isShallow);
     }
 
     const Mat& image_;

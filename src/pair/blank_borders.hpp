@@ -22,8 +22,9 @@ CV_EXPORTS double findBorders(const Mat& left, const Mat& right, PairMasks& mask
 is. Along a side of the image, a border has at least a quarter of its rows (or columns), one after the other, that begin
 with black: up to 2 of 8 bits, 0 of 16. Three quarters of these end sharply, about where the row before ends: at most 10
 pixels after the black ones, one has the level that ends a border. These pixels belong to it, too: resampling and JPEG
-mix them from both. A border that reaches no corner has 10 pixels at most in its first and its last row. The brightest
-channel counts. Round outlines after JPEG are not found: they end less smoothly.
+mix them from both. A border that reaches no corner has 10 pixels at most in its first and its last row, and nine
+tenths of its rows end within a pixel of the row before. The brightest channel counts. Round outlines after JPEG are
+not found: they end less smoothly.
 @param image As above.
 @param level That ends a border, > 0.
 @param frame Where the image lies, if it is a tile: borders begin at the sides of the whole that it has, and may go on
