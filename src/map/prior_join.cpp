@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "prior_join.hpp"
+#include "point_grid.hpp"
 
 #include "../base/units.hpp"
 #include "../base/vectorized.hpp"
@@ -20,11 +21,8 @@ HDP_TUNABLE(double, tolerance, 0.7, "pixels", "of what agrees, beside two sigmas
 HDP_TUNABLE(double, slope, 0.15, "pixels per pixel", "by which disparities of a surface may differ beside that");
 HDP_TUNABLE(int, reach, 48, "pixels of the image", "from a pixel to the points it knows: more sees other surfaces");
 HDP_TUNABLE(double, pointsOfCell, 6, "points", "in a square of the reach that are enough: more cost time");
-HDP_TUNABLE(int, neighbours, 8, "points", "around a pixel that speak: more are farther away");
-HDP_TUNABLE(double, colorScale, 30, "grey levels", "that weigh as much as distanceScale: less sees fewer points");
 HDP_TUNABLE(double, distanceScale, 8, "pixels of the image", "by which the weight of a point falls to 1 / e");
 HDP_TUNABLE(double, flatness, 0.1, "squared distanceScale", "by which planes resist being tilted: points in a row");
-HDP_TUNABLE(int, windowSide, 5, "pixels", "of the costs that are compared: single ones are noise");
 HDP_TUNABLE(
     double, contradiction, 7, "bits",
     "that a cost is higher by, half of it in the mean of the points around, which may have an error in common, or "
@@ -40,12 +38,7 @@ HDP_TUNABLE(double, mostContradicted, 0.25, "times the points that agree",
 HDP_TUNABLE(int, around, 3, "times the reach",
             "on each side, that points are around: in less, all of a large wrong patch are opposed to the winners");
 
-//! A point near a pixel
-struct Neighbour
-{
-    int index;
-    double weight, distance;
-};
+const int windowSide = 5; // pixels; of the costs that are compared: single ones are noise
 
 //! What is known of a point
 enum PointState
@@ -62,32 +55,36 @@ class PriorJoin
 {
 public:
     PriorJoin(const std::vector<PriorPoint>& points, const Mat& guide, const CensusCost& cost, int layer, Mat& winners)
-        : points_(points), guide_(guide), cost_(cost), winners_(winners), width_(winners.cols),
-          farthest_(std::max(reach >> layer, 4)), reach_(reachOf(winners.size(), points.size(), farthest_)),
-          scale_(1. / (1 << layer)), grid_((width_ + reach_ - 1) / reach_, (winners.rows + reach_ - 1) / reach_),
-          cells_(grid_.area()), states_(points.size(), AGREES), before_(points.size()), excess_(points.size())
+        : cost_(cost), winners_(winners), farthest_(std::max(reach >> layer, 4)), unit_(distanceScale / (1 << layer)),
+          grid_(points, guide, reachOf(winners.size(), points.size(), farthest_), unit_), points_(grid_.points()),
+          states_(points.size(), AGREES), before_(points.size()), excess_(points.size())
     {
         for (size_t i = 0; i < points.size(); ++i)
-        {
-            const Point place = points[i].place;
-            cells_[cellOf(place)].push_back((int)i);
-            before_[i] = winners.ptr<ushort>(place.y)[place.x] * (1.f / subpixelScale);
-        }
+            before_[i] = winners.at<ushort>(points_[i].place) * (1.f / subpixelScale);
         sumCosts(winners, ofWinners_);
     }
 
     void join(int maxDisparity)
     {
         judgePoints();
-        Mat hypotheses(winners_.size(), CV_16U), limits(winners_.size(), CV_32F), ofHypotheses;
-        parallelForRows(winners_.size(), std::vector<Neighbour>(), [&](int y, std::vector<Neighbour>& found) {
-            for (int x = 0; x < width_; ++x)
-                limits.ptr<float>(y)[x] = propose(Point(x, y), maxDisparity, found, hypotheses.ptr<ushort>(y)[x]);
+        Mat agrees(winners_.size(), CV_8U, Scalar(0)); // 1 where the point at a pixel does
+        for (size_t i = 0; i < points_.size(); ++i)
+            agrees.at<uchar>(points_[i].place) = states_[i] == AGREES;
+        const auto isContested = [this](int i) { return states_[i] == COUNTS || states_[i] == CONTRADICTED; };
+        Mat hypotheses = winners_.clone(), limits(winners_.size(), CV_32F, Scalar(0)), ofHypotheses;
+        grid_.forEachCell([&](const Rect& cell, Surroundings& near) {
+            grid_.gather(
+                cell, [this](int i) { return states_[i] != FAILS; }, near);
+            const bool anyContested = std::any_of(near.index.begin(), near.index.end(), isContested);
+            for (int y = cell.y; y < cell.br().y; ++y)
+                for (int x = cell.x; x < cell.br().x; ++x)
+                    if (anyContested || !agrees.at<uchar>(y, x)) // or the winner stays
+                        limits.at<float>(y, x) = propose(Point(x, y), maxDisparity, near, hypotheses.at<ushort>(y, x));
         });
         sumCosts(hypotheses, ofHypotheses);
         const int area = windowSide * windowSide;
         parallelForRows(winners_.size(), [&](int y) {
-            for (int x = 0; x < width_; ++x)
+            for (int x = 0; x < winners_.cols; ++x)
             {
                 const int more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners_.ptr<ushort>(y)[x];
                 if (more <= area * limits.ptr<float>(y)[x])
@@ -109,61 +106,22 @@ private:
         return std::abs(a - b) <= tolerance + 2 * sigma + slope * distance;
     }
 
-    double weigh(Point place, int index, double distance) const
-    {
-        const int channels = guide_.channels();
-        const Point other = points_[index].place;
-        const uchar* const p = guide_.ptr(place.y) + place.x * channels;
-        const uchar* const q = guide_.ptr(other.y) + other.x * channels;
-        int color = 0;
-        for (int c = 0; c < channels; ++c)
-            color = std::max(color, std::abs(p[c] - q[c]));
-        // A float, as the last bits of std::exp() differ between machines.
-        return (float)std::exp(-distance / (distanceScale * scale_) - color / colorScale);
-    }
-
-    //! The points around a pixel that weigh most; those that fail only if they are asked for
-    void find(Point place, bool alsoFailing, std::vector<Neighbour>& found) const
-    {
-        found.clear();
-        const int x = place.x / reach_, y = place.y / reach_;
-        for (int i = std::max(y - 1, 0); i <= std::min(y + 1, grid_.height - 1); ++i)
-            for (int j = std::max(x - 1, 0); j <= std::min(x + 1, grid_.width - 1); ++j)
-                for (const int index : cells_[i * grid_.width + j])
-                {
-                    const Point d = points_[index].place - place;
-                    const double distance = std::sqrt((double)d.dot(d));
-                    if (distance <= reach_ && (alsoFailing || states_[index] != FAILS))
-                        found.push_back({ index, weigh(place, index, distance), distance });
-                }
-        const auto isHeavier = [](const Neighbour& a, const Neighbour& b) {
-            return a.weight != b.weight ? a.weight > b.weight : a.index < b.index;
-        };
-        const size_t count = std::min(found.size(), (size_t)neighbours);
-        std::partial_sort(found.begin(), found.begin() + count, found.end(), isHeavier);
-        found.resize(count);
-    }
-
     //! By how much the costs around a point are higher at its disparity than at the winners
     int excessOf(int index) const
     {
         const PriorPoint& point = points_[index];
-        const int radius = windowSide / 2;
-        int sum = 0;
+        const int radius = windowSide / 2, area = windowSide * windowSide;
+        int pixels[windowSide * windowSide], count = 0, sum = 0;
         for (int dy = -radius; dy <= radius; ++dy)
             for (int dx = -radius; dx <= radius; ++dx)
-            {
-                const int y = clamped(point.place.y + dy, 0, winners_.rows - 1),
-                          x = clamped(point.place.x + dx, 0, width_ - 1), pixel = y * width_ + x;
-                uchar cost[4];
-                cost_.evaluate(&pixel, 1, cvRound(point.disparity), 4, cost);
-                sum += cost[0];
-            }
+                pixels[count++] = clamped(point.place.y + dy, 0, winners_.rows - 1) * winners_.cols +
+                                  clamped(point.place.x + dx, 0, winners_.cols - 1);
+        uchar costs[4 * windowSide * windowSide];
+        cost_.evaluate(pixels, area, cvRound(point.disparity), 4, costs);
+        for (int i = 0; i < area; ++i)
+            sum += costs[4 * i];
         return sum - ofWinners_.ptr<ushort>(point.place.y)[point.place.x];
     }
-
-    //! Of the grid, row by row
-    int cellOf(Point place) const { return place.y / reach_ * grid_.width + place.x / reach_; }
 
     //! Finds the states of the points.
     void judgePoints()
@@ -171,11 +129,19 @@ private:
         for (size_t i = 0; i < points_.size(); ++i)
             if (!areAlike(before_[i], points_[i].disparity, points_[i].sigma, 0))
                 states_[i] = FAILS;
-        parallelFor((int)points_.size(), [&](int i) {
-            if (states_[i] != FAILS || !isSupported(i))
+        grid_.forEachCell([&](const Rect& cell, Surroundings& near) {
+            const Range own = grid_.pointsOf(grid_.cellOf(cell.tl()));
+            const auto last = states_.begin() + own.end;
+            if (std::find(states_.begin() + own.start, last, FAILS) == last)
                 return;
-            states_[i] = CLAIMS; // no other point asks for it
-            excess_[i] = excessOf(i);
+            grid_.gather(
+                cell, [](int) { return true; }, near);
+            for (int i = own.start; i < own.end; ++i)
+                if (states_[i] == FAILS && isSupported(i, near))
+                {
+                    states_[i] = CLAIMS; // no other point asks for it
+                    excess_[i] = excessOf(i);
+                }
         });
         judgeByThoseAround();
     }
@@ -185,17 +151,18 @@ private:
     //! but for bare surfaces of a scene that it is of. How many are around does not depend on how dense they are.
     void judgeByThoseAround()
     {
-        Mat sums(grid_, CV_64FC4, Scalar::all(0)); // by cell: the claims' excess; claims, points that agree, and all
+        Mat sums(grid_.size(), CV_64FC4,
+                 Scalar::all(0)); // by cell: the claims' excess; claims, points that agree, and all
         for (size_t i = 0; i < points_.size(); ++i)
-            sums.ptr<Vec4d>()[cellOf(points_[i].place)] +=
+            sums.ptr<Vec4d>()[grid_.cellOf(points_[i].place)] +=
                 Vec4d(excess_[i], states_[i] == CLAIMS, states_[i] == AGREES, 1);
-        const int side = 2 * (around * farthest_ / reach_) + 1;
+        const int side = 2 * (around * farthest_ / grid_.reach()) + 1;
         boxFilter(sums, sums, -1, Size(side, side), Point(-1, -1), false, BORDER_CONSTANT);
         const int area = windowSide * windowSide;
         const bool isRight = isRightInTheMain();
         for (size_t i = 0; i < points_.size(); ++i)
         {
-            const Vec4d own = sums.ptr<Vec4d>()[cellOf(points_[i].place)];
+            const Vec4d own = sums.ptr<Vec4d>()[grid_.cellOf(points_[i].place)];
             const double excess = own[0], claims = own[1], agreeing = own[2], all = own[3];
             const bool isContradictedHere = isContradicted(i) || excess > contradiction / 2 * area * claims;
             const bool isUnseen = isRight && excess < indifference * area * claims;
@@ -222,12 +189,11 @@ private:
     }
 
     //! Whether a third of the points around, by weight, agrees with a point
-    bool isSupported(int index) const
+    bool isSupported(int index, Surroundings& near) const
     {
-        std::vector<Neighbour> found;
-        find(points_[index].place, true, found);
+        grid_.find(points_[index].place, near);
         double supporting = 0, all = 0;
-        for (const Neighbour& n : found)
+        for (const Neighbour& n : near.found)
             if (n.index != index)
             {
                 all += n.weight;
@@ -238,13 +204,13 @@ private:
     }
 
     //! The disparity that the points around a pixel propose: its winner, if they speak for it or half of them, by
-    //! weight, were contradicted where they differ from it. Returns by how many bits its cost may be higher.
-    float propose(Point place, int maxDisparity, std::vector<Neighbour>& found, ushort& proposed) const
+    //! weight, were contradicted where they differ from it. Returns by how many bits its cost may be higher. proposed: has
+    //! the winner
+    float propose(Point place, int maxDisparity, Surroundings& near, ushort& proposed) const
     {
-        const ushort own = winners_.ptr<ushort>(place.y)[place.x];
-        const float winner = own * (1.f / subpixelScale);
-        proposed = own;
-        find(place, false, found);
+        const float winner = winners_.ptr<ushort>(place.y)[place.x] * (1.f / subpixelScale);
+        grid_.find(place, near);
+        std::vector<Neighbour>& found = near.found;
         double speaksFor = 0, against = 0, confirming = 0, all = 0;
         for (const Neighbour& n : found)
         {
@@ -282,14 +248,13 @@ private:
                 centre = candidate.index;
             }
         }
-        const double unit = distanceScale * scale_;
         Matx33d normal(0, 0, 0, 0, flatness, 0, 0, 0, flatness);
         Vec3d right(0, 0, 0);
         for (const Neighbour& n : found)
             if (isOnSurface(n.index, centre))
             {
                 const PriorPoint& point = points_[n.index];
-                const Vec3d basis(1, (point.place.x - place.x) / unit, (point.place.y - place.y) / unit);
+                const Vec3d basis(1, (point.place.x - place.x) / unit_, (point.place.y - place.y) / unit_);
                 const double weight = n.weight / best;
                 normal += weight * basis * basis.t();
                 right += weight * (point.disparity - points_[centre].disparity) * basis;
@@ -311,15 +276,13 @@ private:
         sumOverWindows(costs, windowSide, CV_16U, sums);
     }
 
-    const std::vector<PriorPoint>& points_;
-    const Mat& guide_;
     const CensusCost& cost_;
     Mat& winners_;
-    Mat ofWinners_;                      // their costs, see sumCosts()
-    const int width_, farthest_, reach_; // how far a pixel sees at most, and how far with so many points
-    const double scale_;                 // of the layer
-    const Size grid_;
-    std::vector<std::vector<int>> cells_;
+    Mat ofWinners_;      // their costs, see sumCosts()
+    const int farthest_; // how far a pixel sees at most
+    const double unit_;  // of distances, in pixels of the layer
+    const PointGrid grid_;
+    const std::vector<PriorPoint>& points_; // of the grid
     std::vector<PointState> states_;
     std::vector<float> before_; // winners at the points
     std::vector<int> excess_;   // of claims, see excessOf(); 0 of others
