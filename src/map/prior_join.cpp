@@ -203,9 +203,9 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    //! The disparity that the points around a pixel propose: its winner, if they speak for it or half of them, by
-    //! weight, were contradicted where they differ from it. Returns by how many bits its cost may be higher. proposed: has
-    //! the winner
+    //! The disparity that the points around a pixel propose: its winner, which proposed has, if they speak for it or
+    //! half of them, by weight, were contradicted where they differ from it. Returns by how many bits its cost may be
+    //! higher.
     float propose(Point place, int maxDisparity, Surroundings& near, ushort& proposed) const
     {
         const float winner = winners_.ptr<ushort>(place.y)[place.x] * (1.f / subpixelScale);
