@@ -50,34 +50,34 @@ Vec3b PointGrid::colorAt(Point place) const
 }
 
 //! Places and colours of what is gathered, in the order of the image
-void PointGrid::describe(Surroundings& near) const
+void PointGrid::describe(Surroundings& seen) const
 {
-    std::vector<int>& index = near.index;
+    std::vector<int>& index = seen.index;
     const auto isBefore = [this](int a, int b) {
         const Point p = points_[a].place, q = points_[b].place;
         return p.y != q.y ? p.y < q.y : p.x < q.x;
     };
     std::sort(index.begin(), index.end(), isBefore);
     for (std::vector<short>* values :
-         { &near.x, &near.y, &near.channels[0], &near.channels[1], &near.channels[2], &near.squared, &near.color })
+         { &seen.x, &seen.y, &seen.channels[0], &seen.channels[1], &seen.channels[2], &seen.squared, &seen.color })
         values->resize(index.size());
     for (size_t i = 0; i < index.size(); ++i)
     {
-        near.x[i] = (short)points_[index[i]].place.x;
-        near.y[i] = (short)points_[index[i]].place.y;
+        seen.x[i] = (short)points_[index[i]].place.x;
+        seen.y[i] = (short)points_[index[i]].place.y;
         for (int c = 0; c < 3; ++c)
-            near.channels[c][i] = colors_[index[i]][c];
+            seen.channels[c][i] = colors_[index[i]][c];
     }
 }
 
-void PointGrid::find(Point place, Surroundings& near) const
+void PointGrid::find(Point place, Surroundings& seen) const
 {
     const Vec3b color = colorAt(place);
-    const int count = (int)near.index.size();
+    const int count = (int)seen.index.size();
     const short x = (short)place.x, y = (short)place.y, blue = color[0], green = color[1], red = color[2];
-    const short *const xs = near.x.data(), *const ys = near.y.data(), *const blues = near.channels[0].data(),
-                       *const greens = near.channels[1].data(), *const reds = near.channels[2].data();
-    short *const squared = near.squared.data(), *const colors = near.color.data();
+    const short *const xs = seen.x.data(), *const ys = seen.y.data(), *const blues = seen.channels[0].data(),
+                       *const greens = seen.channels[1].data(), *const reds = seen.channels[2].data();
+    short *const squared = seen.squared.data(), *const colors = seen.color.data();
     HDP_VECTORIZED for (int i = 0; i < count; ++i)
     {
         const short dx = (short)(xs[i] - x), dy = (short)(ys[i] - y);
@@ -105,14 +105,14 @@ void PointGrid::find(Point place, Surroundings& near) const
             other = larger;
         }
     }
-    near.found.clear();
+    seen.found.clear();
     for (int k = 0; k < neighbours && keys[k] > 0; ++k)
     {
         Cv64suf key;
         key.f = keys[k];
         const int i = (int)(lastKey - (unsigned)(key.u & lastKey));
         key.u &= ~(uint64)lastKey;
-        near.found.push_back({ near.index[i], (float)key.f, distances_[squared[i]] });
+        seen.found.push_back({ seen.index[i], (float)key.f, distances_[squared[i]] });
     }
 }
 

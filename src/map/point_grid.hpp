@@ -51,33 +51,33 @@ public:
     template <typename F> void forEachCell(const F& f) const
     {
         const Rect image(Point(), guide_.size());
-        parallelFor(size_.height, Surroundings(), [&](int y, Surroundings& near) {
+        parallelFor(size_.height, Surroundings(), [&](int y, Surroundings& seen) {
             for (int x = 0; x < size_.width; ++x)
-                f(Rect(x * reach_, y * reach_, reach_, reach_) & image, near);
+                f(Rect(x * reach_, y * reach_, reach_, reach_) & image, seen);
         });
     }
 
     //! Takes the points that pixels of a cell may see, of those that are wanted, isWanted(index).
-    template <typename F> void gather(const Rect& cell, const F& isWanted, Surroundings& near) const
+    template <typename F> void gather(const Rect& cell, const F& isWanted, Surroundings& seen) const
     {
         const int x = cell.x / reach_, y = cell.y / reach_;
-        near.index.clear();
+        seen.index.clear();
         for (int row = std::max(y - 1, 0); row <= std::min(y + 1, size_.height - 1); ++row)
         {
             const int* const cells = &begins_[row * size_.width];
             for (int i = cells[std::max(x - 1, 0)]; i < cells[std::min(x + 1, size_.width - 1) + 1]; ++i)
                 if (isWanted(i))
-                    near.index.push_back(i);
+                    seen.index.push_back(i);
         }
-        describe(near);
+        describe(seen);
     }
 
     //! Finds the points that weigh most for a pixel of the cell, eight at most, the heaviest first.
-    void find(Point place, Surroundings& near) const;
+    void find(Point place, Surroundings& seen) const;
 
 private:
     Vec3b colorAt(Point place) const;
-    void describe(Surroundings& near) const;
+    void describe(Surroundings& seen) const;
 
     const Mat& guide_;
     const int reach_;

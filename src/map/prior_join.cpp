@@ -72,14 +72,14 @@ public:
             agrees.at<uchar>(points_[i].place) = states_[i] == AGREES;
         const auto isContested = [this](int i) { return states_[i] == COUNTS || states_[i] == CONTRADICTED; };
         Mat hypotheses = winners_.clone(), limits(winners_.size(), CV_32F, Scalar(0)), ofHypotheses;
-        grid_.forEachCell([&](const Rect& cell, Surroundings& near) {
+        grid_.forEachCell([&](const Rect& cell, Surroundings& seen) {
             grid_.gather(
-                cell, [this](int i) { return states_[i] != FAILS; }, near);
-            const bool anyContested = std::any_of(near.index.begin(), near.index.end(), isContested);
+                cell, [this](int i) { return states_[i] != FAILS; }, seen);
+            const bool anyContested = std::any_of(seen.index.begin(), seen.index.end(), isContested);
             for (int y = cell.y; y < cell.br().y; ++y)
                 for (int x = cell.x; x < cell.br().x; ++x)
                     if (anyContested || !agrees.at<uchar>(y, x)) // or the winner stays
-                        limits.at<float>(y, x) = propose(Point(x, y), maxDisparity, near, hypotheses.at<ushort>(y, x));
+                        limits.at<float>(y, x) = propose(Point(x, y), maxDisparity, seen, hypotheses.at<ushort>(y, x));
         });
         sumCosts(hypotheses, ofHypotheses);
         const int area = windowSide * windowSide;
@@ -129,15 +129,15 @@ private:
         for (size_t i = 0; i < points_.size(); ++i)
             if (!areAlike(before_[i], points_[i].disparity, points_[i].sigma, 0))
                 states_[i] = FAILS;
-        grid_.forEachCell([&](const Rect& cell, Surroundings& near) {
+        grid_.forEachCell([&](const Rect& cell, Surroundings& seen) {
             const Range own = grid_.pointsOf(grid_.cellOf(cell.tl()));
             const auto last = states_.begin() + own.end;
             if (std::find(states_.begin() + own.start, last, FAILS) == last)
                 return;
             grid_.gather(
-                cell, [](int) { return true; }, near);
+                cell, [](int) { return true; }, seen);
             for (int i = own.start; i < own.end; ++i)
-                if (states_[i] == FAILS && isSupported(i, near))
+                if (states_[i] == FAILS && isSupported(i, seen))
                 {
                     states_[i] = CLAIMS; // no other point asks for it
                     excess_[i] = excessOf(i);
@@ -189,11 +189,11 @@ private:
     }
 
     //! Whether a third of the points around, by weight, agrees with a point
-    bool isSupported(int index, Surroundings& near) const
+    bool isSupported(int index, Surroundings& seen) const
     {
-        grid_.find(points_[index].place, near);
+        grid_.find(points_[index].place, seen);
         double supporting = 0, all = 0;
-        for (const Neighbour& n : near.found)
+        for (const Neighbour& n : seen.found)
             if (n.index != index)
             {
                 all += n.weight;
@@ -206,11 +206,11 @@ private:
     //! The disparity that the points around a pixel propose: its winner, which proposed has, if they speak for it or
     //! half of them, by weight, were contradicted where they differ from it. Returns by how many bits its cost may be
     //! higher.
-    float propose(Point place, int maxDisparity, Surroundings& near, ushort& proposed) const
+    float propose(Point place, int maxDisparity, Surroundings& seen, ushort& proposed) const
     {
         const float winner = winners_.ptr<ushort>(place.y)[place.x] * (1.f / subpixelScale);
-        grid_.find(place, near);
-        std::vector<Neighbour>& found = near.found;
+        grid_.find(place, seen);
+        std::vector<Neighbour>& found = seen.found;
         double speaksFor = 0, against = 0, confirming = 0, all = 0;
         for (const Neighbour& n : found)
         {
