@@ -362,7 +362,10 @@ static int run(const CommandLineParser& parser)
     try
     {
         model->save(output);
-        DisparityPredictionModel::load(output); // save() does not notice a full disk
+        // save() does not notice a full disk. What has no size, such as a device, may have no end either.
+        if (std::ifstream(output, std::ios::ate).tellg() <= 0)
+            fail("cannot write '" + output + "'");
+        DisparityPredictionModel::load(output);
     }
     catch (const cv::Exception&)
     {
