@@ -332,14 +332,12 @@ private:
         if (!in_.pair.hasPrior)
             return;
         clock_.run("prior", [&] {
-            const Mat before = in_.pair.hasRanges ? result_.winners.clone() : Mat();
+            Mat joined = result_.winners.clone();
             joinPrior(in_.known.points[plan_.layer], in_.images.colours, own_.census, plan_.layer, plan_.maxDisparity,
-                      result_.winners);
-            if (before.empty())
-                return;
-            Mat moved = result_.winners.clone();
-            keepIntervals(moved);
-            moved.copyTo(result_.winners, result_.winners != before);
+                      joined);
+            const Mat isChanged = joined != result_.winners;
+            keepIntervals(joined);
+            joined.copyTo(result_.winners, isChanged);
         });
     }
 

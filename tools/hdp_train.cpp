@@ -363,8 +363,7 @@ static int run(const CommandLineParser& parser)
     {
         model->save(output);
         // save() does not notice a full disk. What has no size, such as a device, may have no end either.
-        if (std::ifstream(output, std::ios::ate).tellg() <= 0)
-            fail("cannot write '" + output + "'");
+        CV_Assert(std::ifstream(output, std::ios::ate).tellg() > 0);
         DisparityPredictionModel::load(output);
     }
     catch (const cv::Exception&)

@@ -8,7 +8,8 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! Memory for a row of fillOccluded(), by pixel, or by column of the right image from 1 on
+//! Memory for a row of fillOccluded(), by pixel, or by column of the right image from 1 on. A row may begin later in
+//! the left image: its pixels map to all columns of the right one.
 struct OcclusionScratch
 {
     explicit OcclusionScratch(int width)

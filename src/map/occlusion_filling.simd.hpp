@@ -75,12 +75,12 @@ inline RowLimits mapToRight(const ushort* disparity, const uchar* residual, int 
 }
 
 //! Marks the pixels that have the disparity of the best match of their column, but for a pixel.
-inline void markBestMatches(const ushort* disparity, int width, int lastColumn, OcclusionScratch& scratch)
+inline void markBestMatches(const ushort* disparity, int width, OcclusionScratch& scratch)
 {
     unsigned *best = scratch.bestKeys.data(), *keys = scratch.keys.data();
     const int* columns = scratch.columns.data();
     uchar* isBest = scratch.isBest.data();
-    std::fill(best, best + lastColumn + 1, UINT_MAX);
+    std::fill(best, best + scratch.bestKeys.size(), UINT_MAX);
     HDP_UNROLLED for (int x = 0; x < width; ++x) best[columns[x]] = std::min(best[columns[x]], keys[x]);
     HDP_VECTORIZED for (int x = 0; x < width; ++x) keys[x] = best[columns[x]];
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
@@ -119,10 +119,8 @@ inline int findBorder(const ushort* disparity, const OcclusionScratch& scratch, 
 }
 
 //! The same if matches by chance are the best ones of their columns: at the last surface that hides what is on its
-//! left, whatever the residuals are. lastColumn: of the right image; border: what findBorder() has found; limit:
-//! RowLimits::hiding
-inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int width, int lastColumn, int border,
-                             int limit)
+//! left, whatever the residuals are. border: what findBorder() has found; limit: RowLimits::hiding
+inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch, int width, int border, int limit)
 {
     const int* columns = scratch.columns.data();
     int last = limit - 1;
@@ -134,7 +132,8 @@ inline int findHidingSurface(const ushort* disparity, OcclusionScratch& scratch,
     // Surfaces farther on are not so near that they hide much.
     const int end = std::min(2 * last + minSurface, width);
     uchar* visibility = scratch.visibility.data();
-    testVisibility(disparity, columns, end, lastColumn, subpixelScale, scratch.nearest.data(), visibility);
+    testVisibility(disparity, columns, end, (int)scratch.nearest.size() - 1, subpixelScale, scratch.nearest.data(),
+                   visibility);
     const auto isHidden = [=](int x) { return visibility[x] != VISIBLE; };
     int visibleBefore = 0, hiddenBefore = 0;
     for (int x = 0; x <= last && x + minSurface <= end; ++x)
@@ -212,12 +211,10 @@ inline void fillGaps(ushort* disparity, const uchar* isShown, int width, int max
 void fillOccludedRow(ushort* disparity, const uchar* residual, int width, int shift, OcclusionScratch& scratch)
 {
     const RowLimits limits = mapToRight(disparity, residual, width, shift, scratch);
-    const int lastColumn = width + std::max(shift, 0); // that a pixel may map to
-    markBestMatches(disparity, width, lastColumn, scratch);
-    int border = findBorder(disparity, scratch, width, limits.border);
-    border = findHidingSurface(disparity, scratch, width, lastColumn, border, limits.hiding);
+    markBestMatches(disparity, width, scratch);
+    const int border = findBorder(disparity, scratch, width, limits.border);
     uchar* const isShown = scratch.isBest.data();
-    std::fill(isShown, isShown + border, (uchar)0);
+    std::fill(isShown, isShown + findHidingSurface(disparity, scratch, width, border, limits.hiding), (uchar)0);
     fillGaps(disparity, isShown, width, limits.maxDisparity);
 }
 
