@@ -221,17 +221,19 @@ static void measure(const Pair& pair, const String& scene, const Settings& setti
 static void measureSet(const std::vector<Scene>& scenes, const Settings& settings, std::vector<Variant> variants,
                        std::set<String>& bad)
 {
-    Figures figures = figuresOf(Pair::MIDDLEBURY);
+    Pair::Protocol protocol = Pair::NO_TRUTH;
     size_t pairs = 0;
     for (const Scene& scene : scenes)
         try
         {
             std::cerr << variants[0].name << ": " << scene.title() << std::endl;
             const Pair pair = readPair(scene);
+            if (pairs > 0)
+                expectProtocol(pair, protocol);
             std::vector<Variant> withPair = variants;
             measure(pair, scene.name, settings, withPair);
             variants = withPair;
-            figures = figuresOf(pair.protocol);
+            protocol = pair.protocol;
             pairs++;
         }
         catch (const std::exception& error)
@@ -241,6 +243,7 @@ static void measureSet(const std::vector<Scene>& scenes, const Settings& setting
         }
     if (pairs == 0)
         return;
+    const Figures figures = figuresOf(protocol);
     const double count = double(pairs * std::max<size_t>(settings.changes.size(), 1));
     std::cout << "| " << scenes[0].set << ": " << variants[0].name << " with | " << figures.names[0] << " | "
               << figures.names[1] << " | time |\n|---|---|---|---|\n";

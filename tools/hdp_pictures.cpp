@@ -155,8 +155,10 @@ static int run(const CommandLineParser& parser)
     const Ptr<HDPTreeMatcher> paper = create(HDPTreeMatcher::PRESET_PAPER), fast = create(HDPTreeMatcher::PRESET_FAST);
     for (const Ptr<HDPTreeMatcher>& matcher : { paper, fast })
     {
+        match(*matcher);
+        const int layers = (int)matcher->getFindings().searchRatios.size();
         std::vector<Mat> maps;
-        for (int layer = 2; layer >= 0; layer--) // both have at least 3 of them
+        for (int layer = std::min(layers, 3) - 1; layer >= 0; layer--)
         {
             HDPTreeMatcher::Params params = matcher->getParams();
             params.finestLayer = layer;

@@ -108,6 +108,8 @@ static int run(const CommandLineParser& parser)
                 pair = readPair(scenes[s]);
                 if (pair.protocol == Pair::NO_TRUTH)
                     fail("has no truth");
+                if (pairs > 0)
+                    expectProtocol(pair, protocol);
             }
             catch (const std::exception& error)
             {

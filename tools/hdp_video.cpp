@@ -129,13 +129,19 @@ public:
     //! Has nothing to do if the method knows no temporal prediction.
     bool isIdle() const { return isTemporal_ && !method_.isHdp; }
 
-    //! isFirst: of its video; index: of all frames that the stream gets, which come one after the other, or again;
-    //! counts: whether its errors do
-    void match(const Mat& left, const Mat& right, const Frame& frame, bool isFirst, int index, bool counts)
+    //! A frame among all that the stream gets
+    struct Place
+    {
+        int index;            // they come one after the other, or again
+        bool isFirst;         // of its video
+        bool counts, isTimed; // whether its errors count, and its time
+    };
+
+    void match(const Mat& left, const Mat& right, const Frame& frame, const Place& place)
     {
         if (isIdle())
             return;
-        if (isFirst)
+        if (place.isFirst)
         {
             matcher_ = method_.create(frame.pair.disparities);
             if (method_.isHdp)
@@ -147,14 +153,14 @@ public:
             if (!method_.isHdp && image.type() == CV_8UC1)
                 cvtColor(image, image, COLOR_GRAY2BGR);
         const Mat disparity = matchDensely(method_, *matcher_, images[0], images[1], &seconds);
-        CV_Assert(index <= (int)seconds_.size());
-        if ((int)seconds_.size() == index)
+        CV_Assert(place.index <= (int)times_.size());
+        if ((int)times_.size() == place.index)
         {
-            seconds_.push_back(seconds);
-            if (counts)
+            times_.push_back({ seconds, place.isTimed });
+            if (place.counts)
                 addErrors(disparity, frame);
         }
-        seconds_[index] = std::min(seconds_[index], seconds);
+        times_[place.index].seconds = std::min(times_[place.index].seconds, seconds);
         disparity_ = disparity;
     }
 
@@ -178,7 +184,11 @@ public:
     double changed() const { return pixels_ > 0 ? 100. * changed_ / pixels_ : NO_SCORE; }
     double milliseconds() const
     {
-        return 1e3 * meanOf(std::vector<double>(seconds_.begin() + seconds_.size() / 2, seconds_.end()));
+        std::vector<double> timed;
+        for (const Time& time : times_)
+            if (time.counts)
+                timed.push_back(time.seconds);
+        return 1e3 * meanOf(timed);
     }
 
 private:
@@ -206,11 +216,17 @@ private:
         change_ += sum(change)[0];
     }
 
+    struct Time
+    {
+        double seconds;
+        bool counts;
+    };
+
     Method method_;
     bool isTemporal_;
     Ptr<StereoMatcher> matcher_;
     Mat disparity_;                  // of the last frame
-    std::vector<double> seconds_;    // by frame
+    std::vector<Time> times_;        // by frame
     std::vector<Score> scores_;      // of the frames that count
     double change_ = 0;              // of the disparities from frame to frame, where the image stands still
     int64 pixels_ = 0, changed_ = 0; // how many these are, and those with a change above 1
@@ -288,8 +304,8 @@ static void matchVideo(Video video, int before, int runs, const std::vector<doub
                           right = addNoise(frame.pair.right, noise[k], rng);
                 for (size_t m = 0; m < methods; ++m)
                     for (int turn = 0; turn < 2; ++turn)
-                        streams[k * methods + m][(i + turn) % 2].match(left, right, frame, i == 0, before + i,
-                                                                       i >= firstCounted);
+                        streams[k * methods + m][(i + turn) % 2].match(
+                            left, right, frame, { before + i, i == 0, i >= firstCounted, i >= frames / 2 });
             }
             progress.step(format("frame %d", i));
         }
@@ -325,7 +341,7 @@ static Table evaluatePans(const Task& task, const std::vector<Scene>& scenes)
     Progress progress(scenes.size() * frames * task.runs);
     for (size_t i = 0; i < scenes.size(); ++i)
     {
-        const Size size = readPair(scenes[i]).left.size();
+        const Size size = readPicture(scenes[i].left).size();
         const Video video(scenes, panOver((int)i, size, task.step, frames), task.isGrey, task.numDisparities);
         matchVideo(video, (int)i * frames, task.runs, task.noise, firstCounted, streams.data(), task.methods.size(),
                    progress);
@@ -428,9 +444,8 @@ int main(int argc, char** argv)
         "What temporal prediction is worth on videos of rectified stereo pairs: errors (D1), flicker and time.\n"
         "Area is that under the sparsification curve of the confidence, over the least that there could be.\n"
         "Flicker is the mean change of the disparity from frame to frame where the left image, smoothed, changes by\n"
-        "less than 3 levels of 255. The last half of the frames counts. Of variants, all frames do; the worst frame is "
-        "the\n"
-        "one with the largest difference of D1, in points.\n"
+        "less than 3 levels of 255. The last half of the frames counts. Of variants, the errors of all frames do; the\n"
+        "worst frame is the one with the largest difference of D1, in points.\n"
         "Exit status: 0 if all is well, 2 if a video was skipped, 130 if interrupted, 1 on other errors.\n",
         { "variants=", "colors" }, 1, run);
 }

@@ -78,8 +78,8 @@ Table calibrationTable(const Method& method, const std::vector<Scene>& scenes, i
     Table table;
     table.title = "Errors within sigma, " + method.name;
     table.note =
-        "Percent of the pixels of known truth with a sigma from this one on; 68 if it is true. Where the truth is "
-        "rounded to steps of s pixels, sigma is sqrt(sigma^2 + s^2 / 12). -: fewer than " +
+        "Percent of the non-occluded pixels of known truth, of all of KITTI's, with a sigma from this one on; 68 if it "
+        "is true. Where the truth is rounded to steps of s pixels, sigma is sqrt(sigma^2 + s^2 / 12). -: fewer than " +
         cv::format("%d pixels.", LEAST_PIXELS);
     table.header.push_back("sigma, pixels");
     for (const auto& set : sets)

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/imgcodecs.hpp"
@@ -188,6 +189,16 @@ static std::vector<Scene> readFrameFolder(const String& folder)
     return scenes;
 }
 
+//! Puts the scenes of a set one after the other, where folders of other sets come between them.
+static void groupBySet(std::vector<Scene>& scenes)
+{
+    std::map<String, size_t> places;
+    for (const Scene& scene : scenes)
+        places.insert({ scene.set, places.size() });
+    std::stable_sort(scenes.begin(), scenes.end(),
+                     [&](const Scene& a, const Scene& b) { return places.at(a.set) < places.at(b.set); });
+}
+
 std::vector<Scene> findScenes(const String& root)
 {
     if (!fs::isDirectory(root))
@@ -228,6 +239,7 @@ std::vector<Scene> findScenes(const String& root)
     search.visit(top, 0);
     if (scenes.empty())
         fail("no stereo pairs of a known kind in '" + root + "'");
+    groupBySet(scenes);
     return scenes;
 }
 
@@ -357,6 +369,12 @@ Pair readPair(const Scene& scene)
     }
     pair.disparities = cv::Range(0, numDisparitiesOf(scene, pair));
     return pair;
+}
+
+void expectProtocol(const Pair& pair, Pair::Protocol protocol)
+{
+    if (pair.protocol != protocol)
+        fail("its truth is of another kind than that of its set's pairs before it");
 }
 
 } // namespace hdp_tools

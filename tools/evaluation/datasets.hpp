@@ -48,6 +48,9 @@ std::vector<Scene> selectScenes(const cv::CommandLineParser& parser);
 //! Reads a pair; what is wrong with it is an exception that names the file.
 Pair readPair(const Scene& scene);
 
+//! Fails if the truth of a pair is not of this kind: figures of different kinds have no mean.
+void expectProtocol(const Pair& pair, Pair::Protocol protocol);
+
 } // namespace hdp_tools
 
 #endif

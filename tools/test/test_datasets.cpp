@@ -142,6 +142,14 @@ TEST(HDPStereo_Datasets, plain_names_and_roots_of_any_depth)
     }
 }
 
+TEST(HDPStereo_Datasets, scenes_of_a_set_are_not_parted)
+{
+    DatasetFolder folder;
+    for (const char* scene : { "data/a", "data/between/b", "data/c" })
+        folder.writeScene(scene, plainNames);
+    EXPECT_EQ((std::vector<String>{ "data/a", "data/c", "between/b" }), setsAndNames(findScenes(folder.path("data"))));
+}
+
 TEST(HDPStereo_Datasets, resolution_by_height)
 {
     DatasetFolder folder;

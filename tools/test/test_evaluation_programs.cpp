@@ -95,6 +95,25 @@ TEST(HDPStereo_EvaluationPrograms, robustness)
     EXPECT_NE(String::npos, two.errors.find("1 of 3 pairs were skipped")) << two.errors;
 }
 
+TEST(HDPStereo_EvaluationPrograms, truth_of_two_kinds_has_no_mean)
+{
+    const DatasetFolder folder;
+    writePair(folder); // KITTI's
+    Mat truth(240, 320, CV_32F, Scalar(9)), image(240, 320, CV_8UC3);
+    cvtest::randUni(theRNG(), image, Scalar::all(0), Scalar::all(256));
+    for (const char* name : { "left.png", "right.png" })
+        folder.write(String("dataset/d/") + name, image);
+    for (const char* name : { "disp_left.pfm", "disp_right.pfm" })
+        folder.write(String("dataset/d/") + name, truth);
+    for (const char* program :
+         { "hdp_robustness --cases=clean --methods=bm ", "hdp_parameters --runs=1 --presets=fast " })
+    {
+        const Execution mixed = run(folder, program + folder.path("dataset"));
+        EXPECT_EQ(2, mixed.status) << program;
+        EXPECT_NE(String::npos, mixed.errors.find("skipped dataset/d: its truth is of another kind")) << mixed.errors;
+    }
+}
+
 TEST(HDPStereo_EvaluationPrograms, stability)
 {
     const DatasetFolder folder;
@@ -215,6 +234,10 @@ TEST(HDPStereo_EvaluationPrograms, video)
     EXPECT_LE(d1[1], 1.1 * d1[0]);
     EXPECT_EQ(2, run(folder, "hdp_video " + folder.path("videos/known") + " --pan=90,0").status)
         << "no picture is left";
+    std::remove(folder.path("videos/known/disp_lidar/001.png").c_str());
+    const Execution partly = run(folder, "hdp_video " + folder.path("videos/known") +
+                                             " --num-disparities=32 --methods=fast --noise=2 --pan=-3,1 --still=2");
+    EXPECT_EQ(0, partly.status) << partly.errors;
 
     const Execution some =
         run(folder, "hdp_video " + folder.path("videos/known") +
