@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_PYTHON_BINDINGS_HPP
 
 #include <functional>
+#include <type_traits>
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -71,6 +72,13 @@ inline std::vector<cv::String> toPython(const std::vector<cv::String>& values) {
 inline int toPython(int value) { return value; }
 inline bool toPython(bool value) { return value; }
 inline double toPython(double value) { return value; }
+
+//! The setter of a field. An int is taken from what is one alone: pybind11 would cut the fractions of numpy's floats off.
+template <typename Class, typename Value> py::cpp_function setterOf(const py::object& type, Value Class::*field)
+{
+    return py::cpp_function([field](Class& self, const Value& value) { self.*field = value; }, py::is_method(type),
+                            py::arg("value").noconvert(std::is_same<Value, int>::value));
+}
 
 // Files
 

@@ -92,7 +92,13 @@ std::unique_ptr<Matcher> create(int minDisparity, int numDisparities, int preset
 //! sgbm: of cv2, whose types this module does not know
 std::unique_ptr<Matcher> createLike(const py::object& sgbm, int preset)
 {
-    const auto valueOf = [&](const char* getter) { return sgbm.attr(getter)().cast<int>(); };
+    const auto valueOf = [&](const char* getter) {
+        if (!py::hasattr(sgbm, getter))
+            throw py::type_error("sgbm must be a cv2.StereoSGBM, not " +
+                                 py::type::of(sgbm).attr("__name__").cast<std::string>());
+        return sgbm.attr(getter)().cast<int>();
+    };
+    valueOf("getMode"); // which no other matcher has: cv2.StereoBM has other units
     const cv::Ptr<cv::StereoSGBM> like = cv::StereoSGBM::create(
         valueOf("getMinDisparity"), valueOf("getNumDisparities"), 3, 0, 0, valueOf("getDisp12MaxDiff"), 0, 0,
         valueOf("getSpeckleWindowSize"), valueOf("getSpeckleRange"));

@@ -33,7 +33,7 @@ PYBIND11_MODULE(_hdpstereo, module)
     module.attr("CV_16S") = CV_16S;
     module.attr("CV_32F") = CV_32F;
     module.def("getNumThreads", &cv::getNumThreads, "Returns how many threads compute() uses at most.");
-    module.def("setNumThreads", &cv::setNumThreads, py::arg("numThreads"), R"doc(
+    module.def("setNumThreads", &cv::setNumThreads, py::arg("numThreads").noconvert(), R"doc(
 Sets how many threads compute() uses at most, for all matchers of this process.
 
 numThreads: 1 for none but the caller's; a negative number for as many as there are processors. If cv2 is loaded with the

@@ -30,53 +30,55 @@ void defNumbers(py::class_<PairModel>& type, const char* name, std::vector<doubl
                 const char* documentation)
 {
     type.def_property(
-        name, [field](const PairModel& self) { return readOnly(toPython(self.*field)); },
-        [field](PairModel& self, const std::vector<double>& values) { self.*field = values; }, documentation);
+        name, [field](const PairModel& self) { return readOnly(toPython(self.*field)); }, setterOf(type, field),
+        documentation);
+}
+
+template <typename Value>
+void defField(py::class_<PairModel>& type, const char* name, Value PairModel::*field, const char* documentation)
+{
+    type.def_property(
+        name, [field](const PairModel& self) { return self.*field; }, setterOf(type, field), documentation);
 }
 
 void defFields(py::class_<PairModel>& type)
 {
-    type.def_readwrite("width", &PairModel::width, "of the images, in pixels, > 0; 0: the model is empty");
-    type.def_readwrite("height", &PairModel::height, "of the images, in pixels, > 0");
-    type.def_readwrite("depth", &PairModel::depth, "of the images: 0 for uint8, 2 for uint16, 5 for float32");
-    type.def_readwrite("x", &PairModel::x, "first column of the tile that is matched, >= 0; 0 without tiles");
-    type.def_readwrite("y", &PairModel::y, "first row of the tile, >= 0");
-    type.def_readwrite("tileWidth", &PairModel::tileWidth, "of the tile, in pixels, > 0; width without tiles");
-    type.def_readwrite("tileHeight", &PairModel::tileHeight, "of the tile, in pixels, > 0");
-    type.def_readwrite("minDisparity", &PairModel::minDisparity,
-                       "that the images were matched with; a matcher keeps its own range");
-    type.def_readwrite("numDisparities", &PairModel::numDisparities, "that the images were matched with, > 0");
-    type.def_readwrite("addedColumns", &PairModel::addedColumns,
-                       "that a negative minDisparity added on the left of the images, >= 0");
+    defField(type, "width", &PairModel::width, "of the images, in pixels, > 0; 0: the model is empty");
+    defField(type, "height", &PairModel::height, "of the images, in pixels, > 0");
+    defField(type, "depth", &PairModel::depth, "of the images: 0 for uint8, 2 for uint16, 5 for float32");
+    defField(type, "x", &PairModel::x, "first column of the tile that is matched, >= 0; 0 without tiles");
+    defField(type, "y", &PairModel::y, "first row of the tile, >= 0");
+    defField(type, "tileWidth", &PairModel::tileWidth, "of the tile, in pixels, > 0; width without tiles");
+    defField(type, "tileHeight", &PairModel::tileHeight, "of the tile, in pixels, > 0");
+    defField(type, "minDisparity", &PairModel::minDisparity,
+             "that the images were matched with; a matcher keeps its own range");
+    defField(type, "numDisparities", &PairModel::numDisparities, "that the images were matched with, > 0");
+    defField(type, "addedColumns", &PairModel::addedColumns,
+             "that a negative minDisparity added on the left of the images, >= 0");
     defNumbers(type, "rows", &PairModel::rows, "coefficients of HDPTreeMatcher.Findings.rows: 5 finite numbers");
-    type.def_readwrite("areRowsMoved", &PairModel::areRowsMoved,
-                       "whether the rows of the right image are moved by them");
+    defField(type, "areRowsMoved", &PairModel::areRowsMoved, "whether the rows of the right image are moved by them");
     defNumbers(type, "light", &PairModel::light, "coefficients of HDPTreeMatcher.Findings.light: 10 finite numbers");
-    type.def_readwrite("isLightChanged", &PairModel::isLightChanged,
-                       "whether the light of the right image is changed by them, for COST_CENSUS");
-    type.def_readwrite("rowError", &PairModel::rowError,
-                       "HDPTreeMatcher.Findings.rowError, 0..2^24 pixels; 0: unknown");
-    type.def_readwrite("noise", &PairModel::noise, "as HDPTreeMatcher.Findings.noise, of noiseLayer: finite, >= 0");
-    type.def_readwrite("noiseLayer", &PairModel::noiseLayer, "layer in which it was measured, 0 to 15; 0 is the image");
-    type.def_readwrite("black", &PairModel::black,
-                       "level of float32 that is matched as 0 of uint16; 0 for other depths");
-    type.def_readwrite("white", &PairModel::white, "level of float32 that is matched as 65535, >= black");
-    type.def_readwrite("borderLevel", &PairModel::borderLevel,
-                       "level that ends black borders of the images, which are no data, 0 to 65535; 0: there are none");
-    type.def_readwrite("bits", &PairModel::bits, "that levels of uint16 have: 8 to 16. For uint8 8");
-    type.def_readwrite("brightness", &PairModel::brightness,
-                       "what a dark pair is brightened by, for COST_CENSUS: 1..4");
-    type.def_readwrite(
-        "isGrey", &PairModel::isGrey,
-        "whether the left image has no colours: edges are those of its grey levels then, for COST_CENSUS");
-    type.def_readwrite("leftBlockStart", &PairModel::leftBlockStart,
-                       "first column, 0 to 7, of a block of JPEG compression in the left image");
-    type.def_readwrite("leftBlockStep", &PairModel::leftBlockStep,
-                       "mean step between its blocks in grey levels of 0 to 255; 0: there are none");
-    type.def_readwrite("rightBlockStart", &PairModel::rightBlockStart,
-                       "first column, 0 to 7, of a block of JPEG compression in the right image");
-    type.def_readwrite("rightBlockStep", &PairModel::rightBlockStep,
-                       "mean step between its blocks in grey levels of 0 to 255; 0: there are none");
+    defField(type, "isLightChanged", &PairModel::isLightChanged,
+             "whether the light of the right image is changed by them, for COST_CENSUS");
+    defField(type, "rowError", &PairModel::rowError, "HDPTreeMatcher.Findings.rowError, 0..2^24 pixels; 0: unknown");
+    defField(type, "noise", &PairModel::noise, "as HDPTreeMatcher.Findings.noise, of noiseLayer: finite, >= 0");
+    defField(type, "noiseLayer", &PairModel::noiseLayer, "layer in which it was measured, 0 to 15; 0 is the image");
+    defField(type, "black", &PairModel::black, "level of float32 that is matched as 0 of uint16; 0 for other depths");
+    defField(type, "white", &PairModel::white, "level of float32 that is matched as 65535, >= black");
+    defField(type, "borderLevel", &PairModel::borderLevel,
+             "level that ends black borders of the images, which are no data, 0 to 65535; 0: there are none");
+    defField(type, "bits", &PairModel::bits, "that levels of uint16 have: 8 to 16. For uint8 8");
+    defField(type, "brightness", &PairModel::brightness, "what a dark pair is brightened by, for COST_CENSUS: 1..4");
+    defField(type, "isGrey", &PairModel::isGrey,
+             "whether the left image has no colours: edges are those of its grey levels then, for COST_CENSUS");
+    defField(type, "leftBlockStart", &PairModel::leftBlockStart,
+             "first column, 0 to 7, of a block of JPEG compression in the left image");
+    defField(type, "leftBlockStep", &PairModel::leftBlockStep,
+             "mean step between its blocks in grey levels of 0 to 255; 0: there are none");
+    defField(type, "rightBlockStart", &PairModel::rightBlockStart,
+             "first column, 0 to 7, of a block of JPEG compression in the right image");
+    defField(type, "rightBlockStep", &PairModel::rightBlockStep,
+             "mean step between its blocks in grey levels of 0 to 255; 0: there are none");
 }
 
 } // namespace

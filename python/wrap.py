@@ -21,6 +21,7 @@ INHERITED = ('minDisparity', 'numDisparities', 'blockSize', 'speckleWindowSize',
 
 SCALARS = {'int': 'int', 'double': 'float', 'bool': 'bool'}  # and their names in Python
 INPUTS = {'InputArray': 'Optional[npt.NDArray[Any]]'}
+NUMBERS = {'sigma'}  # arrays that may be a number
 OUTPUTS = {
     'OutputArray': ('cv::Mat', 'Optional[npt.NDArray[Any]]'),
     'CV_OUT std::vector<double>&': ('std::vector<double>', 'npt.NDArray[np.float64]'),
@@ -132,9 +133,7 @@ class Field:
         if self.enumeration:
             value = 'enumerator("%s", self.%s)' % (self.enumeration, self.name)
         get = '[](const HDPTreeMatcher::%s& self) { return %s; }' % (struct, value)
-        set_ = ''
-        if is_writable:
-            set_ = ' [](HDPTreeMatcher::%s& self, %s value) { self.%s = value; },' % (struct, self.kind, self.name)
+        set_ = ' setterOf(%s, &HDPTreeMatcher::%s::%s),' % (wrapped, struct, self.name) if is_writable else ''
         return '%s.def_property%s("%s", %s,%s\n    R"doc(%s)doc");\n' % (
             wrapped, '' if is_writable else '_readonly', self.name, get, set_, self.documentation)
 
@@ -209,7 +208,8 @@ class Method:
             lines.append('        return %s;' % results[0])
         elif results:
             lines.append('        return py::make_tuple(%s);' % ', '.join(results))
-        lines.append('    },%s' % ''.join(' py::arg("%s"),' % name for _, name in self.inputs))
+        lines.append('    },%s' % ''.join(' py::arg("%s").noconvert(%d),' % (name, kind == 'int')
+                                          for kind, name in self.inputs))  # ints: see setterOf()
         lines.append('    R"doc(%s)doc");' % self.documentation)
         return '\n'.join(lines) + '\n'
 
@@ -219,7 +219,8 @@ class Method:
         kinds += [OUTPUTS[kind][1] if kind == 'OutputArray' else 'Optional[%s]' % OUTPUTS[kind][1]
                   for kind, _ in self.outputs]
         result = 'None' if not kinds else kinds[0] if len(kinds) == 1 else 'Tuple[%s]' % ', '.join(kinds)
-        arguments = ''.join(', %s: %s' % (name, SCALARS.get(kind) or INPUTS[kind]) for kind, name in self.inputs)
+        arguments = ''.join(', %s: %s' % (name, 'Union[float, npt.NDArray[Any], None]' if name in NUMBERS else
+                                          SCALARS.get(kind) or INPUTS[kind]) for kind, name in self.inputs)
         return '    def %s(self%s) -> %s: ...\n' % (self.name, arguments, result)
 
 
@@ -253,6 +254,7 @@ def main():
         stub += ''.join('    %s: ClassVar[%s]\n' % (value, name) for value, _ in values) + '\n'
     stub += '    class Params:\n        def __init__(\n            self, preset: Union[int, str] = ..., *,\n'
     stub += ',\n'.join('            %s: %s = ...' % (field.name, field.python_kind()) for field in params)
+    stub += ',\n            **fields: Any'  # the same in snake case
     stub += '\n        ) -> None: ...\n' + ''.join(field.stub(True) for field in params) + '\n'
     stub += '    class Findings:\n' + ''.join(field.stub(False) for field in findings) + '\n'
     stub += ''.join(method.stub() for method in methods)

@@ -9,6 +9,7 @@ The package hdpstereo. Run by CTest, or alone:
 '''
 
 import copy
+import fractions
 import gc
 import gzip
 import importlib.util
@@ -415,7 +416,7 @@ class Parameters(Test):
     def test_create_like(self):
         class Like:  # cv2.StereoSGBM has these, among others
             values = {'MinDisparity': -2, 'NumDisparities': 48, 'Disp12MaxDiff': 1, 'SpeckleWindowSize': 100,
-                      'SpeckleRange': -1}
+                      'SpeckleRange': -1, 'Mode': 0}
 
             def __getattr__(self, name):
                 return lambda: self.values[name[3:]]
@@ -426,7 +427,31 @@ class Parameters(Test):
         expected.setSpeckleWindowSize(100)
         expected.setSpeckleRange(0)
         self.assertEqual(parameters(expected), parameters(matcher))
-        self.assertRaises(AttributeError, HDPTreeMatcher.createLike, None)
+        class BlockMatcher:  # cv2.StereoBM has no mode
+            getMinDisparity = getNumDisparities = getDisp12MaxDiff = getSpeckleWindowSize = getSpeckleRange = \
+                lambda self: 16
+
+        for other in None, BlockMatcher(), HDPTreeMatcher:
+            with self.assertRaisesRegex(TypeError, 'sgbm must be a cv2.StereoSGBM, not '):
+                HDPTreeMatcher.createLike(other)
+
+    def test_floats_are_no_ints(self):
+        matcher, model = HDPTreeMatcher(), hdpstereo.PairModel()
+        params = matcher.getParams()
+        for value in 3.7, np.float32(3.7), np.float64(3), np.array([3.7], np.float32), fractions.Fraction(7, 2):
+            self.assertRaises(TypeError, matcher.setMinDisparity, value)
+            self.assertRaises(TypeError, matcher.getLayerPrior, value)
+            self.assertRaises(TypeError, hdpstereo.setNumThreads, value)
+            self.assertRaises(TypeError, setattr, params, 'numLayers', value)
+            self.assertRaises(TypeError, setattr, model, 'width', value)
+            self.assertRaises(TypeError, HDPTreeMatcher.create, block_size=value)
+        for value in 3, np.int16(3), np.uint8(3):
+            matcher.setMinDisparity(value)
+            params.numLayers = model.width = value
+            self.assertEqual((3, 3, 3), (matcher.getMinDisparity(), params.numLayers, model.width))
+        params.gamma = model.noise = np.float32(2)  # a float is taken from any number
+        params.P1 = 7
+        self.assertEqual((2, 2), (params.gamma, model.noise))
 
     def test_bad_values(self):
         matcher = HDPTreeMatcher()

@@ -27,11 +27,15 @@ def match(left: npt.NDArray[np.uint8], right: npt.NDArray[np.uint8]) -> Tuple[np
     pixels: npt.NDArray[np.float32] = matcher.compute(left, right, as_float=True)
     print(matcher, np.nanmean(pixels), hdpstereo.getNumThreads())
     params = HDPTreeMatcher.Params(HDPTreeMatcher.PRESET_TREE, gamma=10, treeStrategy=Contours())
+    print(HDPTreeMatcher.Params('quality', fill_occlusions=False))
     params.matchingCost = HDPTreeMatcher.MatchingCost.COST_CENSUS
     params.predictionModel = DisparityPredictionModel.createPublished(DisparityPredictionModel.PUBLISHED_SMALL)
     matcher.setParams(params)
     cost: HDPTreeMatcher.MatchingCost = matcher.getParams().matchingCost
     preset: HDPTreeMatcher.Preset = HDPTreeMatcher.PRESET_QUALITY
+    matcher.setPriorDisparity(np.full(left.shape, np.nan, np.float32), 0.5)
+    model = matcher.getPairModel()
+    model.rows = [0, 0, 0, 0, 0]
     disparity: npt.NDArray[np.int16] = matcher.compute(left, right)
     confidence: Optional[npt.NDArray[np.uint8]] = matcher.getConfidence()
     if confidence is not None:

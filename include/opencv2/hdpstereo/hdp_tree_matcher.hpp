@@ -685,10 +685,11 @@ public:
     /** @brief Creates a matcher that takes the place of a cv::StereoSGBM.
 
     minDisparity, numDisparities, disp12MaxDiff, speckleWindowSize and speckleRange are taken over as they are now; a
-    negative speckleRange becomes 0. A disp12MaxDiff of 0 checks nothing here, where cv::StereoSGBM takes 1. What
-    else a cv::StereoSGBM has is of its own algorithm, and is not taken over: blockSize, as a block is no window of a
-    census; P1 and P2, which are in units of another cost (see Params::P1); mode; preFilterCap; and uniquenessRatio, as
-    nothing here compares the best with the second best cost. getConfidence() serves to reject what is not reliable.
+    negative speckleRange becomes 0. A disp12MaxDiff of 0 or less checks nothing here, where cv::StereoSGBM
+    takes it for 1. What else a cv::StereoSGBM has is of its own algorithm, and is not taken over: blockSize, as a block
+    is no window of a census; P1 and P2, which are in units of another cost (see Params::P1); mode; preFilterCap; and
+    uniquenessRatio, as nothing here compares the best with the second best cost. getConfidence() serves to reject what
+    is not reliable.
     @param sgbm Not empty. It is read, and not kept.
     @param preset See create().
     @throws cv::Exception if numDisparities or preset is out of range.
