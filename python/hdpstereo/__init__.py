@@ -63,10 +63,14 @@ def _init_params(self, preset=HDPTreeMatcher.PRESET_FAST, **fields):
     _construct_params(self, _preset(preset), **_with_names_in_camel_case(fields))
 
 
-def _init(self, minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_FAST, **parameters):
+class _Default(int):
+    '''An argument that was not given'''
+
+
+def _init(self, minDisparity=_Default(0), numDisparities=_Default(64), preset=HDPTreeMatcher.PRESET_FAST, **parameters):
     parameters = _with_names_in_camel_case(parameters)
-    for name, own, default in (('minDisparity', minDisparity, 0), ('numDisparities', numDisparities, 64)):
-        if name in parameters and own != default:
+    for name, own in ('minDisparity', minDisparity), ('numDisparities', numDisparities):
+        if name in parameters and not isinstance(own, _Default):
             raise TypeError('a parameter is given twice: ' + name)
     _construct(self, _integer('minDisparity', parameters.pop('minDisparity', minDisparity)),
                _integer('numDisparities', parameters.pop('numDisparities', numDisparities)), _preset(preset))
@@ -82,7 +86,7 @@ def _init(self, minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_
     self.setParams(params)
 
 
-def _create(minDisparity=0, numDisparities=64, preset=HDPTreeMatcher.PRESET_FAST, **parameters):
+def _create(minDisparity=_Default(0), numDisparities=_Default(64), preset=HDPTreeMatcher.PRESET_FAST, **parameters):
     return HDPTreeMatcher(minDisparity, numDisparities, preset, **parameters)
 
 

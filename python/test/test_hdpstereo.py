@@ -316,8 +316,9 @@ class Parameters(Test):
         for create in HDPTreeMatcher.create, HDPTreeMatcher.Params:
             self.assertRaisesText(TypeError, twice,
                                   lambda create=create: create(fillOcclusions=1, fill_occlusions=0))
-        self.assertRaisesText(TypeError, 'a parameter is given twice: numDisparities',
-                              lambda: HDPTreeMatcher.create(0, 128, num_disparities=64))
+        for given in 128, 64:
+            self.assertRaisesText(TypeError, 'a parameter is given twice: numDisparities',
+                                  lambda given=given: HDPTreeMatcher.create(0, given, num_disparities=64))
         for name in ('side', 'params', '__class__', '_x', ''):
             self.assertRaises(TypeError, lambda name=name: HDPTreeMatcher.create(**{name: 3}))
         self.assertRaisesText(TypeError, 'HDPTreeMatcher has no parameter numDisparity',
