@@ -12,7 +12,9 @@
 #include "stereo_view.hpp"
 #include "strict_arguments.hpp"
 
+#include <climits>
 #include <iostream>
+#include <limits>
 
 #include "opencv2/core/utils/logger.hpp"
 
@@ -53,21 +55,31 @@ static int presetOf(const String& name)
                                : HDPTreeMatcher::PRESET_QUALITY;
 }
 
+static double unitOf(const CommandLineParser& parser) { return numberOf(parser, "unit", 0, 1e6); }
+
+static double fieldOfViewOf(const CommandLineParser& parser) { return numberOf(parser, "field-of-view", 0, 170); }
+
+static int minDisparityOf(const CommandLineParser& parser) { return integerOf(parser, "min-disparity", -2047, 2047); }
+
+static int numDisparitiesOf(const CommandLineParser& parser, int width)
+{
+    return parser.has("num-disparities") ? integerOf(parser, "num-disparities", 0, 4095) : (width / 5 + 15) / 16 * 16;
+}
+
 //! The calibrated cameras; none without a calibration
 static Ptr<StereoRig> openRig(const CommandLineParser& parser, Size imageSize, Size size)
 {
     if (!parser.has("calibration"))
         return Ptr<StereoRig>();
     const StereoCalibration calibration = readStereoCalibration(
-        parser.get<String>("calibration"), parser.get<String>("calibration2"), imageSize, parser.get<double>("unit"));
-    return StereoRig::create(calibration, parser.get<double>("field-of-view"), size);
+        parser.get<String>("calibration"), parser.get<String>("calibration2"), imageSize, unitOf(parser));
+    return StereoRig::create(calibration, fieldOfViewOf(parser), size);
 }
 
 static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int width, const Ptr<StereoRig>& rig)
 {
-    const int count = parser.has("num-disparities") ? parser.get<int>("num-disparities") : (width / 5 + 15) / 16 * 16;
-    const Ptr<HDPTreeMatcher> matcher =
-        HDPTreeMatcher::create(parser.get<int>("min-disparity"), count, presetOf(parser.get<String>("preset")));
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparityOf(parser), numDisparitiesOf(parser, width),
+                                                               presetOf(parser.get<String>("preset")));
     matcher->setDisparityDepth(CV_32F); // in pixels
     if (rig)
     {
@@ -81,10 +93,20 @@ static Ptr<HDPTreeMatcher> createMatcher(const CommandLineParser& parser, int wi
 //! Without a calibration, images are rectified, and only resized.
 static void rectify(const Ptr<StereoRig>& rig, Size size, Mat& left, Mat& right)
 {
-    if (rig)
-        return rig->rectify(left, right, left, right);
-    resize(left, left, size, 0, 0, INTER_AREA);
-    resize(right, right, size, 0, 0, INTER_AREA);
+    if (!rig)
+    {
+        resize(left, left, size, 0, 0, INTER_AREA);
+        resize(right, right, size, 0, 0, INTER_AREA);
+        return;
+    }
+    rig->rectify(left, right, left, right);
+    if (left.depth() == CV_32F) // whose levels may be far from the 0 of what no raw pixel reaches
+    {
+        Mat leftMask, rightMask;
+        rig->getMasks(leftMask, rightMask);
+        left.setTo(std::numeric_limits<float>::quiet_NaN(), leftMask == 0);
+        right.setTo(std::numeric_limits<float>::quiet_NaN(), rightMask == 0);
+    }
 }
 
 //! --watch
@@ -99,26 +121,32 @@ static void printDrift(const RigDrift& drift)
     std::cout << std::endl;
 }
 
+//! --results
+static void writeFrame(const String& folder, int frame, const Ptr<StereoRig>& rig, const Mat& left, const Mat& right,
+                       const Mat& disparity, int minDisparity)
+{
+    if (frame == 0 && !utils::fs::createDirectories(folder)) // not earlier: what fails before leaves no empty folder
+        fail("cannot make the folder '" + folder + "'");
+    const bool isFloat = left.depth() == CV_32F; // PNG has none
+    writeResults(utils::fs::join(folder, format("%06d_", frame)), rig, isFloat ? colorsOf(left) : left,
+                 isFloat ? colorsOf(right) : right, disparity, minDisparity);
+}
+
 static void run(const CommandLineParser& parser)
 {
     presetOf(parser.get<String>("preset"));
-    const int maxFrames = parser.has("frames") ? parser.get<int>("frames") : INT_MAX;
-    const double scale = parser.get<double>("scale");
+    const int maxFrames = parser.has("frames") ? integerOf(parser, "frames", 1, INT_MAX) : INT_MAX;
+    const double scale = numberOf(parser, "scale", 0.05, 1);
     const String results = parser.get<String>("results");
-    for (const char* number : { "min-disparity", "num-disparities" })
-        if (parser.has(number))
-            parser.get<int>(number); // check() tells whether it is one
-    for (const char* number : { "unit", "field-of-view" })
-        parser.get<double>(number);
+    minDisparityOf(parser); // before a source is opened
+    numDisparitiesOf(parser, 0);
+    unitOf(parser);
+    fieldOfViewOf(parser);
     for (const char* option : { "calibration2", "watch" })
         if (parser.has(option) && !parser.has("calibration"))
             fail("--" + String(option) + " needs --calibration");
     if (!parser.has("@left"))
         fail("a source is needed: a file, a folder, a video or a camera; --help says more");
-    if (!parser.check() || !(scale >= 0.05 && scale <= 1))
-        fail("--scale must be from 0.05 to 1, the numbers of frames and disparities whole ones");
-    if (!results.empty() && !utils::fs::createDirectories(results))
-        fail("cannot make the folder '" + results + "'");
     Viewer viewer(parser.get<String>("output"), !parser.has("no-gui"));
     StereoSource source(parser.get<String>("@left"), parser.get<String>("@right"), parser.has("right-first"));
 
@@ -159,8 +187,7 @@ static void run(const CommandLineParser& parser)
                 printDrift(*drift);
         }
         if (!results.empty())
-            writeResults(utils::fs::join(results, format("%06d_", frames)), rig, left, right, disparity,
-                         findings.minDisparity);
+            writeFrame(results, frames, rig, left, right, disparity, findings.minDisparity);
         all.stop(); // and on, for the time until now
         all.start();
         const std::vector<String> lines = { format("%.1f frames/s", (frames + 1) / all.getTimeSec()),

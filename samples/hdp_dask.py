@@ -142,8 +142,8 @@ def find_model(left, right, width, height, options):
     while (height >> times) * (width >> times) > 3e6:
         times += 1
     size, number = (width >> times, height >> times), options['num_disparities']
-    matcher = hdpstereo.HDPTreeMatcher.create(options['min_disparity'] >> times, number and (number >> times) + 1,
-                                              options['preset'])
+    matcher = hdpstereo.HDPTreeMatcher.create(options['min_disparity'] >> times,
+                                              number and (number >> times) + (times > 0), options['preset'])
     compute(matcher, left, right, (0, 0, size[0] << times, size[1] << times), size)
     return matcher.getPairModel().enlarged(times, width, height)
 
@@ -205,9 +205,14 @@ def match_tiles(args, options, cluster):
     (width, height), size = (size_of(path) for path in paths)
     if size != (width, height):
         raise ValueError('the images must be of one size, not %d x %d and %d x %d' % (width, height, *size))
+    keep_options(out, options)
     if not model.exists():
         part = out / 'part.model.yml'
-        find_model(*paths, width, height, options).save(part)
+        try:
+            find_model(*paths, width, height, options).save(part)
+        except Exception:
+            (out / 'options.json').unlink()  # nothing is made with them
+            raise
         os.replace(part, model)
     if options['num_disparities'] == 0:
         found = hdpstereo.PairModel.load(model)
@@ -228,13 +233,21 @@ def match_tiles(args, options, cluster):
     return 0
 
 
-def keep_options(path, options):
-    '''What the maps were made with, so that those of other options are not taken for these.'''
-    if not path.exists():
-        path.write_text(json.dumps(options))
-    elif json.loads(path.read_text()) != options:
-        sys.exit("error: the maps in '%s' were made with other options, see options.json: take another folder" %
-                 path.parent)
+def keep_options(out, options):
+    '''What the maps of this folder were made with, so that those of other options are not taken for these.'''
+    path, part = out / 'options.json', out / 'options.json.part'
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        if not path.exists():
+            part.write_text(json.dumps(options))
+            os.replace(part, path)
+        elif json.loads(path.read_text()) != options:
+            sys.exit("error: the maps in '%s' were made with other options, see options.json: take another folder" %
+                     out)
+    except ValueError:
+        sys.exit("error: '%s' is damaged: take another folder" % path)
+    except OSError as error:
+        sys.exit("error: '%s' cannot be the folder for the maps: %s" % (out, error))
 
 
 def main():
@@ -253,21 +266,27 @@ def main():
     args = parser.parse_args()
     if args.num_disparities < 0 or (args.num_disparities == 0 and args.min_disparity != 0):
         sys.exit('error: --num-disparities must be > 0, or 0 without --min-disparity, which is found then, too')
+    if args.min_disparity < -2047 or args.min_disparity + args.num_disparities > 2048:
+        sys.exit('error: disparities must be from -2047 to 2047')
     if args.workers < 1:
         sys.exit('error: --workers must be at least 1')
     cluster = {'address': args.scheduler} if args.scheduler else {
         'n_workers': args.workers, 'threads_per_worker': 1, 'dashboard_address': None}
+    out = args.out.resolve()
     if args.lefts.is_file() and args.rights.is_file():
+        if any(out in (path.parent.resolve(), path.resolve().parent) for path in (args.lefts, args.rights)):
+            sys.exit('error: OUT must be another folder than that of the images')
         if args.tile <= 0 or args.tile % 384 != 0:
             sys.exit('error: --tile must be a multiple of 384')
-        args.out.mkdir(parents=True, exist_ok=True)
         options = {name: getattr(args, name) for name in ('preset', 'min_disparity', 'num_disparities', 'tile')}
         options.update(left=str(args.lefts.resolve()), right=str(args.rights.resolve()))
-        keep_options(args.out / 'options.json', options)
         try:
             return match_tiles(args, options, cluster)
         except (ValueError, RuntimeError, OSError) as error:
             sys.exit('error: %s' % error)
+    for path, other in (args.lefts, args.rights), (args.rights, args.lefts):
+        if other.is_file():
+            sys.exit("error: '%s' is a file, but there is no file '%s'" % (other, path))
     for folder in args.lefts, args.rights:
         if not folder.is_dir():
             sys.exit("error: there is no folder '%s'" % folder)
@@ -275,7 +294,7 @@ def main():
         sys.exit('error: --format=png is for disparities from 0 to 255, --format=tif for any')
 
     lefts = sorted(path.resolve() for path in args.lefts.iterdir() if path.suffix.lower() in PICTURES)
-    rights, out = args.rights.resolve(), args.out.resolve()
+    rights = args.rights.resolve()
     if out in (args.lefts.resolve(), rights):
         sys.exit('error: OUT must be another folder than that of the images')
     outputs = {left: out / (left.stem + '.' + args.format) for left in lefts}
@@ -283,11 +302,7 @@ def main():
         sys.exit('error: two left images have the same name, but for its ending')
     options = {name: getattr(args, name) for name in ('preset', 'min_disparity', 'num_disparities', 'format')}
     options.update(left=str(args.lefts.resolve()), right=str(rights))
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        keep_options(out / 'options.json', options)
-    except (ValueError, OSError) as error:
-        sys.exit("error: '%s' cannot be the folder for the maps: %s" % (out, error))
+    keep_options(out, options)
     missing = [left for left in lefts if not outputs[left].exists()]
     print('%d pairs, %d of them are there' % (len(lefts), len(lefts) - len(missing)))
 

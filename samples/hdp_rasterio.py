@@ -21,6 +21,7 @@ that of a tile. On Debian: apt install python3-rasterio python3-opencv
 import argparse
 import os
 import sys
+import warnings
 
 import hdpstereo
 import numpy as np
@@ -57,7 +58,7 @@ def find_model(rasters, args):
     while (height >> times) * (width >> times) > 3e6:
         times += 1
     size, number = (width >> times, height >> times), args.num_disparities
-    matcher = hdpstereo.HDPTreeMatcher.create(args.min_disparity >> times, number and (number >> times) + 1,
+    matcher = hdpstereo.HDPTreeMatcher.create(args.min_disparity >> times, number and (number >> times) + (times > 0),
                                               args.preset)
     match(matcher, rasters, Window(0, 0, size[0] << times, size[1] << times), size)
     model = matcher.getPairModel().enlarged(times, width, height)
@@ -118,6 +119,10 @@ def match_rasters(args):
         raise ValueError('--tile must be > 0')
     if args.num_disparities < 0 or (args.num_disparities == 0 and args.min_disparity != 0):
         raise ValueError('--num-disparities must be > 0, or 0 without --min-disparity, which is found then, too')
+    if args.min_disparity < -2047 or args.min_disparity + args.num_disparities > 2048:
+        raise ValueError('disparities must be from -2047 to 2047')
+    if os.path.isdir(args.out):
+        raise ValueError("OUT must not be a folder, '%s'" % args.out)
     rasters, window = open_rasters(args)
     if os.path.realpath(args.out) in [os.path.realpath(name) for name in (args.left, args.right)]:
         raise ValueError("OUT must not be an input, '%s'" % args.out)
@@ -154,6 +159,7 @@ def main():
     parser.add_argument('--preset', default='fast', choices=['ultrafast', 'fast', 'quality', 'tree', 'paper'])
     parser.add_argument('--tile', type=int, default=1152, help='side of a tile (default: 1152)')
     args = parser.parse_args()
+    warnings.simplefilter('ignore', rasterio.errors.NotGeoreferencedWarning)  # a raster need not have coordinates
     try:
         match_rasters(args)
     except (ValueError, OSError, rasterio.errors.RasterioError, rasterio.errors.WindowError) as error:

@@ -7,6 +7,7 @@
 
 // What hdp_camera shows.
 
+#include <cfloat>
 #include <cstdlib>
 
 #include "opencv2/hdpstereo.hpp"
@@ -21,12 +22,16 @@ namespace hdp_samples {
 
 using namespace cv;
 
-//! An image as it is shown, in colors of 8 bit. Cameras and pictures may have grey levels, also in 16 bit.
+//! An image as it is shown, in colors of 8 bit. Cameras and pictures may have grey levels, also in 16 bit and floats;
+//! what is not finite is black.
 inline Mat colorsOf(const Mat& image)
 {
     Mat colors = image;
-    if (image.depth() == CV_16U)
-        normalize(image, colors, 0, 255, NORM_MINMAX, CV_8U);
+    if (image.depth() != CV_8U)
+    {
+        colors = Mat::zeros(image.size(), CV_8U);
+        normalize(image, colors, 0, 255, NORM_MINMAX, CV_8U, abs(image) <= FLT_MAX);
+    }
     if (colors.channels() != 3)
         cvtColor(colors, colors, colors.channels() == 1 ? COLOR_GRAY2BGR : COLOR_BGRA2BGR);
     return colors;

@@ -44,6 +44,18 @@ inline int integerOf(const cv::CommandLineParser& parser, const cv::String& opti
     return (int)number;
 }
 
+//! Nothing behind the number, and it is not NaN
+inline double numberOf(const cv::CommandLineParser& parser, const cv::String& option, double low, double high)
+{
+    const cv::String text = parser.get<cv::String>(option);
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (text.empty() || *end != 0 || !(number >= low && number <= high))
+        CV_Error(cv::Error::StsBadArg,
+                 cv::format("--%s=%s: not a number from %.10g to %.10g", option.c_str(), text.c_str(), low, high));
+    return number;
+}
+
 } // namespace hdp_samples
 
 #endif

@@ -128,6 +128,42 @@ def main():
             command[3:5] = [right, 'wrong_' + right]
             wrong = subprocess.run(command + [option], cwd=folder, stderr=subprocess.PIPE, text=True, check=False)
             assert wrong.returncode == 1 and error in wrong.stderr and 'Traceback' not in wrong.stderr, wrong.stderr
+            assert not (folder / command[4]).exists() or not list((folder / command[4]).iterdir())
+
+        # Parameters that are wrong leave nothing: the call with right ones goes on. 2048 is the largest number.
+        for name, columns in ('left.tif', slice(0, 100)), ('right.tif', slice(7, 107)):
+            (folder / 'small').mkdir(exist_ok=True)
+            cv2.imwrite(str(folder / 'small' / name), scene[:80, columns])
+            cv2.imwrite(str(folder / ('flat_' + name)), np.ones((80, 100), np.uint8))
+        (folder / 'damaged').mkdir()
+        (folder / 'damaged' / 'options.json').write_text('')
+        (folder / 'links').mkdir()
+        (folder / 'links' / '0_0.tif').symlink_to(folder / 'small' / 'left.tif')
+        names, levels = set(folder.rglob('*')), (folder / 'small' / 'left.tif').read_bytes()
+        left, right = 'small/left.tif', 'small/right.tif'
+        for arguments, error in (
+                ([left, right, 'small'], 'OUT must be another folder'),
+                (['links/0_0.tif', right, 'links'], 'OUT must be another folder'),
+                ([left, right, 'map', '--num-disparities=2049'], 'disparities must be from -2047 to 2047'),
+                ([left, right, 'map', '--min-disparity=-2048'], 'disparities must be from -2047 to 2047'),
+                ([left, right, 'none.tif'], "none.tif' cannot be the folder for the maps"),
+                ([left, right, 'damaged'], "options.json' is damaged"),
+                ([left, 'nothing.tif', 'map'], "'small/left.tif' is a file, but there is no file 'nothing.tif'"),
+                (['nothing.tif', right, 'map'], "'small/right.tif' is a file, but there is no file 'nothing.tif'")):
+            wrong = subprocess.run(command[:2] + arguments + command[6:], cwd=folder, stderr=subprocess.PIPE,
+                                   text=True, check=False)
+            assert wrong.returncode == 1 and wrong.stderr.startswith('error: ') and error in wrong.stderr, wrong.stderr
+            assert wrong.stderr.count('\n') == 1 and set(folder.rglob('*')) == names, (wrong.stderr, arguments)
+        assert (folder / 'small' / 'left.tif').read_bytes() == levels
+        command[2:6] = ['flat_left.tif', 'flat_right.tif', 'map', '--num-disparities=0']
+        wrong = subprocess.run(command, cwd=folder, stderr=subprocess.PIPE, text=True, check=False)
+        assert wrong.returncode == 1 and 'too few corners' in wrong.stderr, wrong.stderr
+        command[2:6] = [left, right, 'map', '--num-disparities=2048']
+        subprocess.run(command, cwd=folder, check=True)
+        disparity = cv2.imread(str(folder / 'map' / 'map.tif'), cv2.IMREAD_UNCHANGED)
+        assert abs(np.nanmedian(disparity[:, 20:]) - 7) < 0.5, disparity
+        model = hdpstereo.PairModel.load(folder / 'map' / 'model.yml')
+        assert model.numDisparities == 2048 and not list(folder.glob('map/*.part')), model
 
 
 if __name__ == '__main__':

@@ -130,12 +130,14 @@ def main():
             assert result.returncode == 1 and 'error: --window must be X,Y,WIDTH,HEIGHT inside of 2000 x 900' in \
                 result.stdout, result.stdout
         before, left = (folder / 'out.tif').read_bytes(), (folder / 'left.tif').read_bytes()
-        for options, error in ((['--num-disparities=3000'], 'minDisparity + numDisparities - 1 must be in'),
+        (folder / 'folder').mkdir()
+        for options, error in ((['--num-disparities=2049'], 'disparities must be from -2047 to 2047'),
                                (['--num-disparities=-1'], '--num-disparities must be > 0'),
                                (['--tile=0'], '--tile must be'),
                                (['--num-disparities=0', '--min-disparity=2'], '--num-disparities must be > 0')):
             check_error(run(folder, *options), error)
-        for out, error in (('left.tif', 'OUT must not be an input'), ('no/such/folder/out.tif', 'no/such/folder')):
+        for out, error in (('left.tif', 'OUT must not be an input'), ('folder', 'OUT must not be a folder'),
+                           ('no/such/folder/out.tif', 'no/such/folder')):
             check_error(run(folder, out=out), error)
         save(folder / 'right.tif', np.ones((HEIGHT, WIDTH), np.uint8))
         check_error(run(folder), "'right.tif' must have the type and the bands of 'left.tif'")
@@ -150,6 +152,15 @@ def main():
         (folder / 'right.tif').unlink()
         result = run(folder)
         assert result.returncode == 1 and 'error: right.tif' in result.stdout, result.stdout
+
+        # The largest number of disparities; coordinates need not be there
+        scene = cv2.GaussianBlur(np.random.RandomState(1).randint(0, 256, (80, 120)).astype(np.uint8), (3, 3), 0)
+        cv2.imwrite(str(folder / 'left.tif'), scene[:, :100])
+        cv2.imwrite(str(folder / 'right.tif'), scene[:, 7:107])
+        result = run(folder, '--num-disparities=2048')
+        assert result.returncode == 0 and not result.stdout, result.stdout
+        disparity = cv2.imread(str(folder / 'out.tif'), cv2.IMREAD_UNCHANGED)
+        assert abs(np.nanmedian(disparity[:, 20:]) - 7) < 0.5, disparity
 
 
 if __name__ == '__main__':

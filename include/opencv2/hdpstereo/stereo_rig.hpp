@@ -56,7 +56,9 @@ struct CV_EXPORTS_W_SIMPLE StereoCalibration
 size of the calibration by default; but OpenCV's and the ZED's files do not have it, and it must be given.
 @param unit Metres in a unit of T, in OpenCV's files: it is that of the chessboard's squares. Others are in known units.
 @throws cv::Exception with the file and the field in one sentence if something is missing, not finite or impossible; if
-the second camera is not to the right of the first; if the images have another aspect.
+the second camera is not to the right of the first; if the images have another aspect; if a principal point is outside
+of the image or, in OpenCV's files, more than a quarter of its width or height from the middle: imageSize may be wrong.
+If it is right, as of cropped images, fill in StereoCalibration.
  */
 CV_EXPORTS_W StereoCalibration readStereoCalibration(const String& first, const String& second = String(),
                                                      Size imageSize = Size(), double unit = 1);
@@ -133,7 +135,9 @@ public:
     /** @brief Creates a rig.
     @param calibration See readStereoCalibration().
     @param fieldOfView Horizontal field of view of the rectified images in degrees, 1 to 170. 0: without fisheye as much
-    as has no empty pixels, but for a column or row at a border; with fisheye what keeps the focal length.
+    as has no empty pixels, but for a column or row at a border, or 15 % and more with strong distortion and lenses
+    beyond some 110 degrees, whose border cv::stereoRectify() undistorts in too few iterations: see getMasks(). With
+    fisheye what keeps the focal length.
     @param size Size of the rectified images; by default that of the raw ones.
     @throws cv::Exception if a matrix of the calibration is of another size, not finite or impossible, if
     cv::stereoRectify() would put one camera above the other, if one sees nothing of the other's image, or if an
