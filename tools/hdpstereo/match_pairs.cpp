@@ -102,8 +102,11 @@ static void printProgress(size_t done, size_t total, const String& name)
 }
 
 //! What the maps in a folder were made with, so that those of other options are not taken for these
-static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& matcher, const Rectifier& rectifier,
-                        const String& out)
+static String optionsFile(const String& out) { return utils::fs::join(out, "hdpstereo.yml"); }
+
+//! The text of that file; throws if there is another one.
+static String checkOptions(const CommandLineParser& parser, const HDPTreeMatcher& matcher, const Rectifier& rectifier,
+                           const String& out)
 {
     FileStorage options(".yml", FileStorage::WRITE | FileStorage::MEMORY);
     options << "version" << HDPSTEREO_VERSION;
@@ -134,17 +137,23 @@ static void keepOptions(const CommandLineParser& parser, const HDPTreeMatcher& m
             << "{";
     matcher.write(options);
     options << "}";
-    const String text = options.releaseAndGetString(), path = utils::fs::join(out, "hdpstereo.yml");
+    const String text = options.releaseAndGetString(), path = optionsFile(out);
     std::ifstream file(path.c_str());
     const String before((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     if (!before.empty() && before != text)
         CV_Error(Error::StsBadArg, "the maps in '" + out + "' were made with other options, see '" + path +
                                        "': take another folder, or remove it");
-    if (!before.empty())
+    return text;
+}
+
+//! Before the first map
+static void keepOptions(const String& text, const String& out)
+{
+    if (utils::fs::exists(optionsFile(out)))
         return;
     if (!utils::fs::createDirectories(out))
         CV_Error(Error::StsError, "cannot make the folder '" + out + "'");
-    writeWholeFile(path, std::vector<uchar>(text.begin(), text.end()));
+    writeWholeFile(optionsFile(out), std::vector<uchar>(text.begin(), text.end()));
 }
 
 static void checkBatchOptions(const CommandLineParser& parser)
@@ -193,7 +202,7 @@ size_t matchPairs(const CommandLineParser& parser)
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, 0);
     const MaskFiles masks(parser);
     Rectifier rectifier(parser);
-    keepOptions(parser, *matcher, rectifier, out);
+    const String options = checkOptions(parser, *matcher, rectifier, out);
     size_t done = 0, old = 0, bad = 0;
     for (const NamedPair& pair : pairs)
     {
@@ -221,6 +230,7 @@ size_t matchPairs(const CommandLineParser& parser)
             printProgress(done, pairs.size(), pair.name + " left out: " + e.err + "\n");
             continue;
         }
+        keepOptions(options, out);
         utils::fs::createDirectories(utils::fs::getParent(path));
         writeWholeFile(path, bytes);
         printProgress(done, pairs.size(), pair.name);

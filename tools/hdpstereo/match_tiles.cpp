@@ -43,12 +43,16 @@ public:
         const Size beside = before_ + after_;
         const int most = std::min(SHRT_MAX - std::max(beside.width, beside.height), std::max(size.width, size.height));
         side_ = toGrid(most) > SHRT_MAX - beside.width ? most / step * step : toGrid(most);
-        while (side_ > step && (double)(side_ + beside.width) * (side_ + beside.height) > pixels)
+        const auto largestTile = [&] {
+            return Size(std::min(side_ + beside.width, size.width), std::min(side_ + beside.height, size.height));
+        };
+        const auto fits = [&] { return (double)largestTile().width * largestTile().height <= pixels; };
+        while (side_ > step && !fits())
             side_ -= step;
-        if ((double)(side_ + beside.width) * (side_ + beside.height) > pixels)
+        if (!fits())
             CV_Error(Error::StsOutOfRange,
-                     format("--memory is too little for a tile of %d x %d pixels, of which %d x %d are margins",
-                            side_ + beside.width, side_ + beside.height, beside.width, beside.height));
+                     format("--memory is too little for a tile of %d x %d pixels with its margins", largestTile().width,
+                            largestTile().height));
     }
 
     int side() const { return side_; }
@@ -182,6 +186,8 @@ void checkTileOptions(const CommandLineParser& parser)
         CV_Error(Error::StsBadArg, "--tiles needs LEFT RIGHT OUT");
     if (!(numberOf(parser, "memory") > 0))
         CV_Error(Error::StsBadArg, "--memory must be above 0");
+    if (!(numberOf(parser, "prior-sigma") >= 0)) // else a tile with a point of the prior would tell
+        CV_Error(Error::StsBadArg, "--prior-sigma must be >= 0");
     checkOutputs(parser);
 }
 
@@ -220,6 +226,7 @@ int matchTiles(const CommandLineParser& parser)
     const String output = parser.get<String>(parser.has("output") ? "output" : "@out");
     const Ptr<HDPTreeMatcher> matcher = createPlainMatcher(parser, size.width);
     pair.setKnownDisparities(parser, Rect(0, 0, 1, 1), *matcher); // throws if types are wrong
+    pair.checkLimits();
     for (const String& path : pair.readWhole())
         std::cout << "read whole " << path << std::endl;
     const bool writesTiles = isWrittenByTiles(output);
@@ -229,12 +236,12 @@ int matchTiles(const CommandLineParser& parser)
         takeRange(parser, pair, pixels, *matcher);
     int layers = 0;
     const PairModel model = findModel(parser, pair, *matcher, pixels, layers);
+    const Tiling tiling(size, *matcher, layers, pixels);
     if (parser.has("save-findings"))
     {
         writeFindings(parser.get<String>("save-findings"), model);
         std::cout << "written    " << parser.get<String>("save-findings") << std::endl;
     }
-    const Tiling tiling(size, *matcher, layers, pixels);
     hdp_tools::catchInterrupts(); // so that no part of a map is left
     const Ptr<MapTiles> map = createMap(output, size, tiling.side());
     for (int i = 0; i < tiling.count(); ++i)

@@ -111,24 +111,48 @@ Mat WindowedPair::readMap(const File& map, const Rect& part)
     return toDisparity(image, mask, map.path);
 }
 
-bool WindowedPair::limitsAll(double& smallest, double& largest) const
+//! Calls use(smallest, largest) for bands of rows, from above, until it is false. Returns whether it never was.
+template <typename Use> bool WindowedPair::forLimits(const Use& use) const
 {
-    if (!smallest_.windows || !largest_.windows)
-        return false;
     const int rows = 256;
     for (int y = 0; y < size_.height; y += rows)
     {
         const Rect band = Rect(0, y, size_.width, rows) & Rect(Point(), size_);
-        const Mat least = readMap(smallest_, band), most = readMap(largest_, band);
+        if (!use(readMap(smallest_, band), readMap(largest_, band)))
+            return false;
+    }
+    return true;
+}
+
+void WindowedPair::checkLimits() const
+{
+    if (!smallest_.windows || !largest_.windows)
+        return;
+    int wrong = 0;
+    forLimits([&](const Mat& least, const Mat& most) {
+        wrong += countNonZero(most < least);
+        return true;
+    });
+    if (wrong > 0)
+        CV_Error(Error::StsBadArg, format("--largest must not be less than --smallest, as it is in %d pixels", wrong));
+}
+
+bool WindowedPair::limitsAll(double& smallest, double& largest) const
+{
+    if (!smallest_.windows || !largest_.windows)
+        return false;
+    bool isFirst = true;
+    return forLimits([&](const Mat& least, const Mat& most) {
         if (!checkRange(least) || !checkRange(most)) // NaN
             return false;
         double first, last;
         minMaxLoc(least, &first, nullptr);
         minMaxLoc(most, nullptr, &last);
-        smallest = y == 0 ? first : std::min(smallest, first);
-        largest = y == 0 ? last : std::max(largest, last);
-    }
-    return true;
+        smallest = isFirst ? first : std::min(smallest, first);
+        largest = isFirst ? last : std::max(largest, last);
+        isFirst = false;
+        return true;
+    });
 }
 
 void WindowedPair::setKnownDisparities(const CommandLineParser& parser, const Rect& part, HDPTreeMatcher& matcher) const

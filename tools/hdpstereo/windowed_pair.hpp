@@ -31,6 +31,8 @@ public:
     PairPart read(const cv::Rect& part) const;
     //! Both images, halved some times
     PairPart reduced(int times) const;
+    //! Throws if --largest is less than --smallest somewhere.
+    void checkLimits() const;
     //! Whether --smallest and --largest limit all pixels, and to which range
     bool limitsAll(double& smallest, double& largest) const;
     //! Gives a matcher the ranges and the prior of a part.
@@ -49,6 +51,7 @@ private:
 
     static void readSide(const File& image, const File& maskFile, const cv::Rect& part, cv::Mat& pixels, cv::Mat& mask);
     static cv::Mat readMap(const File& map, const cv::Rect& part);
+    template <typename Use> bool forLimits(const Use& use) const;
 
     cv::Size size_; // of the first one that is opened
     File left_, right_, leftMask_, rightMask_, smallest_, largest_, prior_;

@@ -175,10 +175,17 @@ private:
     void readBlock(int x, int y, Mat& block)
     {
         TIFF* const f = file_.get();
+        const uint32_t number =
+            isTiled_ ? TIFFComputeTile(f, (uint32_t)x, (uint32_t)y, 0, 0) : TIFFComputeStrip(f, (uint32_t)y, 0);
+        if (TIFFGetStrileByteCount(f, number) ==
+            0) // a sparse file of GDAL does not have it; libtiff reads what is at 0
+        {
+            block.setTo(Scalar::all(std::isnan(noData_) ? 0 : noData_));
+            return;
+        }
         const tmsize_t bytes = (tmsize_t)(block.total() * block.elemSize());
-        const tmsize_t done =
-            isTiled_ ? TIFFReadEncodedTile(f, TIFFComputeTile(f, (uint32_t)x, (uint32_t)y, 0, 0), block.data, bytes)
-                     : TIFFReadEncodedStrip(f, TIFFComputeStrip(f, (uint32_t)y, 0), block.data, bytes);
+        const tmsize_t done = isTiled_ ? TIFFReadEncodedTile(f, number, block.data, bytes)
+                                       : TIFFReadEncodedStrip(f, number, block.data, bytes);
         if (done < 0)
             CV_Error(Error::StsError, "cannot read the image '" + path_ + "'");
     }
@@ -194,18 +201,20 @@ private:
 class TiffMap : public MapTiles
 {
 public:
-    TiffMap(const String& path, Size size, int side) : path_(path), part_(path), side_(side)
+    TiffMap(const String& path, Size size, int side) : path_(path), part_(path)
     {
-        const auto padded = [=](int length) { return std::ceil((double)length / side) * side; }; // tiles are whole
-        const bool isBig = 4 * padded(size.width) * padded(size.height) > 4e9;
+        const auto tileOf = [=](int length) { return std::min(side, (length + 15) / 16 * 16); }; // multiples of 16
+        tile_ = Size(tileOf(size.width), tileOf(size.height));
+        const auto padded = [](int length, int tile) { return std::ceil((double)length / tile) * tile; };
+        const bool isBig = 4 * padded(size.width, tile_.width) * padded(size.height, tile_.height) > 4e9;
         file_.reset(TIFFOpen(part_.name().c_str(), isBig ? "w8" : "w"));
         if (!file_)
             fail();
         TIFF* const f = file_.get();
         TIFFSetField(f, TIFFTAG_IMAGEWIDTH, (uint32_t)size.width);
         TIFFSetField(f, TIFFTAG_IMAGELENGTH, (uint32_t)size.height);
-        TIFFSetField(f, TIFFTAG_TILEWIDTH, (uint32_t)side);
-        TIFFSetField(f, TIFFTAG_TILELENGTH, (uint32_t)side);
+        TIFFSetField(f, TIFFTAG_TILEWIDTH, (uint32_t)tile_.width);
+        TIFFSetField(f, TIFFTAG_TILELENGTH, (uint32_t)tile_.height);
         TIFFSetField(f, TIFFTAG_BITSPERSAMPLE, 32);
         TIFFSetField(f, TIFFTAG_SAMPLESPERPIXEL, 1);
         TIFFSetField(f, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
@@ -216,7 +225,7 @@ public:
     void write(const Mat& disparity, const Rect& part) CV_OVERRIDE
     {
         TIFF* const f = file_.get();
-        Mat tile(side_, side_, CV_32F, Scalar(std::numeric_limits<float>::quiet_NaN()));
+        Mat tile(tile_, CV_32F, Scalar(std::numeric_limits<float>::quiet_NaN()));
         disparity.copyTo(tile(Rect(Point(), part.size())), disparity < std::numeric_limits<float>::infinity());
         const uint32_t number = TIFFComputeTile(f, (uint32_t)part.x, (uint32_t)part.y, 0, 0);
         if (TIFFWriteEncodedTile(f, number, tile.data, (tmsize_t)(tile.total() * tile.elemSize())) < 0)
@@ -236,7 +245,7 @@ private:
 
     String path_;
     PartFile part_;
-    int side_;
+    Size tile_;
     Tiff file_; // closed before what is not finished is removed
 };
 

@@ -264,6 +264,12 @@ TEST(HDPStereo_Programs, batch_of_folders)
     EXPECT_EQ("kept", readText(fs::join(out, "one.png")));
     EXPECT_TRUE(readText(fs::join(out, "alone.png")) == map);
 
+    // Options that make no map are not kept.
+    const String retried = program + "--batch " + lefts + " " + rights + " " + folder.path("retried");
+    EXPECT_EQ(2, run(folder, retried + " --num-disparities=9999").status);
+    EXPECT_EQ(2, run(folder, retried).status);
+    EXPECT_TRUE(fs::exists(folder.path("retried/one.png")));
+
     // Maps of other options are not continued.
     const Execution others = run(folder, command + " --preset=quality");
     EXPECT_EQ(1, others.status);
@@ -650,17 +656,74 @@ TEST(HDPStereo_Programs, camera_images)
     }
 }
 
+//! Grey floats of any range, with NaN, and with what no raw pixel reaches
+TEST(HDPStereo_Programs, camera_floats)
+{
+    const CameraFrames frames;
+    const DatasetFolder& folder = frames.folder;
+    const cv::Rect hole(60, 70, 20, 20);
+    Mat grey[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        cv::cvtColor(i ? frames.pair.right : frames.pair.left, grey[i], COLOR_BGR2GRAY);
+        cv::normalize(grey[i], grey[i], 0, 255, cv::NORM_MINMAX);
+    }
+    for (const Point2d& range : { Point2d(0.01, 280), Point2d(1e-6, -1e-4), Point2d(1e6, -1e9) }) // scale, smallest
+    {
+        SCOPED_TRACE(range);
+        for (int i = 0; i < 2; ++i)
+        {
+            Mat levels;
+            grey[i].convertTo(levels, CV_32F, range.x, range.y);
+            levels(hole) = std::numeric_limits<float>::quiet_NaN();
+            folder.write(i ? "right.pfm" : "left.pfm", levels);
+        }
+        for (const bool hasRig : { false, true })
+        {
+            const String options = hasRig ? frames.options + " --field-of-view=60" : " --no-gui --num-disparities=32";
+            const Execution result =
+                run(folder, frames.program + folder.path("left.pfm") + " " + folder.path("right.pfm") + options +
+                                " --output=" + folder.path("shown%02d.png") + " --results=" + folder.path("results"));
+            EXPECT_EQ(0u, result.output.find("1 frames, ")) << result.errors;
+            const Mat left = cv::imread(folder.path("results/000000_left.png"), IMREAD_GRAYSCALE),
+                      shown = cv::imread(folder.path("shown00.png"), IMREAD_GRAYSCALE);
+            ASSERT_EQ(Size(160, 120), left.size());
+            ASSERT_EQ(Size(320, 120), shown.size());
+            const cv::Rect lower(0, 60, 160, 60); // below the text
+            EXPECT_EQ(0, cv::norm(left(lower), shown(lower), NORM_INF));
+            Mat expected = grey[0].clone();
+            expected(hole) = 0;
+            if (hasRig) // sees 44 degrees
+                EXPECT_NEAR(cv::mean(expected, expected != 0)[0], cv::mean(left, left != 0)[0], 10);
+            else
+                EXPECT_GE(1, cv::norm(expected, left, NORM_INF));
+        }
+    }
+}
+
 TEST(HDPStereo_Programs, camera_mistakes)
 {
     const CameraFrames frames;
     const DatasetFolder& folder = frames.folder;
-    const String both = folder.path("both.png") + " --no-gui";
+    const String both = folder.path("both.png") + " --no-gui", results = folder.path("results");
     const std::pair<String, String> wrong[] = {
         { " --no-gui", "a source is needed" },
         { "no/such/video.avi --no-gui", "cannot open the source no/such/video.avi" },
         { folder.path("lefts") + " no/such/folder --no-gui", "cannot open the source no/such/folder" },
-        { both + " -c=no/such.yml", "cannot read the calibration 'no/such.yml'" },
-        { both + " --num-disparities=many", "--scale must be from 0.05 to 1, the numbers" },
+        { both + " -c=no/such.yml --results=" + results, "cannot read the calibration 'no/such.yml'" },
+        { both + " -c=" + frames.intrinsics + " --results=" + results,
+          "'" + frames.intrinsics + "': T/data is missing" },
+        { "no/such/video.avi --no-gui --results=" + results, "cannot open the source no/such/video.avi" },
+        { both + " --results=" + folder.path("both.png"), "cannot make the folder '" + folder.path("both.png") },
+        { both + " --num-disparities=many", "--num-disparities=many: not a whole number from 0 to 4095" },
+        { both + " --min-disparity=1.5", "--min-disparity=1.5: not a whole number from -2047 to 2047" },
+        { both + " --field-of-view=abc", "--field-of-view=abc: not a number from 0 to 170" },
+        { both + " --unit=abc", "--unit=abc: not a number from 0 to 1000000" },
+        { both + " --unit=nan", "--unit=nan: not a number from 0 to 1000000" },
+        { both + " --scale=2", "--scale=2: not a number from 0.05 to 1" },
+        { both + " --scale=0.5x", "--scale=0.5x: not a number from 0.05 to 1" },
+        { both + " --frames=0", "--frames=0: not a whole number from 1 to " },
+        { both + " --frames=-3", "--frames=-3: not a whole number from 1 to " },
     };
     for (const auto& call : wrong)
     {
@@ -669,8 +732,7 @@ TEST(HDPStereo_Programs, camera_mistakes)
         EXPECT_EQ(0u, bad.errors.find("error: " + call.second)) << bad.errors;
         EXPECT_EQ(firstLine(bad.errors) + "\n", bad.errors);
     }
-    EXPECT_NE(String::npos, run(folder, frames.program + both + " -c=" + frames.intrinsics)
-                                .errors.find("intrinsics.yml': T/data is missing"));
+    EXPECT_FALSE(cv::utils::fs::exists(results)); // no empty folder stays
 }
 
 }} // namespace opencv_test

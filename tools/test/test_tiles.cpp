@@ -137,6 +137,10 @@ TEST(HDPStereo_Tiles, errors_change_no_file)
     changed.bits = 8;
     changed.save(folder.path("bytes.yml"));
     folder.write("map.png", Mat(120, 160, CV_8U));
+    Mat limit(120, 160, CV_32F, Scalar(8));
+    writeTiff(folder.path("smallest.tif"), limit);
+    limit.at<float>(119, 159) = 7;
+    writeTiff(folder.path("largest.tif"), limit);
 
     const std::pair<String, String> wrong[] = {
         { images + left, "cannot write '" + left + "': it is LEFT" },
@@ -156,6 +160,9 @@ TEST(HDPStereo_Tiles, errors_change_no_file)
         { images + out + " --prior=" + folder.path("map.png"), "'" + folder.path("map.png") + "' must have dispariti" },
         { images + out + " --prior=" + folder.path("wide.tif"), "--prior must have the size of LEFT" },
         { images + out + " --prior=" + left + " --prior-sigma=x", "--prior-sigma=x is not a number" },
+        { images + out + " --prior=" + left + " --prior-sigma=-1", "--prior-sigma must be >= 0" },
+        { images + out + " --smallest=" + folder.path("smallest.tif") + " --largest=" + folder.path("largest.tif"),
+          "--largest must not be less than --smallest, as it is in 1 pixels" },
     };
     folder.writeText("out.tif", "an old map");
     for (const auto& call : wrong)
@@ -252,7 +259,7 @@ TEST(HDPStereo_Tiles, cut_all_that_is_known)
         const String images = " " + folder.path("left.tif") + " " + folder.path("right.tif") + " ",
                      holed = " " + folder.path("holed_left.tif") + " " + folder.path("holed_right.tif") + " ",
                      options = "--num-disparities=32 --preset=ultrafast",
-                     tiles = "hdpstereo --tiles --memory=96 " + options;
+                     tiles = "hdpstereo --tiles --memory=88 " + options;
         ASSERT_EQ(
             0,
             run(folder, "hdpstereo " + options + images + whole + masks + known + " --save-findings=" + mine).status);
