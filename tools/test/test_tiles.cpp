@@ -12,8 +12,9 @@
 
 namespace opencv_test { namespace {
 
-//! A grey TIFF of strips, little-endian, with GDAL's tag of no data if there is a text
-void writeTiff(const String& path, const Mat& image, const String& noData = String())
+//! A grey TIFF of strips, little-endian, with GDAL's tag of no data if there is a text. missing: the strip that a sparse
+//! file of GDAL does not have
+void writeTiff(const String& path, const Mat& image, const String& noData = String(), int missing = -1)
 {
     const int rows = 16, strips = (image.rows + rows - 1) / rows;
     const size_t rowBytes = image.cols * image.elemSize();
@@ -26,9 +27,9 @@ void writeTiff(const String& path, const Mat& image, const String& noData = Stri
         bytes.append(image.ptr<char>(y), rowBytes);
     const size_t offsets = bytes.size(), counts = offsets + 4 * strips, text = counts + 4 * strips;
     for (int i = 0; i < strips; ++i)
-        put(8 + i * rows * rowBytes, 4);
+        put(i == missing ? 0 : 8 + i * rows * rowBytes, 4);
     for (int i = 0; i < strips; ++i)
-        put(std::min(rows, image.rows - i * rows) * rowBytes, 4);
+        put(i == missing ? 0 : std::min(rows, image.rows - i * rows) * rowBytes, 4);
     bytes += noData + String(4, '\0');
     const size_t directory = (bytes.size() + 1) / 2 * 2;
     bytes.resize(directory);
@@ -344,6 +345,37 @@ TEST(HDPStereo_Tiles, no_data_of_raw_pairs)
     EXPECT_LE(missingOf("a.tif") - atBorder, 1.2 * empty.area());
     EXPECT_EQ(missingOf("a.tif"), missingOf("maps/c.tif"));
     EXPECT_EQ(atBorder, missingOf("maps/d.tif"));
+}
+
+//! A strip that a sparse file does not have is no data, or black where the file declares none.
+TEST(HDPStereo_Tiles, sparse_files)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 22);
+    Mat left = sixteenBit(pair.left);
+    const int missing = 3; // rows 48 to 63
+    writeTiff(folder.path("right.tif"), sixteenBit(pair.right));
+    writeTiff(folder.path("sparse.tif"), left, "300.0", missing);
+    writeTiff(folder.path("undeclared.tif"), left, String(), missing);
+    left.rowRange(16 * missing, 16 * missing + 16).setTo(0);
+    writeTiff(folder.path("black.tif"), left);
+    left.rowRange(16 * missing, 16 * missing + 16).setTo(300);
+    writeTiff(folder.path("holed.tif"), left, "300.0");
+    const auto mapOf = [&](const String& name, const String& options) {
+        const Execution result =
+            run(folder, "hdpstereo " + options + folder.path(name) + " " + folder.path("right.tif") + " " +
+                            folder.path("out.tif") + " --num-disparities=32");
+        EXPECT_EQ(0, result.status) << name << result.errors;
+        return cv::imread(folder.path("out.tif"), IMREAD_UNCHANGED);
+    };
+    for (const String options : { "", "--tiles " })
+        for (const auto& names :
+             { std::make_pair("holed.tif", "sparse.tif"), std::make_pair("black.tif", "undeclared.tif") })
+        {
+            const Mat expected = mapOf(names.first, options);
+            mapOf(names.second, options);
+            EXPECT_TRUE(isMap(folder.path("out.tif"), expected)) << names.second << options;
+        }
 }
 
 //! The files of images are not mapped into memory; what matches them has as much as it may.
