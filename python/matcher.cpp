@@ -89,13 +89,14 @@ std::unique_ptr<Matcher> create(int minDisparity, int numDisparities, int preset
     return std::unique_ptr<Matcher>(new Matcher(HDPTreeMatcher::create(minDisparity, numDisparities, preset)));
 }
 
+std::string typeOf(const py::object& object) { return py::type::of(object).attr("__name__").cast<std::string>(); }
+
 //! sgbm: of cv2, whose types this module does not know
 std::unique_ptr<Matcher> createLike(const py::object& sgbm, int preset)
 {
     const auto valueOf = [&](const char* getter) {
         if (!py::hasattr(sgbm, getter))
-            throw py::type_error("sgbm must be a cv2.StereoSGBM, not " +
-                                 py::type::of(sgbm).attr("__name__").cast<std::string>());
+            throw py::type_error("sgbm must be a cv2.StereoSGBM, not " + typeOf(sgbm));
         return sgbm.attr(getter)().cast<int>();
     };
     valueOf("getMode"); // which no other matcher has: cv2.StereoBM has other units
@@ -123,8 +124,7 @@ py::array toImage(const py::object& image, const char* name)
     if (image.is_none())
         throw py::type_error(std::string(name) + " must be a numpy array, not None: could the image be read?");
     if (!py::isinstance<py::array>(image))
-        throw py::type_error(std::string(name) + " must be a numpy array, not " +
-                             py::type::of(image).attr("__name__").cast<std::string>());
+        throw py::type_error(std::string(name) + " must be a numpy array, not " + typeOf(image));
     return py::reinterpret_borrow<py::array>(image);
 }
 

@@ -104,9 +104,9 @@ static void printProgress(size_t done, size_t total, const String& name)
 //! What the maps in a folder were made with, so that those of other options are not taken for these
 static String optionsFile(const String& out) { return utils::fs::join(out, "hdpstereo.yml"); }
 
-//! The text of that file; throws if there is another one.
-static String checkOptions(const CommandLineParser& parser, const HDPTreeMatcher& matcher, const Rectifier& rectifier,
-                           const String& out)
+//! The text that this file is to get; empty if it has it. Throws if it has another one.
+static String newOptions(const CommandLineParser& parser, const HDPTreeMatcher& matcher, const Rectifier& rectifier,
+                         const String& out)
 {
     FileStorage options(".yml", FileStorage::WRITE | FileStorage::MEMORY);
     options << "version" << HDPSTEREO_VERSION;
@@ -143,14 +143,11 @@ static String checkOptions(const CommandLineParser& parser, const HDPTreeMatcher
     if (!before.empty() && before != text)
         CV_Error(Error::StsBadArg, "the maps in '" + out + "' were made with other options, see '" + path +
                                        "': take another folder, or remove it");
-    return text;
+    return before.empty() ? text : String();
 }
 
-//! Before the first map
 static void keepOptions(const String& text, const String& out)
 {
-    if (utils::fs::exists(optionsFile(out)))
-        return;
     if (!utils::fs::createDirectories(out))
         CV_Error(Error::StsError, "cannot make the folder '" + out + "'");
     writeWholeFile(optionsFile(out), std::vector<uchar>(text.begin(), text.end()));
@@ -202,7 +199,7 @@ size_t matchPairs(const CommandLineParser& parser)
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, 0);
     const MaskFiles masks(parser);
     Rectifier rectifier(parser);
-    const String options = checkOptions(parser, *matcher, rectifier, out);
+    String options = newOptions(parser, *matcher, rectifier, out);
     size_t done = 0, old = 0, bad = 0;
     for (const NamedPair& pair : pairs)
     {
@@ -230,7 +227,9 @@ size_t matchPairs(const CommandLineParser& parser)
             printProgress(done, pairs.size(), pair.name + " left out: " + e.err + "\n");
             continue;
         }
-        keepOptions(options, out);
+        if (!options.empty()) // with the first map
+            keepOptions(options, out);
+        options.clear();
         utils::fs::createDirectories(utils::fs::getParent(path));
         writeWholeFile(path, bytes);
         printProgress(done, pairs.size(), pair.name);

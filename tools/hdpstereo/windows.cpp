@@ -177,8 +177,8 @@ private:
         TIFF* const f = file_.get();
         const uint32_t number =
             isTiled_ ? TIFFComputeTile(f, (uint32_t)x, (uint32_t)y, 0, 0) : TIFFComputeStrip(f, (uint32_t)y, 0);
-        if (TIFFGetStrileByteCount(f, number) ==
-            0) // a sparse file of GDAL does not have it; libtiff reads what is at 0
+        // A sparse file of GDAL does not have it, and libtiff would read the beginning of the file.
+        if (TIFFGetStrileByteCount(f, number) == 0)
         {
             block.setTo(Scalar::all(std::isnan(noData_) ? 0 : noData_));
             return;
