@@ -63,8 +63,8 @@ void defFields(py::class_<PairModel>& type)
     defField(type, "rowError", &PairModel::rowError, "HDPTreeMatcher.Findings.rowError, 0..2^24 pixels; 0: unknown");
     defField(type, "noise", &PairModel::noise, "as HDPTreeMatcher.Findings.noise, of noiseLayer: finite, >= 0");
     defField(type, "noiseLayer", &PairModel::noiseLayer, "layer in which it was measured, 0 to 15; 0 is the image");
-    defField(type, "black", &PairModel::black, "level of float32 that is matched as 0 of uint16; 0 for other depths");
-    defField(type, "white", &PairModel::white, "level of float32 that is matched as 65535, >= black");
+    defField(type, "black", &PairModel::black, "level that is matched as black: finite, >= 0 without floats");
+    defField(type, "white", &PairModel::white, "level that is matched as white, >= black; black: whole levels stay as they are");
     defField(type, "borderLevel", &PairModel::borderLevel,
              "level that ends black borders of the images, which are no data, 0 to 65535; 0: there are none");
     defField(type, "bits", &PairModel::bits, "that levels of uint16 have: 8 to 16. For uint8 8");

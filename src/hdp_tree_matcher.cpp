@@ -351,7 +351,7 @@ private:
         const int finest = plan.finest().layer, scale = 1 << finest;
         const FrameKey key = { plan.size, scale, plan.pyramids.minDisparity / (double)scale,
                                largestDisparity(plan.numDisparities, finest) };
-        predictFrame(left, key, lastFrame_, shared_.video, prediction_);
+        predictFrame(left, pyramids_.levels.scale, key, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, predictsDisparities(lastFrame_, prediction_) };
     }
 

@@ -50,6 +50,21 @@ TEST(HDPStereo_BlockSmoothing, finds_where_blocks_begin)
     }
 }
 
+//! Of levels that were stretched after the compression, as if they were not
+TEST(HDPStereo_BlockSmoothing, blocks_of_any_contrast)
+{
+    const Mat grey = greyOf(compress(bareWall(Size(240, 160), 1), 40));
+    const BlockGrid grid = hdp::findBlocks(grey);
+    double darkest;
+    cv::minMaxLoc(grey, &darkest);
+    for (int gain = 2; gain <= 4; gain *= 2)
+    {
+        const BlockGrid stretched = hdp::findBlocks(Mat((grey - darkest) * gain), gain);
+        EXPECT_EQ(grid.begin, stretched.begin);
+        EXPECT_NEAR(gain * grid.step, stretched.step, 1e-9);
+    }
+}
+
 TEST(HDPStereo_BlockSmoothing, finds_none_in_other_images)
 {
     RNG rng(2);
@@ -229,21 +244,21 @@ TEST(HDPStereo_BlockSmoothing, needs_blocks_in_both_images)
     expectIdentical(none, right);
 }
 
-//! Faint texture, which the compression leaves little of
+//! Faint texture, which the compression leaves little of: 25 in place of 40 percent
 TEST(HDPStereo_BlockSmoothing, compressed_pairs_match_better)
 {
     double with = 0, without = 0;
     for (int seed = 1; seed <= 4; ++seed)
     {
         const SyntheticPair pair = makeSlantedPlane(Size(480, 360), 64, seed);
-        const Mat left = compress(pair.left * 0.1 + Scalar::all(100), 40),
-                  right = compress(pair.right * 0.1 + Scalar::all(100), 40);
+        const Mat left = compress(pair.left * 0.2 + Scalar::all(80), 30),
+                  right = compress(pair.right * 0.2 + Scalar::all(80), 30);
         const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64);
         with += badPixels(match(*matcher, left, right), pair.truth, pair.visible, 2);
         matcher->setNoiseThreshold(0);
         without += badPixels(match(*matcher, left, right), pair.truth, pair.visible, 2);
     }
-    EXPECT_LE(with, 0.85 * without);
+    EXPECT_LE(with, 0.7 * without);
 }
 
 }} // namespace opencv_test

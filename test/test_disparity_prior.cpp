@@ -100,7 +100,7 @@ TEST(HDPStereo_DisparityPrior, a_bare_wall)
     for (const System& preset : presetsWithPrior)
     {
         double none = 0, sparse = 0, dense = 0;
-        for (int seed = 1; seed <= 3; ++seed)
+        for (int seed = 1; seed <= 6; ++seed)
         {
             const SyntheticPair pair = boxesBeforeWall(seed, true);
             const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 48);
@@ -112,8 +112,8 @@ TEST(HDPStereo_DisparityPrior, a_bare_wall)
             matcher->setPriorDisparity(pair.truth, 0.1);
             dense += errors();
         }
-        EXPECT_LT(sparse, 0.3 * none) << preset.name;
-        EXPECT_LT(dense, 0.3 * none) << preset.name;
+        EXPECT_LT(sparse, 0.15 * none) << preset.name;
+        EXPECT_LT(dense, 0.15 * none) << preset.name;
     }
 }
 

@@ -157,6 +157,7 @@ FrameMemory remember(const SyntheticFrame& frame, const FramePrediction& predict
     memory.frames = frames;
     memory.key = prediction.key;
     memory.motion = prediction.motion;
+    memory.levels = prediction.levels;
     frame.truth.convertTo(memory.disparity, CV_16U, subpixelScale);
     for (const Mat& level : prediction.grey)
         memory.grey.push_back(level.clone());
@@ -182,13 +183,13 @@ TEST(HDPStereo_FramePrediction, continued)
         SCOPED_TRACE(testing::Message() << step);
         SyntheticVideo video(size, 10.3, 2);
         const SyntheticFrame first = video.render(0, someBoards()), second = video.render(1, someBoards(), step);
-        predictFrame(greyOf(first), usualKey(), FrameMemory(), scratch, prediction);
+        predictFrame(greyOf(first), hdp::LevelScale(), usualKey(), FrameMemory(), scratch, prediction);
         ASSERT_EQ(FIRST, prediction.verdict);
         ASSERT_TRUE(prediction.motion.isStill);
         ASSERT_FALSE(prediction.isMoving());
         const FrameMemory last = remember(first, prediction, 1);
 
-        predictFrame(greyOf(second), usualKey(), last, scratch, prediction);
+        predictFrame(greyOf(second), hdp::LevelScale(), usualKey(), last, scratch, prediction);
         ASSERT_EQ(CONTINUED, prediction.verdict);
         ASSERT_TRUE(prediction.isMoving());
         EXPECT_TRUE(prediction.key == usualKey());
@@ -206,7 +207,7 @@ TEST(HDPStereo_FramePrediction, continued)
 
         FramePrediction again;
         VideoScratch fresh;
-        predictFrame(greyOf(second), usualKey(), last, fresh, again);
+        predictFrame(greyOf(second), hdp::LevelScale(), usualKey(), last, fresh, again);
         EXPECT_EQ(prediction.motion.forward, again.motion.forward);
         expectIdentical(prediction.sources, again.sources);
     }
@@ -220,14 +221,14 @@ TEST(HDPStereo_FramePrediction, exposure)
                          second = video.render(1, someBoards(), Point3d(0.15, 0, 0));
     VideoScratch scratch;
     FramePrediction prediction, darker;
-    predictFrame(greyOf(first), usualKey(), FrameMemory(), scratch, prediction);
+    predictFrame(greyOf(first), hdp::LevelScale(), usualKey(), FrameMemory(), scratch, prediction);
     const FrameMemory last = remember(first, prediction, 1);
-    predictFrame(greyOf(second), usualKey(), last, scratch, prediction);
+    predictFrame(greyOf(second), hdp::LevelScale(), usualKey(), last, scratch, prediction);
     const Mat left = greyOf(second);
     for (double gain : { 0.7, 0.55, 0.3 })
     {
         const Mat dark = left * gain;
-        predictFrame(dark, usualKey(), last, scratch, darker);
+        predictFrame(dark, hdp::LevelScale(), usualKey(), last, scratch, darker);
         ASSERT_EQ(CONTINUED, darker.verdict) << gain;
         EXPECT_LE(cvtest::norm(prediction.motion.forward, darker.motion.forward, NORM_INF), 0.5) << gain;
         EXPECT_GE(countNonZero(darker.sources), 0.9 * countNonZero(prediction.sources)) << gain;
@@ -245,14 +246,37 @@ TEST(HDPStereo_FramePrediction, brightness)
               second = greyOf(video.render(1, someBoards(), Point3d(0.15, 0, 0))) * 0.4;
     VideoScratch scratch;
     FramePrediction prediction, brighter;
-    predictFrame(first, usualKey(), FrameMemory(), scratch, prediction);
+    predictFrame(first, hdp::LevelScale(), usualKey(), FrameMemory(), scratch, prediction);
     const FrameMemory last = remember(video.render(0, someBoards()), prediction, 1);
-    predictFrame(second, usualKey(), last, scratch, prediction);
+    predictFrame(second, hdp::LevelScale(), usualKey(), last, scratch, prediction);
     ASSERT_EQ(CONTINUED, prediction.verdict);
-    predictFrame(second * 2, usualKey(), last, scratch, brighter);
+    predictFrame(second * 2, hdp::LevelScale(), usualKey(), last, scratch, brighter);
     EXPECT_EQ(CONTINUED, brighter.verdict);
     EXPECT_LE(cvtest::norm(prediction.motion.forward, brighter.motion.forward, NORM_INF), 0.5);
     EXPECT_GE(countNonZero(brighter.sources), 0.9 * countNonZero(prediction.sources));
+}
+
+//! A frame whose levels are stretched, or are so no longer, as something dark or bright came or went
+TEST(HDPStereo_FramePrediction, contrast)
+{
+    SyntheticVideo video(Size(203, 131), 10.3, 2);
+    const Mat first = greyOf(video.render(0, someBoards())),
+              second = greyOf(video.render(1, someBoards(), Point3d(0.15, 0, 0)));
+    hdp::LevelScale scale;
+    scale.black = 20 * 256;
+    scale.white = 180 * 256; // stretched by 1.6
+    const auto stretched = [](const Mat& image) { return Mat((cv::min(image, 720) - 80) * 1.6); };
+    VideoScratch scratch;
+    FramePrediction prediction;
+    for (const bool isStretched : { false, true })
+    {
+        const Mat before = isStretched ? stretched(first) : first, now = isStretched ? second : stretched(second);
+        predictFrame(before, isStretched ? scale : hdp::LevelScale(), usualKey(), FrameMemory(), scratch, prediction);
+        FrameMemory last = remember(video.render(0, someBoards()), prediction, 1);
+        predictFrame(now, isStretched ? hdp::LevelScale() : scale, usualKey(), last, scratch, prediction);
+        EXPECT_EQ(CONTINUED, prediction.verdict) << isStretched;
+        EXPECT_GE(countNonZero(prediction.sources), 0.9 * prediction.sources.total()) << isStretched;
+    }
 }
 
 TEST(HDPStereo_FramePrediction, camera_at_rest)
@@ -261,9 +285,9 @@ TEST(HDPStereo_FramePrediction, camera_at_rest)
     const SyntheticFrame first = video.render(0, someBoards()), second = video.render(1, someBoards());
     VideoScratch scratch;
     FramePrediction prediction;
-    predictFrame(greyOf(first), usualKey(), FrameMemory(), scratch, prediction);
+    predictFrame(greyOf(first), hdp::LevelScale(), usualKey(), FrameMemory(), scratch, prediction);
     const FrameMemory last = remember(first, prediction, 1);
-    predictFrame(greyOf(second), usualKey(), last, scratch, prediction);
+    predictFrame(greyOf(second), hdp::LevelScale(), usualKey(), last, scratch, prediction);
     EXPECT_EQ(CONTINUED, prediction.verdict);
     EXPECT_FALSE(prediction.isMoving());
     EXPECT_EQ(Matx44d::eye(), prediction.motion.forward);
@@ -279,7 +303,7 @@ TEST(HDPStereo_FramePrediction, pyramid)
         FramePrediction prediction;
         VideoScratch scratch;
         const Mat left = randomImage(rng, size, CV_16UC1, 1021);
-        predictFrame(left, usualKey(), FrameMemory(), scratch, prediction);
+        predictFrame(left, hdp::LevelScale(), usualKey(), FrameMemory(), scratch, prediction);
         EXPECT_EQ(FIRST, prediction.verdict);
         if (size.width < 2)
             continue;
@@ -303,10 +327,10 @@ TEST(HDPStereo_FramePrediction, first)
     const SyntheticFrame frame = video.render(0);
     VideoScratch scratch;
     FramePrediction prediction;
-    predictFrame(greyOf(frame), usualKey(), FrameMemory(), scratch, prediction);
+    predictFrame(greyOf(frame), hdp::LevelScale(), usualKey(), FrameMemory(), scratch, prediction);
     FrameMemory last = remember(frame, prediction, 3);
     const auto verdictOf = [&](const Mat& left, const FrameKey& key) {
-        predictFrame(left, key, last, scratch, prediction);
+        predictFrame(left, hdp::LevelScale(), key, last, scratch, prediction);
         return prediction.verdict;
     };
     EXPECT_EQ(CONTINUED, verdictOf(greyOf(frame), usualKey()));
@@ -344,10 +368,10 @@ TEST(HDPStereo_FramePrediction, cut)
                 left.at<ushort>(y, x) = (ushort)(100 + slope * x + rng.uniform(0, faint));
                 next.at<ushort>(y, x) = (ushort)(left.at<ushort>(y, x) + (x % 40 < 20 ? change : 0));
             }
-        predictFrame(left, usualKey(), FrameMemory(), scratch, before);
+        predictFrame(left, hdp::LevelScale(), usualKey(), FrameMemory(), scratch, before);
         SyntheticFrame frame;
         frame.truth = Mat(size, CV_32F, Scalar(5));
-        predictFrame(next, usualKey(), remember(frame, before, 1), scratch, now);
+        predictFrame(next, hdp::LevelScale(), usualKey(), remember(frame, before, 1), scratch, now);
         const bool isCut = oracle::isCut(before.grey.back(), now.grey.back());
         EXPECT_EQ(isCut ? FIRST : CONTINUED, now.verdict) << i;
         cuts += isCut;

@@ -232,9 +232,9 @@ TEST(HDPStereo_ImageLevels, of_dark_images)
             const Mat image = randomImage(rng, Size(37, 9), type, type == CV_16UC1 ? 4096 : 256);
             const int bits = type == CV_16UC1 ? 12 : 8;
             Mat buffer, grey;
-            const Mat bytes = hdp::byteLevels(image, bits, buffer, brightness);
+            const Mat bytes = hdp::byteLevels(image, hdp::LevelScale(bits, brightness), buffer);
             ASSERT_EQ(colors, bytes.channels());
-            hdp::greyLevels(image, bits, grey, brightness);
+            hdp::greyLevels(image, hdp::LevelScale(bits, brightness), grey);
             Mat_<double> exact;
             if (type == CV_16UC1)
                 image.convertTo(exact, CV_64F, 1. / 16);
@@ -251,6 +251,119 @@ TEST(HDPStereo_ImageLevels, of_dark_images)
                     ASSERT_NEAR(4 * expected(exact(y, x)), grey.at<ushort>(y, x) + (type == CV_16UC1 ? 1. : 0.5), 1.01);
                 }
         }
+}
+
+//! On a line from black to white, with all bits that the images have
+TEST(HDPStereo_ImageLevels, of_low_contrast)
+{
+    RNG rng(60);
+    for (int type : { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 })
+        for (double brightness : { 1., 2.25 })
+        {
+            SCOPED_TRACE(testing::Message() << "type " << type << ", brightness " << brightness);
+            hdp::LevelScale scale(type == CV_16UC1 ? 12 : 8, brightness);
+            scale.black = 90 * 256;
+            scale.white = 154 * 256;
+            const int colors = std::min(CV_MAT_CN(type), 3);
+            const Mat image = randomImage(rng, Size(37, 9), type, type == CV_16UC1 ? 4096 : 256);
+            const auto expected = [&](double level) { // of 256
+                double stretched = std::min(std::max((level - 90) / 64, 0.), 1.);
+                if (brightness > 1)
+                    stretched = doubledBelow(brightness / 2 - 1, doubledBelow(1, stretched));
+                return std::min(256 * stretched, 255.75);
+            };
+            Mat buffer, grey;
+            const Mat bytes = hdp::byteLevels(image, scale, buffer);
+            hdp::greyLevels(image, scale, grey);
+            Mat_<double> exact;
+            if (type == CV_16UC1)
+                image.convertTo(exact, CV_64F, 1. / 16);
+            else
+                exact = oracle::exactGrey(image);
+            for (int y = 0; y < image.rows; ++y)
+                for (int x = 0; x < image.cols; ++x)
+                {
+                    for (int i = 0; i < colors; ++i)
+                    {
+                        const double level = type == CV_16UC1 ? exact(y, x) : image.ptr(y)[x * image.channels() + i];
+                        ASSERT_NEAR(expected(level), bytes.ptr(y)[x * colors + i] + 0.5, 0.51);
+                    }
+                    ASSERT_NEAR(4 * expected(exact(y, x)), grey.at<ushort>(y, x) + 0.5, 1.1);
+                }
+        }
+}
+
+//! The ends of levels that all are in first..last, of 256
+hdp::LevelScale endsOf(int type, double first, double last, const hdp::PairMasks& masks = hdp::PairMasks())
+{
+    RNG rng(61);
+    const double unit = type == CV_16UC1 ? 16 : 1; // of 12 bits
+    Mat images[2];
+    for (Mat& image : images)
+    {
+        image.create(Size(80, 60), type);
+        rng.fill(image, RNG::UNIFORM, Scalar::all(first * unit), Scalar::all(last * unit + 1));
+        image.row(0) = Scalar::all(first * unit);
+        image.row(1) = Scalar::all(last * unit);
+        if (!masks.left.empty()) // other levels, which are no data
+            image.setTo(Scalar::all(255 * unit), masks.left == 0);
+    }
+    hdp::LevelScale scale(type == CV_16UC1 ? 12 : 8);
+    hdp::findEnds(images[0], images[1], masks, scale);
+    return scale;
+}
+
+TEST(HDPStereo_ImageLevels, ends_of_low_contrast)
+{
+    for (int type : { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 })
+    {
+        SCOPED_TRACE(testing::Message() << "type " << type);
+        const hdp::LevelScale full = endsOf(type, 8, 245);
+        EXPECT_FALSE(full.isStretched()) << full.black << " " << full.white;
+
+        const hdp::LevelScale hazy = endsOf(type, 90, 200); // and a sixth of 110 at each end
+        EXPECT_NEAR(71.7, hazy.black / 256., 0.6);
+        EXPECT_NEAR(218.3, hazy.white / 256., 0.6);
+        const hdp::LevelScale dark = endsOf(type, 3, 100);
+        EXPECT_EQ(0, dark.black);
+        EXPECT_NEAR(116.2, dark.white / 256., 0.6);
+
+        for (double level : { 3., 120., 253. }) // at least a quarter of all levels
+        {
+            const hdp::LevelScale constant = endsOf(type, level, level);
+            EXPECT_EQ(64 * 256, constant.white - constant.black);
+            EXPECT_LE(constant.black, level * 256);
+            EXPECT_GE(constant.white, level * 256);
+            EXPECT_GE(constant.black, 0);
+            EXPECT_LE(constant.white, +hdp::LevelScale::end);
+        }
+        for (double level : { 0., 256. - 1 / 16. }) // black and white have nothing to lose
+            EXPECT_FALSE(endsOf(type, std::min(level, type == CV_16UC1 ? level : 255.), level).isStretched()) << level;
+        hdp::PairMasks masks = { Mat(60, 80, CV_8U, Scalar(255)), Mat(60, 80, CV_8U, Scalar(255)) };
+        masks.left.rowRange(30, 60).setTo(0);
+        masks.right.rowRange(30, 60).setTo(0);
+        EXPECT_EQ(hazy.black, endsOf(type, 90, 200, masks).black);
+        EXPECT_EQ(hazy.white, endsOf(type, 90, 200, masks).white);
+    }
+    Mat few(60, 80, CV_8UC1, Scalar(100)), many = few.clone(); // of 9600 pixels, one in 1024 may be outside
+    few.row(5).colRange(0, 9).setTo(1);
+    many.row(5).colRange(0, 10).setTo(1);
+    few.row(7).setTo(0);
+    hdp::LevelScale scale;
+    hdp::findEnds(few, few.clone().setTo(100), hdp::PairMasks(), scale);
+    EXPECT_LT(0, scale.black);
+    hdp::findEnds(many, few, hdp::PairMasks(), scale);
+    EXPECT_EQ(0, scale.black);
+    const hdp::LevelScale before = scale;
+    const Mat nothing(60, 80, CV_8U, Scalar(0));
+    hdp::findEnds(few, many, { nothing, nothing }, scale); // no data
+    EXPECT_EQ(before.black, scale.black);
+    EXPECT_EQ(before.white, scale.white);
+    // A colour that is full is not cut off, however grey the others are.
+    Mat red(60, 80, CV_8UC3, Scalar(100, 110, 120));
+    red.rowRange(0, 9).setTo(Scalar(0, 0, 255));
+    hdp::findEnds(red, red, hdp::PairMasks(), scale);
+    EXPECT_FALSE(scale.isStretched());
 }
 
 ////////////////////////////////////////////// the matcher //////////////////////////////////////////////
@@ -384,7 +497,7 @@ TEST(HDPStereo_ImageTypes, dark_images_gain_contrast)
     }
 }
 
-//! With the census, a quarter of the light gives the map of all of it; what is found is in levels of the images.
+//! With the census, a quarter of the light gives a map as good as all of it; what is found is in levels that are full.
 TEST(HDPStereo_ImageTypes, dark_pairs_are_brightened)
 {
     const int darkness = 4;
@@ -396,18 +509,18 @@ TEST(HDPStereo_ImageTypes, dark_pairs_are_brightened)
             continue; // has no census
         SCOPED_TRACE(preset.name);
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, numDisparities);
-        const std::vector<Mat> expected = results(*matcher, left * darkness, right * darkness);
+        const double error = wrong(*matcher, left * darkness, right * darkness, pair.truth);
         const HDPTreeMatcher::Findings bright = matcher->getFindings();
-        expectSameResults(*matcher, expected, left, right);
+        EXPECT_LE(wrong(*matcher, left, right, pair.truth), 1.1 * error + 0.3);
         const HDPTreeMatcher::Findings dark = matcher->getFindings();
         EXPECT_EQ(bright.isLightChanged, dark.isLightChanged);
-        EXPECT_NEAR(bright.noise / darkness, dark.noise, 1e-9);
-        for (double level : { 0.01, 0.03 }) // 1 is white
+        EXPECT_NEAR(1, dark.noise / bright.noise, 0.5);
+        for (double level : { 0.2, 0.6 }) // 1 is white
         {
             const auto aligned = [](const std::vector<double>& m, double r) {
                 return ((m[9] * r + m[8]) * r + m[0]) * r + m[7];
             };
-            EXPECT_NEAR(aligned(bright.light, darkness * level) / darkness, aligned(dark.light, level), 1e-9);
+            EXPECT_NEAR(aligned(bright.light, level), aligned(dark.light, level), 0.06);
         }
     }
 }
@@ -538,8 +651,32 @@ TEST(HDPStereo_ImageTypes, dark_images_of_12_bits)
         const double error = wrong(*matcher, pair.left, pair.right, pair.truth);
         EXPECT_EQ(error, wrong(*matcher, left, right, pair.truth));
         EXPECT_LT(wrong(*matcher, defective, right, pair.truth), 1.05 * error + 0.5);
-        // The bits that such cameras are said to have, 4 of them in use: brightened, but coarse
-        EXPECT_LT(1.3 * error, wrong(*matcher, left8, right8, pair.truth));
+        // The bits that such cameras are said to have, 4 of them in use: stretched, but coarse
+        EXPECT_LT(error, wrong(*matcher, left8, right8, pair.truth));
+    }
+}
+
+//! Haze, a black level of the sensor, an exposure that fills a part of the bits: as well as full contrast
+TEST(HDPStereo_ImageTypes, low_contrast)
+{
+    const SyntheticPair pair = greyPair(26);
+    for (const System& system : presets)
+    {
+        if (system.preset == HDPTreeMatcher::PRESET_PAPER) // its levels are the images'
+            continue;
+        SCOPED_TRACE(system.name);
+        const Ptr<HDPTreeMatcher> matcher = createSystem(system, numDisparities);
+        const double error = wrong(*matcher, pair.left, pair.right, pair.truth);
+        for (const Vec2d& change : { Vec2d(0.3, 100), Vec2d(0.1, 30), Vec2d(0.56, 0) })
+        {
+            Mat left, right;
+            pair.left.convertTo(left, CV_16U, 256 * change[0], 256 * change[1]);
+            pair.right.convertTo(right, CV_16U, 256 * change[0], 256 * change[1]);
+            EXPECT_LE(wrong(*matcher, left, right, pair.truth), 1.1 * error + 0.5) << change;
+            left.convertTo(left, CV_8U, 1. / 256);
+            right.convertTo(right, CV_8U, 1. / 256);
+            EXPECT_LE(wrong(*matcher, left, right, pair.truth), 1.3 * error + 0.5) << change;
+        }
     }
 }
 

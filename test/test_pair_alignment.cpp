@@ -153,7 +153,7 @@ TEST(HDPStereo_PairAlignment, light_of_exact_matches)
 //! The images of a pair, as buildPairPyramids() makes them
 std::vector<hdp::LayerImages> layersOf(const Mat& left, const Mat& right, hdp::PairPyramids& pyramids)
 {
-    const hdp::PyramidPlan plan = { 0, 0, 3, true, false, 0 };
+    const hdp::PyramidPlan plan = { 0, 0, 3, true, false, 0, false };
     std::vector<hdp::LayerImages> images;
     hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, pyramids, images);
     return images;

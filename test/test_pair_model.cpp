@@ -75,7 +75,7 @@ PairModel makeUnusualModel()
     model.rowError = 1. / 9;
     model.noise = 1. / 7;
     model.noiseLayer = 1;
-    model.black = -1. / 3;
+    model.black = 1. / 3;
     model.white = 7.25;
     model.borderLevel = 17. / 3;
     model.bits = 12;
@@ -113,7 +113,7 @@ TEST(HDPStereo_PairModel, the_pair_again)
                 const M::Findings found = matcher->getFindings();
                 EXPECT_EQ(preset != M::PRESET_PAPER, model.areRowsMoved);
                 EXPECT_EQ(depth == CV_8U ? 8 : depth == CV_16U ? 9 : 16, model.bits);
-                EXPECT_EQ(depth == CV_32F, model.black < model.white);
+                EXPECT_LT(model.black, model.white);
 
                 const Ptr<HDPTreeMatcher> other = M::create(minDisparity, 32, preset);
                 other->setPairModel(readFrom(textOf(model)));
@@ -188,13 +188,15 @@ TEST(HDPStereo_PairModel, levels_of_a_tile)
     Mat left = patchyImage(rng, size, CV_8UC1, 8), right = patchyImage(rng, size, CV_8UC1, 8);
     for (const int minDisparity : { 0, -7, 5 })
     {
-        const hdp::PyramidPlan plan = { minDisparity, minDisparity < 0 ? 8 : 0, 3, true, true, 0 };
+        const hdp::PyramidPlan plan = { minDisparity, minDisparity < 0 ? 8 : 0, 3, true, true, 0, false };
         hdp::PairPyramids pyramids, ofTile;
         std::vector<hdp::LayerImages> whole, part;
         PairModel model;
         {
             hdp::LevelFindings levels;
-            levels.brightness = 2.25;
+            levels.scale = hdp::LevelScale(8, 2.25);
+            levels.scale.black = 1000;
+            levels.scale.white = 50001;
             levels.leftBlocks.begin = 3;
             levels.rightBlocks.begin = 6;
             levels.leftBlocks.step = levels.rightBlocks.step = 5;
@@ -240,6 +242,7 @@ TEST(HDPStereo_PairModel, floats_of_a_tile)
     matcher->setPairModel(model.tile(tile));
     const Mat actual = match(*matcher, floats[0](tile), floats[1](tile)).clone();
     model.depth = CV_16U;
+    model.black = model.white = 0; // levels are as they should be
     matcher->setPairModel(model.tile(tile));
     expectIdentical(match(*matcher, whole.left(tile), whole.right(tile)), actual);
 }
@@ -256,7 +259,7 @@ TEST(HDPStereo_PairModel, another_range)
     model.areRowsMoved = model.isLightChanged = true;
     model.light[1] = 0.3;
     const auto align = [&](int minDisparity, int extension) {
-        const hdp::PyramidPlan plan = { minDisparity, extension, 1, true, false, 0 };
+        const hdp::PyramidPlan plan = { minDisparity, extension, 1, true, false, 0, false };
         Mat memory;
         const Mat shifted = hdp::shiftColumns(right, minDisparity, extension, memory);
         const hdp::GivenPair given = hdp::toGivenPair(model, plan, size);
@@ -327,13 +330,21 @@ double differentShare(const SyntheticPair& pair, int preset, int numDisparities,
 TEST(HDPStereo_SlowPairModel, tiles_are_parts_of_the_whole)
 {
     const Size size(768, 576);
-    const SyntheticPair plane = makeSlantedPlane(size, 48, 6), pair = makeMisalignedPair(size, 48, 6);
+    const SyntheticPair plane = makeSlantedPlane(size, 48, 6);
     EXPECT_LE(differentShare(plane, M::PRESET_QUALITY, 48, 64, 0), 0.002);
     EXPECT_LE(differentShare(plane, M::PRESET_FAST, 48, 64, 0), 0.002);
     EXPECT_EQ(0, differentShare(plane, M::PRESET_QUALITY, 48, 64, 0.25));
-    EXPECT_LE(differentShare(pair, M::PRESET_FAST, 48, 128, 0), 0.018);
-    EXPECT_LE(differentShare(pair, M::PRESET_FAST, 48, 128, 1), 0.001);
-    EXPECT_LE(differentShare(pair, M::PRESET_TREE, 48, 128, 1), 0.02) << "its intervals are predicted for each tile";
+    double fractions = 0, pixels = 0, ofTree = 0;
+    for (int seed = 3; seed <= 6; ++seed)
+    {
+        const SyntheticPair pair = makeMisalignedPair(size, 48, seed);
+        fractions += differentShare(pair, M::PRESET_FAST, 48, 128, 0) / 4;
+        pixels += differentShare(pair, M::PRESET_FAST, 48, 128, 1) / 4;
+        ofTree += differentShare(pair, M::PRESET_TREE, 48, 128, 1) / 4;
+    }
+    EXPECT_LE(fractions, 0.016);
+    EXPECT_LE(pixels, 0.0005);
+    EXPECT_LE(ofTree, 0.02) << "its intervals are predicted for each tile";
 }
 
 ////////////////////////////////////////////// files and errors //////////////////////////////////////////////
@@ -409,6 +420,8 @@ TEST(HDPStereo_PairModel, bad_values)
         { "noise", [](PairModel& m) { m.noise = 1e9; } },
         { "noiseLayer", [](PairModel& m) { m.noiseLayer = 16; } },
         { "black", [=](PairModel& m) { m.black = nan; } },
+        { "black", [](PairModel& m) { m.black = -1; } },
+        { "white", [](PairModel& m) { m.white = 65537; } },
         { "white", [](PairModel& m) { m.white = m.black - 1; } },
         { "bits", [](PairModel& m) { m.bits = 17; } },
         { "bits", [](PairModel& m) { m.depth = CV_8U; } },

@@ -46,7 +46,7 @@ TEST(HDPStereo_PairPyramids, layers_of_both_images)
         const int levels = round % 3 == 0 ? 256 : round % 3 == 1 ? 110 : 50;
         const Size size(rng.uniform(9, 40), rng.uniform(9, 40));
         const int minDisparity = rng.uniform(-8, 9), extension = minDisparity < 0 ? rng.uniform(0, 3) * 4 : 0;
-        const hdp::PyramidPlan plan = { minDisparity, extension, 3, round % 5 != 0, false, 0 };
+        const hdp::PyramidPlan plan = { minDisparity, extension, 3, round % 5 != 0, false, 0, round % 5 != 0 };
         SCOPED_TRACE(testing::Message() << "round " << round << ", type " << type << ", " << size);
         Mat left = darkImage(rng, size, type, levels), right = darkImage(rng, size, type, levels);
         const bool isGrey = left.channels() == 1 || round % 7 == 0;
@@ -55,24 +55,26 @@ TEST(HDPStereo_PairPyramids, layers_of_both_images)
         const Mat extendedLeft = moved(left, plan.extension, 0);
         const Mat extendedRight = moved(right, plan.extension, plan.minDisparity);
 
-        const int bits = hdp::bitsInUse(left, right);
-        double brightness = 1;
+        hdp::LevelScale scale(hdp::bitsInUse(left, right));
         Mat grey[2], buffer[2];
-        hdp::greyLevels(extendedLeft, bits, grey[0]);
-        hdp::greyLevels(extendedRight, bits, grey[1]);
         if (plan.isCensus)
-            brightness = hdp::findBrightness(grey[0], grey[1]);
-        hdp::greyLevels(extendedLeft, bits, grey[0], brightness);
-        hdp::greyLevels(extendedRight, bits, grey[1], brightness);
-        Mat colours = hdp::byteLevels(extendedLeft, bits, buffer[0], brightness).clone();
+            hdp::findEnds(left, right, hdp::PairMasks(), scale);
+        hdp::greyLevels(extendedLeft, scale, grey[0]);
+        hdp::greyLevels(extendedRight, scale, grey[1]);
+        if (plan.isCensus)
+            scale.brightness = hdp::findBrightness(grey[0], grey[1]);
+        hdp::greyLevels(extendedLeft, scale, grey[0]);
+        hdp::greyLevels(extendedRight, scale, grey[1]);
+        Mat colours = hdp::byteLevels(extendedLeft, scale, buffer[0]).clone();
         Mat costs[2] = { plan.isCensus ? grey[0] : colours,
-                         plan.isCensus ? grey[1]
-                                       : hdp::byteLevels(extendedRight, bits, buffer[1], brightness).clone() };
+                         plan.isCensus ? grey[1] : hdp::byteLevels(extendedRight, scale, buffer[1]).clone() };
 
         hdp::PairPyramids pyramids;
         std::vector<hdp::LayerImages> images;
         hdp::buildPairPyramids(left, right, hdp::PairMasks(), plan, pyramids, images);
-        EXPECT_EQ(brightness, pyramids.levels.brightness);
+        EXPECT_EQ(scale.brightness, pyramids.levels.scale.brightness);
+        EXPECT_EQ(scale.black, pyramids.levels.scale.black);
+        EXPECT_EQ(scale.white, pyramids.levels.scale.white);
         ASSERT_EQ((size_t)plan.layers, images.size());
         for (const hdp::LayerImages& layer : images)
         {

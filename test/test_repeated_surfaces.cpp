@@ -155,7 +155,7 @@ TEST_P(HDPStereo_RepetitivePattern, disparity_is_not_a_period_off)
     int count = 0;
     for (int period : { 8, 12, 16, 24 })
         for (int noise : { 0, 1, 2, 4 })
-            for (int seed : { 1, 2 })
+            for (int seed : { 1, 2, 3, 4 })
             {
                 const RepetitivePair pair(bars.pattern, period, noise, 1000 * seed + 10 * period + noise);
                 const double wrong = pair.percentWrong(match(*matcher, pair.left, pair.right));

@@ -344,21 +344,23 @@ TEST(HDPStereo_SlowRowAlignment, finds_what_was_done)
 
 TEST(HDPStereo_SlowRowAlignment, errors_are_those_of_a_good_pair)
 {
-    const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, 6);
     for (const int preset : { (int)HDPTreeMatcher::PRESET_FAST, (int)HDPTreeMatcher::PRESET_QUALITY })
-    {
-        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, preset);
-        const double clean = badPixels(match(*matcher, pair.left, pair.right), pair.truth, pair.visible, 1);
         for (const RowModel& model : models)
         {
-            // Rows that the right image does not have
-            Mat judged = pair.visible.clone();
-            judged.rowRange(0, 12) = 0;
-            judged.rowRange(468, 480) = 0;
-            const Mat disparity = match(*matcher, pair.left, misalign(pair.right, model));
-            EXPECT_LE(badPixels(disparity, pair.truth, judged, 1), 1.1 * clean + 0.5) << model.coefficients[0];
+            double clean = 0, misaligned = 0;
+            for (int seed = 4; seed <= 6; ++seed)
+            {
+                const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 64, seed);
+                Mat judged = pair.visible.clone(); // without rows that the right image does not have
+                judged.rowRange(0, 12) = 0;
+                judged.rowRange(468, 480) = 0;
+                const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 64, preset);
+                clean += badPixels(match(*matcher, pair.left, pair.right), pair.truth, judged, 1) / 3;
+                const Mat disparity = match(*matcher, pair.left, misalign(pair.right, model));
+                misaligned += badPixels(disparity, pair.truth, judged, 1) / 3;
+            }
+            EXPECT_LE(misaligned, 1.1 * clean + 0.3) << "preset " << preset << ", " << model.coefficients[0];
         }
-    }
 }
 
 TEST(HDPStereo_RowAlignment, good_pairs_stay_as_they_are)

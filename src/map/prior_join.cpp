@@ -31,7 +31,7 @@ HDP_TUNABLE(
     double, enoughWeight, 0.25, "weight of points",
     "from which half of it is enough: with less, less is, as points that are far away know less of small things");
 HDP_TUNABLE(
-    double, indifference, 2, "bits",
+    double, indifference, 2.5, "bits",
     "the same on bare walls, where no point agrees with the winners, which are noise: more follows errors there");
 HDP_TUNABLE(double, mostContradicted, 0.25, "times the points that agree",
             "of a prior that is believed on such walls: more believes that of another scene, less misses bare scenes");

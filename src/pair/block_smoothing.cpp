@@ -14,8 +14,10 @@ namespace {
 const int side = BlockGrid::side;
 
 HDP_TUNABLE(int, linesThatTell, 32, "rows or columns", "that are looked at: more cost time and find the same blocks");
-HDP_TUNABLE(double, flatChange, 0.5, "grey levels", "maximum from pixel to pixel beside a step: more is texture");
-HDP_TUNABLE(int, maxStep, 20, "grey levels", "larger ones are edges of the scene, however strong the compression is");
+HDP_TUNABLE(double, flatChange, 0.5, "levels of the camera",
+            "maximum from pixel to pixel beside a step: more is texture");
+HDP_TUNABLE(int, maxStep, 20, "levels of the camera",
+            "larger ones are edges of the scene, however strong the compression is");
 HDP_TUNABLE(double, minRatio, 4.5, "mean of the steps inside blocks",
             "of that between them, up to which there are none: smoothing weak ones costs more than it saves");
 HDP_TUNABLE(double, sureRatio, 6, "mean of the steps inside blocks", "of that from which they are surely blocks");
@@ -23,10 +25,10 @@ HDP_TUNABLE(int, minSteps, 64, "steps", "between blocks, for a mean: fewer find 
 HDP_TUNABLE(int, smoothedSteps, 4, "mean steps between blocks",
             "that are taken away: larger ones are edges of the scene");
 
-//! Adds what the pixels of a row or column tell of the steps before them.
-void addSteps(const ushort* row, int width, ushort* steps, ushort* counts)
+//! Adds what the pixels of a row or column tell of the steps before them. unit: level of the camera
+void addSteps(const ushort* row, int width, double unit, ushort* steps, ushort* counts)
 {
-    const ushort maxChange = (ushort)(flatChange * greyScale), max = (ushort)(maxStep * greyScale);
+    const ushort maxChange = saturate_cast<ushort>(flatChange * unit), max = saturate_cast<ushort>(maxStep * unit);
     HDP_VECTORIZED for (int x = 3; x < width - 2; ++x)
     {
         const ushort step = difference(row[x - 1], row[x]);
@@ -63,7 +65,7 @@ void smoothSteps(const BlockGrid& grid, Mat& grey)
 
 //! The one in eight of the steps between columns, or rows, that are larger than the others, and the ratio of their mean
 //! to that of these. The lines that tell begin in all places of a block, where slanted contours have no common steps.
-BlockGrid findSteps(const Mat& grey, bool isDown, double& ratio)
+BlockGrid findSteps(const Mat& grey, double unit, bool isDown, double& ratio)
 {
     const double leastStep = 1. / 64; // of the others, if they are as good as none
     const int all = isDown ? grey.cols : grey.rows, length = isDown ? grey.rows : grey.cols;
@@ -73,7 +75,7 @@ BlockGrid findSteps(const Mat& grey, bool isDown, double& ratio)
     {
         const int line = std::min((2 * i + 1) * all / (2 * count) / side * side + i % side, all - 1);
         const Mat pixels = isDown ? Mat(grey.col(line).t()) : grey.row(line);
-        addSteps(pixels.ptr<ushort>(), length, steps.data(), counts.data());
+        addSteps(pixels.ptr<ushort>(), length, unit, steps.data(), counts.data());
     }
 
     int sums[side] = {}, numbers[side] = {}, sum = 0, number = 0;
@@ -102,11 +104,11 @@ BlockGrid findSteps(const Mat& grey, bool isDown, double& ratio)
 
 } // namespace
 
-BlockGrid findBlocks(const Mat& grey)
+BlockGrid findBlocks(const Mat& grey, double gain)
 {
     double across, down;
-    BlockGrid grid = findSteps(grey, false, across);
-    findSteps(grey, true, down);
+    BlockGrid grid = findSteps(grey, greyScale * gain, false, across);
+    findSteps(grey, greyScale * gain, true, down);
     grid.step *= clamped((std::min(across, down) - minRatio) / (sureRatio - minRatio), 0., 1.);
     return grid;
 }

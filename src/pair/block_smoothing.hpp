@@ -20,8 +20,9 @@ struct BlockGrid
 as large at one column in eight as at the others, and at one row in eight. The contours of a faint slope are so in one
 direction at most. The lower ratio tells how sure it is: from 6 on, the step of the grid is the mean one, down to 4.5 a
 part of it.
-@param grey See greyLevels(). */
-CV_EXPORTS BlockGrid findBlocks(const Mat& grey);
+@param grey See greyLevels().
+@param gain What a level of the camera has become, see LevelScale::gain(): compression came before. */
+CV_EXPORTS BlockGrid findBlocks(const Mat& grey, double gain = 1);
 
 /** Makes ramps of the steps between blocks in the grey levels of a pair, if both images have some: as these are at the
 same columns, they match at multiples of 8, whatever the scene is. A step is what levels change by between two columns,

@@ -6,13 +6,17 @@
 #include "image_levels.simd.hpp"
 #include "pair/image_levels.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
+#include <numeric>
+
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
 HDP_DISPATCH(greyRow)
+HDP_DISPATCH(stretchRow)
 
-const int minBits = 8, maxBits = 16; // of a level
+const int minBits = 8, maxBits = 16;       // of a level
+const int matchedBits = 10, fullBits = 14; // of one that is matched, and of one that will be stretched
 
 HDP_TUNABLE(int, pixelsPerBright, 1024, "pixels",
             "of which one may be too bright: highlights and defects are fewer, parts of the scene more");
@@ -20,7 +24,10 @@ HDP_TUNABLE(double, lampShare, 1. / 128, "of all pixels",
             "that may become white: as few are lamps and what they shine on");
 HDP_TUNABLE(double, sceneShare, 1. / 16, "of all pixels",
             "that would become white, for which a pair stays as it is: as many are a part of the scene");
-HDP_TUNABLE(int, rowsThatTell, 64, "rows", "of a dark pair, about: more cost time and tell the same");
+HDP_TUNABLE(int, rowsThatTell, 64, "rows", "of a pair, about: more cost time and tell the same");
+HDP_TUNABLE(int, margin, 6, "shares of the contrast",
+            "of which one is left at each end: more leaves faint texture, less cuts off what few pixels have");
+HDP_TUNABLE(double, mostContrast, 4, "times", "that a pair gets: more would make noise look like texture");
 
 const int maxDoublings = 2;          // of the levels of a dark pair: more would make noise look like texture
 const double steps = 64;             // to the next doubling: the brightness is exact in any format of a file
@@ -37,16 +44,77 @@ double doubled(double level, double knee)
     return twice <= knee ? twice : knee + (twice - knee) * (whiteEnd - knee) / (2 * whiteEnd - knee);
 }
 
-//! Of levels that are doubled doublingsOf(brightness) times, and not cut off
-std::vector<ushort> brightnessCurve(double brightness)
+/** What levels of an image become, in whole numbers. They are doubled first: as often as they are brightened, or, if
+they are stretched, so often that none of their bits is lost. */
+struct Conversion
 {
-    std::vector<ushort> curve(whiteEnd << doublingsOf(brightness));
-    const double first = whiteEnd * std::min(brightness - 1, 1.), second = whiteEnd * std::max(brightness / 2 - 1, 0.);
-    const double unit = whiteEnd / (double)curve.size();
-    for (size_t i = 0; i < curve.size(); ++i)
-        curve[i] = (ushort)std::min((int)doubled(doubled(i * unit, first), second), whiteLevel);
-    return curve;
-}
+    int doublings;
+    bool isStretched;
+    int black, gain;                // what is stretched: (level - black) * gain / 65536
+    std::vector<ushort> brightened; // of levels that are doubled doublingsOf(brightness) times, and not cut off
+
+    explicit Conversion(const LevelScale& scale)
+        : doublings(scale.isStretched() ? fullBits - matchedBits : doublingsOf(scale.brightness)),
+          isStretched(scale.isStretched()), black(scale.black >> (maxBits - fullBits)),
+          brightened(whiteEnd << doublingsOf(scale.brightness))
+    {
+        const double b = scale.brightness, unit = whiteEnd / (double)brightened.size();
+        const double contrast = (scale.white - scale.black) / (double)LevelScale::end;
+        gain = cvRound((1 << 16) / (contrast * unit * (1 << doublings)));
+        const double first = whiteEnd * std::min(b - 1, 1.), second = whiteEnd * std::max(b / 2 - 1, 0.);
+        for (size_t i = 0; i < brightened.size(); ++i)
+            brightened[i] = (ushort)std::min((int)doubled(doubled(i * unit, first), second), whiteLevel);
+    }
+
+    //! Levels that are doubled, in place
+    void operator()(ushort* levels, int width) const
+    {
+        if (isStretched)
+            dispatched::stretchRow(levels, width, black, gain, (int)brightened.size() - 1);
+        for (int x = 0; x < width && (int)brightened.size() > whiteEnd; ++x)
+            levels[x] = brightened[levels[x]];
+    }
+};
+
+//! Levels of the darkest and of the brightest channel of each pixel, below LevelScale::end, counted in steps of 16.
+//! Pixels that are black or white have nothing to lose.
+struct LevelCounts
+{
+    static const int step = 16;
+    std::vector<int> darkest, brightest;
+
+    LevelCounts() : darkest(LevelScale::end / step), brightest(darkest) {}
+
+    template <typename T> void add(const Mat& image, const Mat& mask, int bits)
+    {
+        const int rows = std::max(image.rows / rowsThatTell, 1), columns = std::max(image.cols / (2 * rowsThatTell), 1);
+        const int channels = image.channels(), shift = maxBits - bits, white = (1 << bits) - 1;
+        for (int y = 0; y < image.rows; y += rows)
+            for (int x = 0; x < image.cols; x += columns)
+            {
+                if (!mask.empty() && mask.at<uchar>(y, x) == 0)
+                    continue;
+                const T* const p = image.ptr<T>(y) + (ptrdiff_t)x * channels;
+                const int second = channels > 1 ? p[1] : p[0], third = channels > 1 ? p[2] : p[0];
+                const int low = std::min<int>(p[0], std::min(second, third)),
+                          high = std::max<int>(p[0], std::max(second, third));
+                if (high > 0)
+                    ++darkest[(std::min(low, white) << shift) / step];
+                if (low < white)
+                    ++brightest[(std::min(high, white) << shift) / step];
+            }
+    }
+
+    //! The first step that all are from on, but for a few
+    static int firstOf(const std::vector<int>& counts)
+    {
+        const int outliers = std::accumulate(counts.begin(), counts.end(), 0) / pixelsPerBright;
+        int first = 0;
+        for (int below = counts[0]; below <= outliers && first + 1 < (int)counts.size(); below += counts[first])
+            ++first;
+        return first;
+    }
+};
 
 //! Pixels of a pair that are not below each of some levels, in every row or every step-th one
 std::vector<double> countFrom(const std::vector<int>& levels, const Mat& left, const Mat& right, int step)
@@ -69,24 +137,21 @@ std::vector<double> countFrom(const std::vector<int>& levels, const Mat& left, c
     return counts;
 }
 
-//! How often levels of so many bits are doubled to become those of 8 bits, brightened; negative: halved
-int timesDoubled(int bits, double brightness) { return minBits - bits + doublingsOf(brightness); }
-
-//! The grey levels of a row, see greyLevels(). times: see timesDoubled(), curve: see brightnessCurve()
-void greyRow(const Mat& image, int y, int times, const std::vector<ushort>& curve, ushort* levels)
+//! The grey levels of a row, see greyLevels()
+void greyRow(const Mat& image, int y, int bits, const Conversion& convert, ushort* levels)
 {
-    const int width = image.cols, up = std::max(times, 0), down = std::max(-times, 0), end = (int)curve.size();
+    const int times = minBits - bits + convert.doublings, up = std::max(times, 0), down = std::max(-times, 0);
+    const int width = image.cols, white = (whiteEnd << convert.doublings) - 1;
     const uchar* const bytes = image.ptr(y);
     const ushort* const words = image.ptr<ushort>(y);
     if (image.depth() == CV_16U)
         HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
-            (ushort)std::min(words[x] * greyScale << up >> down, end - 1);
+            (ushort)std::min(words[x] * greyScale << up >> down, white);
     else if (image.channels() > 1)
         dispatched::greyRow(bytes, image.channels(), width, times, levels);
     else
         HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (ushort)(bytes[x] * greyScale << up);
-    for (int x = 0; x < width && end > whiteEnd; ++x)
-        levels[x] = curve[levels[x]];
+    convert(levels, width);
 }
 
 } // namespace
@@ -120,15 +185,14 @@ bool hasNoColours(const Mat& image)
     return true;
 }
 
-Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
+Mat byteLevels(const Mat& image, const LevelScale& scale, Mat& buffer)
 {
-    const int times = timesDoubled(bits, brightness);
-    const std::vector<ushort> curve = brightnessCurve(brightness);
+    const Conversion convert(scale);
     if (image.depth() == CV_16U)
     {
         buffer.create(image.size(), CV_8UC1);
         parallelForRows(image.size(), std::vector<ushort>(image.cols), [&](int y, std::vector<ushort>& levels) {
-            greyRow(image, y, times, curve, levels.data());
+            greyRow(image, y, scale.bits, convert, levels.data());
             const int width = image.cols; // local, as stores of bytes may alias all else
             const ushort* const row = levels.data();
             uchar* const bytes = buffer.ptr(y);
@@ -142,21 +206,41 @@ Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness)
         cvtColor(image, buffer, COLOR_BGRA2BGR);
         colors = buffer;
     }
-    if (times == 0)
+    if (convert.doublings == 0)
         return colors;
+    std::vector<ushort> levels(256);
+    for (int level = 0; level < 256; ++level)
+        levels[level] = (ushort)(level * greyScale << convert.doublings);
+    convert(levels.data(), 256);
     Mat bytes(1, 256, CV_8U);
     for (int level = 0; level < 256; ++level)
-        bytes.at<uchar>(level) = (uchar)(curve[level * greyScale << times] / greyScale);
+        bytes.at<uchar>(level) = (uchar)(levels[level] / greyScale);
     LUT(colors, bytes, buffer);
     return buffer;
 }
 
-void greyLevels(const Mat& image, int bits, Mat& grey, double brightness)
+void greyLevels(const Mat& image, const LevelScale& scale, Mat& grey)
 {
-    const int times = timesDoubled(bits, brightness);
-    const std::vector<ushort> curve = brightnessCurve(brightness);
+    const Conversion convert(scale);
     grey.create(image.size(), CV_16U);
-    parallelForRows(image.size(), [&](int y) { greyRow(image, y, times, curve, grey.ptr<ushort>(y)); });
+    parallelForRows(image.size(), [&](int y) { greyRow(image, y, scale.bits, convert, grey.ptr<ushort>(y)); });
+}
+
+void findEnds(const Mat& left, const Mat& right, const PairMasks& masks, LevelScale& scale)
+{
+    LevelCounts counts;
+    const auto add = left.depth() == CV_8U ? &LevelCounts::add<uchar> : &LevelCounts::add<ushort>;
+    (counts.*add)(left, masks.left, scale.bits);
+    (counts.*add)(right, masks.right, scale.bits);
+    const int black = LevelCounts::firstOf(counts.darkest) * LevelCounts::step;
+    std::reverse(counts.brightest.begin(), counts.brightest.end());
+    const int white = LevelScale::end - LevelCounts::firstOf(counts.brightest) * LevelCounts::step;
+    if (white <= black) // no pixel counts
+        return;
+    const int least = cvRound(LevelScale::end / mostContrast), contrast = white - black,
+              rest = std::max(contrast / margin, (least - contrast + 1) / 2); // at each end
+    scale.black = clamped(black - rest, 0, LevelScale::end - least);
+    scale.white = clamped(white + rest, scale.black + least, +LevelScale::end);
 }
 
 double findBrightness(const Mat& left, const Mat& right, double share)

@@ -4,12 +4,31 @@
 #ifndef OPENCV_HDPSTEREO_IMAGE_LEVELS_HPP
 #define OPENCV_HDPSTEREO_IMAGE_LEVELS_HPP
 
+#include "../base/mask.hpp"
 #include "../base/units.hpp"
-#include "opencv2/core.hpp"
+
+#include <cmath>
 
 namespace cv { namespace stereo { namespace hdp {
 
 // All parameters in intensity levels are for images of 8 bits. Images of 16 bits are brought to the same range.
+
+//! How the levels of a pair become those that are matched
+struct LevelScale
+{
+    static const int end = 1 << 16; // of black and white
+
+    LevelScale(int bitsInUse = 8, double brightened = 1) : bits(bitsInUse), brightness(brightened) {}
+
+    bool isStretched() const { return black > 0 || white < end; }
+    double gain() const { return brightness * end / (white - black); } // of differences of levels, about
+    double darkest() const { return std::ldexp(black, bits - 16); }    // level of the image that becomes black
+    double contrast() const { return std::ldexp(white - black, bits - 16); }
+
+    int bits;                   // in use, see bitsInUse()
+    int black = 0, white = end; // what becomes black and white, in 1 / end of the bits in use, see findEnds()
+    double brightness;          // what levels are brightened by then, see greyLevels()
+};
 
 /** Number of bits in use in a pair: 8 for images of 8 bits. For CV_16UC1, the minimum from 8 to 16 that is enough for
 all pixels of both images but one in 1024; what is brighter is white.
@@ -22,18 +41,24 @@ CV_EXPORTS bool hasNoColours(const Mat& image);
 /** The colours or grey levels of an image in 8 bits, the upper ones of those in use; parameters as of greyLevels().
 @param buffer Memory for the result.
 @return CV_8UC1 or CV_8UC3: the image itself, if it is that. */
-CV_EXPORTS Mat byteLevels(const Mat& image, int bits, Mat& buffer, double brightness = 1);
+CV_EXPORTS Mat byteLevels(const Mat& image, const LevelScale& scale, Mat& buffer);
 
 /** Grey levels 0.299 R + 0.587 G + 0.114 B in 1 / greyScale of a level: the upper 10 of the bits in use, if there are
-more than 8. Means of many pixels tell faint texture apart that 8 bits lose: the census cost of the coarse layers lives
-on it.
+more than 8, between black and white. Means of many pixels tell faint texture apart that 8 bits lose: the census cost of
+the coarse layers lives on it.
 
 A brightness is 1 to 4: 2 or 4 doubles levels once or twice; what is brighter then is white. One between doubles, the
 last time, levels below a knee alone, the share b - 1 of white for b < 2 and b / 2 - 1 for b > 2; those above it are on
 the line from there to white. So the levels depend on the brightness without a jump.
 @param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
-@param bits See bitsInUse(). The levels are CV_16UC1. */
-CV_EXPORTS void greyLevels(const Mat& image, int bits, Mat& grey, double brightness = 1);
+@param grey Receives CV_16UC1. */
+CV_EXPORTS void greyLevels(const Mat& image, const LevelScale& scale, Mat& grey);
+
+/** Finds black and white of a pair whose contrast is low, by haze, a black level of the sensor or its exposure: a
+sixth of the contrast below the darkest and above the brightest channel of any pixel but one in 1024, and at least a
+quarter of all levels apart. So a pair of full contrast stays as it is. Pixels that are black or white do not count.
+@param scale Its bits are known; receives black and white. */
+CV_EXPORTS void findEnds(const Mat& left, const Mat& right, const PairMasks& masks, LevelScale& scale);
 
 /** What a dark pair is brightened by, see greyLevels(). Its levels are doubled, once or twice, if not more than one
 pixel in 128 becomes white by that, not if more than one in 16 would, and in between by less. What is white already has

@@ -12,6 +12,9 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 //! Grey levels of BGR pixels, doubled some times and not cut off, see greyLevels(). channels: 3, or 4 with alpha.
 void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels);
 
+//! Makes (level - black) * gain / 65536 of each level of a row, from 0 to white.
+void stretchRow(ushort* levels, int width, int black, int gain, int white);
+
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels)
@@ -22,6 +25,12 @@ void greyRow(const uchar* pixels, int channels, int width, int times, ushort* le
         HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (ushort)((greyOf(pixels + 3 * x) + half) >> shift);
     else
         HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] = (ushort)((greyOf(pixels + 4 * x) + half) >> shift);
+}
+
+void stretchRow(ushort* levels, int width, int black, int gain, int white)
+{
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
+        (ushort)std::min(std::max(levels[x] - black, 0) * gain >> 16, white);
 }
 
 #endif

@@ -55,23 +55,23 @@ void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, doubl
     LevelFindings& found = pyramids.levels;
     Mat &leftLevels = pyramids.left.levels, &rightLevels = pyramids.right.levels;
     const auto convert = [&] {
-        greyLevels(left, found.bits, leftLevels, found.brightness);
-        greyLevels(right, found.bits, rightLevels, found.brightness);
+        greyLevels(left, found.scale, leftLevels);
+        greyLevels(right, found.scale, rightLevels);
     };
     convert();
     if (!isKnown)
     {
-        found.brightness =
+        found.scale.brightness =
             findBrightness(blackened(leftLevels, masks.left), blackened(rightLevels, masks.right), share);
-        if (found.brightness > 1)
+        if (found.scale.brightness > 1)
             convert();
     }
     if (!smoothsBlocks)
         return;
     if (!isKnown)
     {
-        found.leftBlocks = findBlocks(leftLevels);
-        found.rightBlocks = findBlocks(rightLevels);
+        found.leftBlocks = findBlocks(leftLevels, found.scale.gain());
+        found.rightBlocks = findBlocks(rightLevels, found.scale.gain());
     }
     smoothBlocks(leftLevels, rightLevels, found.leftBlocks, found.rightBlocks);
 }
@@ -104,18 +104,20 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
     levels = given ? *given : LevelFindings();
     if (!given)
     {
-        levels.bits = bitsInUse(blackened(left, masks.left), blackened(right, masks.right), share);
+        levels.scale.bits = bitsInUse(blackened(left, masks.left), blackened(right, masks.right), share);
+        if (plan.findsEnds)
+            findEnds(left, right, masks, levels.scale);
         levels.isGrey = hasNoColours(left);
     }
     if (plan.isCensus)
         makeLevels(movedLeft, movedRight, movedMasks, share, given != nullptr, plan.smoothsBlocks, pyramids);
-    const Mat leftBytes = byteLevels(movedLeft, levels.bits, l.bytes, levels.brightness);
+    const Mat leftBytes = byteLevels(movedLeft, levels.scale, l.bytes);
     buildPyramid({ leftBytes }, layers, l.colours);
     if (plan.isCensus)
         buildPyramid({ l.levels }, layers, l.matched);
     else
         l.matched = l.colours;
-    buildPyramid({ plan.isCensus ? r.levels : byteLevels(movedRight, levels.bits, r.bytes) }, layers, r.matched);
+    buildPyramid({ plan.isCensus ? r.levels : byteLevels(movedRight, levels.scale, r.bytes) }, layers, r.matched);
     buildPyramid({ movedMasks.left }, layers, l.mask);
     buildPyramid({ movedMasks.right }, layers, r.mask);
     images.resize(layers);

@@ -6,6 +6,7 @@
 
 #include "../base/mask.hpp"
 #include "block_smoothing.hpp"
+#include "image_levels.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -27,8 +28,7 @@ struct LayerImages
 //! What there is to know of the levels of a pair
 struct LevelFindings
 {
-    int bits = 8;                      // in use, see bitsInUse()
-    double brightness = 1;             // what the levels are brightened by, see greyLevels()
+    LevelScale scale;
     bool isGrey = false;               // whether the left image has no colours
     BlockGrid leftBlocks, rightBlocks; // of JPEG compression
 };
@@ -57,10 +57,12 @@ struct PyramidPlan
     bool isCensus;      // whether the matching cost gets grey levels, see greyLevels(), instead of byteLevels()
     bool smoothsBlocks; // of grey levels, see smoothBlocks()
     int wholeWidth;     // of the image that the pair is a tile of; 0: its own
+    bool findsEnds;     // of the levels, see findEnds(); those of floats are known
 };
 
-/** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a dark pair is brightened,
-see findBrightness(): what counts in levels, as edges, noise and thresholds do, is then as if it were well exposed.
+/** The pyramids of a pair (section 2.1), for candidates that count from 0. For the census, a pair of low contrast is
+stretched, see findEnds(), and a dark one brightened, see findBrightness(): what counts in levels, as edges, noise and
+thresholds do, is then as if it were well exposed.
 @param left,right CV_8UC1, CV_8UC3, CV_8UC4 or CV_16UC1.
 @param masks Theirs; what has no data does not count where levels are.
 @param pyramids Memory to work in; receives what was found.

@@ -51,8 +51,10 @@ template <typename Model, typename Visit> void visitFields(Model& m, const Visit
     visit("rowError", m.rowError, m.rowError >= 0 && m.rowError <= maxWhole, "0..2^24");
     visit("noise", m.noise, m.noise >= 0 && m.noise <= 10000, "0..10000");
     visit("noiseLayer", m.noiseLayer, m.noiseLayer >= 0 && m.noiseLayer <= 15, "0..15");
-    visit("black", m.black, std::isfinite(m.black), "finite");
-    visit("white", m.white, std::isfinite(m.white) && m.white >= m.black, "finite and >= black");
+    const bool isFloat = m.depth == CV_32F;
+    visit("black", m.black, std::isfinite(m.black) && (isFloat || m.black >= 0), "finite, and >= 0 without floats");
+    visit("white", m.white, std::isfinite(m.white) && m.white >= m.black && (isFloat || m.white <= LevelScale::end),
+          "finite and >= black, and <= 65536 without floats");
     visit("borderLevel", m.borderLevel, m.borderLevel >= 0 && m.borderLevel <= USHRT_MAX, "0..65535");
     visit("bits", m.bits, m.bits >= 8 && m.bits <= (m.depth == CV_8U ? 8 : 16), "8..16, and 8 for CV_8U");
     visit("brightness", m.brightness, m.brightness >= 1 && m.brightness <= 4, "1..4");
@@ -210,10 +212,15 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     if (!given.isGiven)
         return given;
     LevelFindings& levels = given.levels;
-    levels.bits = model.bits;
-    levels.brightness = plan.isCensus ? model.brightness : 1;
+    levels.scale = LevelScale(model.bits, plan.isCensus ? model.brightness : 1);
+    if (plan.isCensus && model.depth != CV_32F && model.white > model.black)
+    {
+        const double unit = LevelScale::end / (double)(1 << model.bits);
+        levels.scale.black = cvRound(model.black * unit);
+        levels.scale.white = std::max(cvRound(model.white * unit), levels.scale.black + 1);
+    }
     levels.isGrey = model.isGrey;
-    const int brightness = roundedBrightness(levels.brightness);
+    const int brightness = roundedBrightness(levels.scale.brightness);
     const double unit = greyScale * brightness;
     levels.leftBlocks.begin = blockStart(model.leftBlockStart - model.x + plan.extension);
     levels.leftBlocks.step = model.leftBlockStep * unit;
@@ -246,7 +253,7 @@ PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisp
                       const LevelFindings& levels, const PairFindings& findings)
 {
     PairModel model;
-    const int brightness = roundedBrightness(levels.brightness);
+    const int brightness = roundedBrightness(levels.scale.brightness);
     const double unit = greyScale * brightness;
     const LightModel light = findings.light.scaled(1. / brightness);
     model.width = model.tileWidth = size.width;
@@ -262,11 +269,11 @@ PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisp
     model.rowError = findings.rowError;
     model.noise = findings.noise.deviation / brightness;
     model.noiseLayer = findings.noise.layer;
-    model.black = pair.floats.black;
-    model.white = pair.floats.white;
+    model.black = depth == CV_32F ? pair.floats.black : levels.scale.darkest();
+    model.white = depth == CV_32F ? pair.floats.white : levels.scale.darkest() + levels.scale.contrast();
     model.borderLevel = pair.borderLevel;
-    model.bits = levels.bits;
-    model.brightness = levels.brightness;
+    model.bits = levels.scale.bits;
+    model.brightness = levels.scale.brightness;
     model.isGrey = levels.isGrey;
     model.leftBlockStart = blockStart(levels.leftBlocks.begin - plan.extension);
     model.leftBlockStep = levels.leftBlocks.step / unit;

@@ -342,8 +342,9 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     const int finest = std::min(p.finestLayer, layers - 1);
     const int matchedType = CV_MAT_DEPTH(type) == CV_32F ? CV_16UC1 : type; // see completePair()
     const int extension = countExtension(p, size, matchedType, layers);
-    plan.pyramids = { p.minDisparity, extension, layers, p.matchingCost == M::COST_CENSUS, p.noiseThreshold > 0,
-                      whole.width };
+    const bool isCensus = p.matchingCost == M::COST_CENSUS, isFloat = CV_MAT_DEPTH(type) == CV_32F;
+    plan.pyramids = { p.minDisparity, extension,           layers, isCensus, p.noiseThreshold > 0,
+                      whole.width,    isCensus && !isFloat };
     plan.alignment = { p.numDisparities, p.maxRowOffset, p.useLightAlignment, p.noiseThreshold, finest };
     plan.given = toGivenPair(model, plan.pyramids, size);
     plan.hasPrior = inputs.hasPrior();

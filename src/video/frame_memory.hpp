@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_FRAME_MEMORY_HPP
 
 #include "../base/units.hpp"
+#include "../pair/image_levels.hpp"
 #include "camera_motion.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -44,6 +45,7 @@ struct FrameMemory
 {
     int frames = 0; // from the one that the video began with up to this one; 0: there is none
     FrameKey key = FrameKey();
+    LevelScale levels;     // of grey
     CameraMotion motion;   // to this frame, in pixels of the layer
     Mat disparity;         // CV_16UC1, a disparity map
     Mat detail;            // CV_8UC1: four more bits of each disparity, GUESS, and the number of frames it stands for

@@ -241,6 +241,7 @@ Verdict joinLastFrame(const CensusCost& cost, const FrameMemory& last, const Fra
         return CONTRADICTED;
     next.frames = prediction.verdict == FIRST ? 1 : last.frames + 1;
     next.key = prediction.key;
+    next.levels = prediction.levels;
     next.motion = prediction.motion;
     next.grey.resize(prediction.grey.size());
     for (size_t level = 0; level < next.grey.size(); ++level)

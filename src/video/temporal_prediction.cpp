@@ -39,15 +39,28 @@ const int changeSide = 3, changeCells = changeSide * changeSide, contrastSide = 
 const int cell = FrameMemory::cell;
 const int trackedReach = 4 * cell; // pixels, from a tracked point to the corners of the square that is compared
 
-/** The pyramid of this frame as the exposure of the last one would show it: levels of the same mean and deviation, if
-they are not about the same. They are only compared, so it need not be exact. */
-const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const std::vector<Mat>& now, std::vector<Mat>& exposed)
+/** The pyramid of this frame as the last one would show it: its levels between the same ends, or, if mean and deviation
+are not about the same then, by another exposure, between those that make them the same. They are only compared, so it
+need not be exact. */
+const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const LevelScale& levels, const std::vector<Mat>& now,
+                                        std::vector<Mat>& exposed)
 {
     Scalar meanBefore, deviationBefore, mean, deviation;
     meanStdDev(last.grey.back(), meanBefore, deviationBefore);
     meanStdDev(now.back(), mean, deviation);
-    const double gain = deviationBefore[0] / std::max(deviation[0], 1.), offset = meanBefore[0] - gain * mean[0];
-    if (std::abs(gain - 1) < sameGain && std::abs(meanBefore[0] - mean[0]) < sameMean)
+    double gain = 1, offset = 0;
+    if (levels.brightness == 1 && last.levels.brightness == 1)
+    {
+        gain = levels.contrast() / last.levels.contrast();
+        offset = 256 * (levels.darkest() - last.levels.darkest()) / last.levels.contrast();
+    }
+    const double exposure = deviationBefore[0] / std::max(gain * deviation[0], 1.);
+    if (std::abs(exposure - 1) >= sameGain || std::abs(meanBefore[0] - gain * mean[0] - offset) >= sameMean)
+    {
+        gain *= exposure;
+        offset = meanBefore[0] - gain * mean[0];
+    }
+    if (gain == 1 && offset == 0)
         return now;
     exposed.resize(now.size());
     for (size_t level = 0; level < now.size(); ++level)
@@ -170,11 +183,12 @@ void warpGrey(const Mat& before, const FrameWarp& warp, Mat& warped)
 
 } // namespace
 
-void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
-                  FramePrediction& p)
+void predictFrame(const Mat& left, const LevelScale& levels, const FrameKey& key, const FrameMemory& last,
+                  VideoScratch& scratch, FramePrediction& p)
 {
     p.verdict = FIRST;
     p.key = key;
+    p.levels = levels;
     p.motion = CameraMotion();
     if (std::min(left.cols, left.rows) < cell)
         return;
@@ -184,7 +198,7 @@ void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last,
     buildPyramid({ p.grey[0] }, trackingLevels(scratch.halved.size()), p.grey);
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
-    const std::vector<Mat>& exposed = exposedAsBefore(last, p.grey, scratch.exposed);
+    const std::vector<Mat>& exposed = exposedAsBefore(last, levels, p.grey, scratch.exposed);
     const CameraMotion motion = findMotion(last, exposed, scratch.points);
     // Without common points, another exposure cannot be told from another scene: isCut() sees the levels as they are.
     const bool hasPoints = (int)scratch.points.size() >= CameraMotion::minPoints;

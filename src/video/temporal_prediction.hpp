@@ -24,6 +24,7 @@ struct FramePrediction
 {
     Verdict verdict = FIRST;   // or CONTINUED
     FrameKey key = FrameKey(); // of this frame
+    LevelScale levels;         // the same
     CameraMotion motion;       // from the last frame, in pixels of the layer; none for a first frame
     std::vector<Mat> grey;     // of this frame, see FrameMemory
 
@@ -39,9 +40,10 @@ struct FramePrediction
 /** Finds how the camera moved since the last frame, where everything was then, and what may be taken from there. A
 frame is the first one if nothing is remembered, if its size or key is another one, or if it shows another scene.
 @param left The left image of the finest layer that is matched, see greyLevels().
+@param levels What its levels stand for.
 @param key What this layer's disparities will stand for. */
-CV_EXPORTS void predictFrame(const Mat& left, const FrameKey& key, const FrameMemory& last, VideoScratch& scratch,
-                             FramePrediction& prediction);
+CV_EXPORTS void predictFrame(const Mat& left, const LevelScale& levels, const FrameKey& key, const FrameMemory& last,
+                             VideoScratch& scratch, FramePrediction& prediction);
 
 /** Finds what each cell may take from the last frame, a TemporalSource (CV_8UC1). It may be taken from where the motion
 leads unless the cell differs from that by more than noise and by more than a share of the contrast: differences are

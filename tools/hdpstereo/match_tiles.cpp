@@ -164,8 +164,8 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
                           .enlarged(times, size.width, size.height);
     if (found.noise > 0)
     {
-        const bool isFloat = model.depth == CV_32F && model.white > model.black;
-        model.noise = found.noise * (isFloat ? (found.white - found.black) / (model.white - model.black) : 1);
+        const double contrast = model.white - model.black; // which noise is told of
+        model.noise = found.noise * (contrast > 0 ? (found.white - found.black) / contrast : 1);
         model.noiseLayer = found.noiseLayer;
         model.rowError = found.rowError;
     }

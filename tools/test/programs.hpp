@@ -113,7 +113,7 @@ struct FaintPair
             {
                 Mat image;
                 cv::cvtColor(side == "left" ? pair.left : pair.right, image, COLOR_BGR2GRAY);
-                image.convertTo(image, CV_16U, 13, 61000);
+                image.convertTo(image, CV_16U, 8, 61000);
                 if (scene == "scenes/rounded/")
                     image.convertTo(image, CV_8U, 1. / 257);
                 folder.write(scene + side + ".png", image);

@@ -92,9 +92,11 @@ time; two matchers never share state. Its buffers are kept for the next pair. cl
 These are as few, 8 to 16, as are enough for all but one in 1024 pixels of the pair; what is brighter, such as
 highlights and defective pixels, is white. So images of 8 bits times 2^k give the same map as without the
 factor, unless they are dark: darker ones gain contrast; or have black borders that are not all 0, see setMasks().
-With COST_CENSUS, a dark pair of any type is brightened, by a
-factor of 2 or 4 if not more than one pixel in 128 becomes white by that, and less and less up to one in 16. Findings
-are about the levels of the images.
+With COST_CENSUS, a pair of low contrast, as by haze, a black level of the sensor or its exposure, is stretched by up to
+4: to a sixth of its contrast below the darkest and above the brightest channel of its pixels, one in 1024 being left
+out at each end, and what is black or white; with all of its bits. A dark pair is brightened then, by a factor of 2 or
+4 if not more than one pixel in 128 becomes white by that, and less and less up to one in 16. Findings are about levels
+that are stretched, and not brightened.
 CV_32FC1 is scaled to CV_16UC1, by one scale for both images: the darkest pixel that counts is black and the brightest
 white, one in 1024 being left out at each end. Pixels that are not finite have no data, as if masked. Findings are then
 about these levels.
@@ -221,8 +223,8 @@ public:
         /** @brief Noise from which both images are smoothed before they are matched, see Findings::noise.
 
         Without noise this would cost details. The blocks of strong JPEG compression are smoothed, too. Standard
-        deviation of the grey levels where matching ends, 255 being white, whatever the size of the images; of a dark
-        pair, when it is brightened. Finite, >= 0; 0: nothing is smoothed. PAPER: 0, others: 3. */
+        deviation of the grey levels where matching ends, 255 being white, whatever the size of the images; of a pair
+        that is dark or of low contrast, as it is matched. Finite, >= 0; 0: nothing is smoothed. PAPER: 0, others: 3. */
         CV_PROP_RW double noiseThreshold;
 
         //! @}
@@ -456,11 +458,11 @@ public:
 
         /** @brief How the light of the right image differed from that of the left one: \f$m_0, \ldots, m_9\f$.
 
-        With levels from 0 to 1, a level r of the right image at (x, y) is \f$r (m_0 + m_1 x + m_2 y + m_3 x^2 + m_4 x y
-        + m_5 y^2 + m_6 (x^2 + y^2)^2) + m_7 + m_8 r^2 + m_9 r^3\f$ in the left one. x and y are from the centre, in
-        units of width and height, of the image as it is matched, see PairModel: that of column u is x = (u + 1/2 +
-        minDisparity + PairModel::addedColumns) / (width + PairModel::addedColumns) - 1/2. 1 and zeros if too few
-        corners were matched or Params::useLightAlignment is false. */
+        With levels from 0, the pair's black, to 1, white, a level r of the right image at (x, y) is \f$r (m_0 + m_1 x +
+        m_2 y + m_3 x^2 + m_4 x y + m_5 y^2 + m_6 (x^2 + y^2)^2) + m_7 + m_8 r^2 + m_9 r^3\f$ in the left one. x and y
+        are from the centre, in units of width and height, of the image as it is matched, see PairModel: that of column
+        u is x = (u + 1/2 + minDisparity + PairModel::addedColumns) / (width + PairModel::addedColumns) - 1/2. 1 and
+        zeros if too few corners were matched or Params::useLightAlignment is false. */
         CV_PROP std::vector<double> light;
 
         //! Whether the light of the right image was changed before matching.

@@ -91,8 +91,11 @@ struct CV_EXPORTS_W_SIMPLE PairModel
     CV_PROP_RW double noise;   //!< as HDPTreeMatcher::Findings::noise, of noiseLayer, 0..10000
     CV_PROP_RW int noiseLayer; //!< the layer in which it was measured, 0..15; 0 is the image
 
-    CV_PROP_RW double black; //!< level of CV_32F that is matched as 0 of CV_16U: finite; 0 for other depths
-    CV_PROP_RW double white; //!< level of CV_32F that is matched as 65535: finite, >= black
+    //! Level that is matched as black, see HDPTreeMatcher: finite. Of CV_8U and CV_16U for HDPTreeMatcher::COST_CENSUS,
+    //! >= 0.
+    CV_PROP_RW double black;
+    //! Level that is matched as white: finite, >= black. Of CV_8U and CV_16U <= 65536; black: these stay as they are.
+    CV_PROP_RW double white;
     //! Level that ends black borders of the images, as rectification leaves them, which are no data, see
     //! HDPTreeMatcher::setMasks(): 0..65535; 0: there are none
     CV_PROP_RW double borderLevel;
