@@ -73,9 +73,9 @@ static void judgeShown(const CameraCase& made, Pair& pair)
             if (!(column >= 0 && column < right.cols && right.at<uchar>(y, (int)column)))
                 shown.at<uchar>(y, x) = 0;
         }
-    pair.judged = pair.judged & shown;
-    if (!pair.judgedNonOccluded.empty())
-        pair.judgedNonOccluded = pair.judgedNonOccluded & shown;
+    for (Mat* judged : { &pair.judged, &pair.judgedNonOccluded })
+        if (!judged->empty())
+            *judged = Mat(*judged & shown); // not in place: other cases judge the same pixels
 }
 
 static int run(const CommandLineParser& parser)

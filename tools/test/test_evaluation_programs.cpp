@@ -83,6 +83,13 @@ TEST(HDPStereo_EvaluationPrograms, robustness)
     for (const char* row : { "means of 3 pairs", "| case | fast | sgbm-hh4 |", "| clean |", "| dy3 |", "| gain.5 |",
                              "| noise4 |", "| defects1 |", "| linear |", "| jpeg40 |", "| borders8 |", "| shear |" })
         EXPECT_NE(String::npos, good.output.find(row)) << row;
+    const auto shearOf = [&](const String& cases) { // the figures of a case do not depend on those before it
+        const String output = run(folder, common + " --cases=" + cases).output;
+        const size_t begin = output.find("| shear |");
+        return begin == String::npos ? String() : output.substr(begin, output.find('\n', begin) - begin);
+    };
+    EXPECT_EQ(shearOf("shear"), shearOf("borders8,shear"));
+    EXPECT_NE(String(), shearOf("shear"));
     testUnknown(folder, common, "--cases", "case", { "dy", "dy1x", "clean2", "rain" });
     for (const char* name : { "blur0", "blur99999", "jpeg101", "noise-1", "dy1e99" })
         EXPECT_NE(String::npos, run(folder, common + " --cases=" + name)
