@@ -36,7 +36,10 @@ cv::Mat toMat(const py::array& array, const char* name, std::vector<py::array>& 
     const py::ssize_t channels = dimensions == 3 ? array.shape(2) : 1;
     if (depth < 0 || dimensions < 2 || dimensions > 3 || channels < 1 || channels > CV_CN_MAX ||
         array.shape(0) > INT_MAX || array.shape(1) > INT_MAX)
-        throw py::value_error(std::string(name) + " must be an image, not " + describe(array));
+        throw py::value_error(std::string(name) +
+                              " must be an array of uint8, int8, uint16, int16, int32, float32 or float64 and two or "
+                              "three dimensions, not " +
+                              describe(array));
 
     // Rows may be apart, as long as they do not overlap; pixels may not.
     const py::ssize_t size = array.itemsize(), columns = array.shape(1);

@@ -90,6 +90,8 @@ void fromText(cv::Algorithm& algorithm, const std::string& text);
 
 //! The name of a file, which may be a path object
 std::string nameOf(const py::object& filename);
+//! The same of a file that can be read; raises OSError, as open() does
+std::string nameOfFile(const py::object& filename);
 
 //! Throws for a name of a compressed file.
 void writeText(const py::object& filename, const std::string& text);

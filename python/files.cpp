@@ -25,6 +25,13 @@ std::string nameOf(const py::object& filename)
     return py::module_::import("os").attr("fspath")(filename).cast<std::string>();
 }
 
+std::string nameOfFile(const py::object& filename)
+{
+    const std::string name = nameOf(filename); // no descriptor, which open() would close
+    py::module_::import("io").attr("open")(filename).attr("close")();
+    return name;
+}
+
 void writeText(const py::object& filename, const std::string& text)
 {
     const std::string name = nameOf(filename);
@@ -42,6 +49,7 @@ void writeFile(const py::object& filename, const cv::Algorithm& algorithm)
 
 void readFile(const py::object& filename, const std::function<void(const std::string& text)>& read)
 {
+    const std::string name = nameOf(filename); // no descriptor, which open() would close
     const py::object file = py::module_::import("io").attr("open")(filename, "r", py::arg("encoding") = "utf-8");
     try
     {
@@ -54,10 +62,10 @@ void readFile(const py::object& filename, const std::function<void(const std::st
         file.attr("close")();
         if (!e.matches(PyExc_UnicodeDecodeError))
             throw;
-        throw py::value_error("filename: '" + nameOf(filename) + "': it must be text in UTF-8, not compressed");
+        throw py::value_error("filename: '" + name + "': it must be text in UTF-8, not compressed");
     }
     catch (const cv::Exception& e) // which does not know the name
     {
-        CV_Error(e.code, "filename: '" + nameOf(filename) + "': " + e.err);
+        CV_Error(e.code, "filename: '" + name + "': " + e.err);
     }
 }

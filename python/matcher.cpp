@@ -128,11 +128,24 @@ py::array toImage(const py::object& image, const char* name)
     return py::reinterpret_borrow<py::array>(image);
 }
 
+double toNumber(const py::object& number, const char* name)
+{
+    const double value = PyFloat_AsDouble(number.ptr());
+    if (!PyErr_Occurred())
+        return value;
+    const bool isTooLarge = PyErr_ExceptionMatches(PyExc_OverflowError) != 0;
+    PyErr_Clear();
+    if (isTooLarge)
+        throw py::value_error(std::string(name) + " must be finite");
+    throw py::type_error(std::string(name) + " must be a real number, not " + typeOf(number));
+}
+
 //! An array that may be left out: None; or a number
 cv::Mat toInput(const py::object& array, const char* name, std::vector<py::array>& kept)
 {
-    if (!py::isinstance<py::array>(array) && PyNumber_Check(array.ptr())) // of Python or numpy
-        return cv::Mat(1, 1, CV_64F, cv::Scalar(array.cast<double>()));
+    const bool isArray = py::isinstance<py::array>(array) && py::reinterpret_borrow<py::array>(array).ndim() > 0;
+    if (!isArray && PyNumber_Check(array.ptr())) // of Python or numpy
+        return cv::Mat(1, 1, CV_64F, cv::Scalar(toNumber(array, name)));
     if (array.is_none())
         return cv::Mat();
     const py::array given = toImage(array, name);
@@ -150,8 +163,8 @@ cv::Mat computeFloat(Matcher& self, const cv::Mat& left, const cv::Mat& right)
     return disparity;
 }
 
-py::object compute(Matcher& self, const py::object& leftArray, const py::object& rightArray, const py::object& output,
-                   bool isFloat)
+py::object computeArrays(Matcher& self, const py::object& leftArray, const py::object& rightArray,
+                         const py::object& output, bool isFloat)
 {
     std::vector<py::array> kept;
     const cv::Mat left = toMat(toImage(leftArray, "left"), "left", kept);
@@ -178,6 +191,27 @@ py::object compute(Matcher& self, const py::object& leftArray, const py::object&
     const cv::Mat& fixed = disparity; // an array of fixed type has the type of the result
     self.run([&](HDPTreeMatcher& m) { m.compute(left, right, fixed); });
     return output;
+}
+
+py::object compute(Matcher& self, const py::object& left, const py::object& right, const py::object& output,
+                   bool isFloat)
+{
+    try
+    {
+        return computeArrays(self, left, right, output, isFloat);
+    }
+    catch (const py::builtin_exception&) // of the arguments: nothing is known of a pair any more, as after other errors
+    {
+        const auto fail = [](HDPTreeMatcher& m) { m.compute(cv::Mat(), cv::Mat(), cv::Mat()); };
+        try
+        {
+            self.run(fail);
+        }
+        catch (const std::exception&)
+        {
+        }
+        throw;
+    }
 }
 
 std::string toText(Matcher& self, const std::string& filename)
@@ -304,7 +338,9 @@ Raises ValueError if a value is not valid; the matcher is unchanged then.)doc");
         self.run([&](HDPTreeMatcher& m) { model = m.getPairModel(); });
         return model;
         },
-        "Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute().");
+        "Returns what the last pair was matched with: estimated, or as it was set. Empty before the first compute() "
+        "and after "
+        "one that threw an exception.");
 
     matcher.attr("AUTO") = (int)HDPTreeMatcher::AUTO;
     using cv::String;

@@ -57,14 +57,16 @@ void defFields(py::class_<PairModel>& type)
              "that a negative minDisparity added on the left of the images, >= 0");
     defNumbers(type, "rows", &PairModel::rows, "coefficients of HDPTreeMatcher.Findings.rows: 5 finite numbers");
     defField(type, "areRowsMoved", &PairModel::areRowsMoved, "whether the rows of the right image are moved by them");
-    defNumbers(type, "light", &PairModel::light, "coefficients of HDPTreeMatcher.Findings.light: 10 finite numbers");
+    defNumbers(type, "light", &PairModel::light,
+               "coefficients of HDPTreeMatcher.Findings.light: 10 numbers, -10^6..10^6");
     defField(type, "isLightChanged", &PairModel::isLightChanged,
              "whether the light of the right image is changed by them, for COST_CENSUS");
     defField(type, "rowError", &PairModel::rowError, "HDPTreeMatcher.Findings.rowError, 0..2^24 pixels; 0: unknown");
-    defField(type, "noise", &PairModel::noise, "as HDPTreeMatcher.Findings.noise, of noiseLayer: finite, >= 0");
+    defField(type, "noise", &PairModel::noise, "as HDPTreeMatcher.Findings.noise, of noiseLayer: 0..10000");
     defField(type, "noiseLayer", &PairModel::noiseLayer, "layer in which it was measured, 0 to 15; 0 is the image");
     defField(type, "black", &PairModel::black, "level that is matched as black: finite, >= 0 without floats");
-    defField(type, "white", &PairModel::white, "level that is matched as white, >= black; black: whole levels stay as they are");
+    defField(type, "white", &PairModel::white,
+             "level that is matched as white, >= black; black: whole levels stay as they are");
     defField(type, "borderLevel", &PairModel::borderLevel,
              "level that ends black borders of the images, which are no data, 0 to 65535; 0: there are none");
     defField(type, "bits", &PairModel::bits, "that levels of uint16 have: 8 to 16. For uint8 8");

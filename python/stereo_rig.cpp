@@ -17,7 +17,10 @@ cv::Size toSize(const Pair& size) { return cv::Size(size.first, size.second); }
 cv::Mat toMatrix(const py::array& array, const char* name)
 {
     std::vector<py::array> kept;
-    const py::array matrix = array.ndim() == 1 ? py::array(array.attr("reshape")(1, -1)) : array;
+    const bool isWhole = array.dtype().kind() == 'i' || array.dtype().kind() == 'u'; // as typed without points
+    py::array matrix = isWhole ? py::array(array.attr("astype")("float64")) : array;
+    if (matrix.ndim() == 1)
+        matrix = py::array(matrix.attr("reshape")(1, -1));
     return toMat(matrix, name, kept).clone();
 }
 
@@ -52,8 +55,8 @@ are copies, and read-only: assign others.)doc");
     module.def(
         "readStereoCalibration",
         [](const py::object& first, const py::object& second, const Pair& imageSize, double unit) {
-        return cv::stereo::readStereoCalibration(nameOf(first), second.is_none() ? std::string() : nameOf(second),
-                                                 toSize(imageSize), unit);
+        return cv::stereo::readStereoCalibration(
+            nameOfFile(first), second.is_none() ? std::string() : nameOfFile(second), toSize(imageSize), unit);
         },
         py::arg("first"), py::arg("second") = py::none(), py::arg("imageSize") = Pair(0, 0), py::arg("unit") = 1.,
         R"doc(
@@ -66,7 +69,8 @@ imageSize: width and height of the raw images. The calibration is scaled if thes
 ZED's files do not have it; with the others it is that of the calibration by default.
 unit: metres in a unit of T, in OpenCV's files.
 
-Raises ValueError with the file and the field if something is missing, not finite or impossible.)doc");
+Raises OSError if a file cannot be opened, and ValueError with the file and the field if something is missing, not
+finite or impossible.)doc");
 }
 
 void addRig(py::module_& module)

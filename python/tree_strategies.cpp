@@ -70,7 +70,12 @@ public:
         const InRule rule;
         const py::function override = py::get_override(static_cast<const TreeStrategy*>(this), "getDefaultName");
         if (override)
-            return override().cast<std::string>();
+        {
+            const py::object name = override();
+            if (!py::isinstance<py::str>(name))
+                throw py::type_error("getDefaultName() must return a str");
+            return name.cast<std::string>();
+        }
         return py::type::of(py::cast(static_cast<const TreeStrategy*>(this))).attr("__name__").cast<std::string>();
     }
 

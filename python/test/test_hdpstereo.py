@@ -150,8 +150,11 @@ class Rig(Test):
         self.assertEqual((1, 5), hdpstereo.StereoRig(other).getCalibration().distCoeffs2.shape)
         with self.assertRaisesRegex(ValueError, 'read-only'):
             other.cameraMatrix1[0, 0] = 3
-        with self.assertRaisesRegex(ValueError, 'none.yaml'):
-            hdpstereo.readStereoCalibration('none.yaml')
+        other.cameraMatrix1 = np.array([[300, 0, 160], [0, 300, 120], [0, 0, 1]]) # whole numbers, as typed
+        self.assertEqual(300., other.cameraMatrix1[0, 0])
+        other.cameraMatrix1 = self.calibration.cameraMatrix1
+        self.assertRaises(FileNotFoundError, hdpstereo.readStereoCalibration, 'none.yaml')
+        self.assertRaises(IsADirectoryError, hdpstereo.readStereoCalibration, pathlib.Path(__file__).parent)
         for original in other, hdpstereo.StereoCalibration():
             for copied in copy.deepcopy(original), pickle.loads(pickle.dumps(original)):
                 for name in ('imageSize', 'cameraMatrix1', 'distCoeffs1', 'cameraMatrix2', 'distCoeffs2', 'R', 'T',
@@ -542,6 +545,11 @@ class Matching(Test):
             matcher.setPriorDisparity(TRUTH.astype(np.float32), sigma)
             self.assertSame(ofArray, matcher.compute(LEFT, RIGHT))
         self.assertRaises(ValueError, lambda: matcher.setPriorDisparity(TRUTH.astype(np.float32), -1.0))
+        matcher.setPriorDisparity(TRUTH.astype(np.float32), np.array(0.5))
+        self.assertRaisesText(TypeError, 'sigma must be a real number, not complex',
+                              lambda: matcher.setPriorDisparity(TRUTH.astype(np.float32), 1j))
+        self.assertRaisesText(ValueError, 'sigma must be finite',
+                              lambda: matcher.setPriorDisparity(TRUTH.astype(np.float32), 10 ** 400))
         self.assertRaises(ValueError, lambda: matcher.setPriorDisparity(TRUTH.astype(np.float32), np.int64(-1)))
         matcher.setPriorDisparity(None, None)
         self.assertSame(without, matcher.compute(LEFT, RIGHT))
@@ -647,17 +655,20 @@ class Matching(Test):
                 (types + 'CV_16UC3', LEFT.astype(np.uint16), RIGHT.astype(np.uint16)),
                 (types + 'CV_64FC1', grey / 255.0, grey / 255.0),
                 (types + 'CV_8UC2', LEFT[:, :, :2], RIGHT[:, :, :2]),
-                ('left must be an image, not an array of int64 with shape (120, 160)', grey.astype(np.int64), grey),
-                ('right must be an image, not an array of bool with shape (120, 160)', grey, grey > 7),
-                ('left must be an image, not an array of >u2 with shape (120, 160)', grey.astype('>u2'), grey),
-                ('left must be an image, not an array of uint8 with shape (160,)', grey[0], grey[0]),
-                ('left must be an image, not an array of uint8 with shape (4, 4, 3, 2)',
+                ('left must be an array of uint8, int8, uint16, int16, int32, float32 or float64 and two or three dimensions, not an array of int64 with shape (120, 160)', grey.astype(np.int64), grey),
+                ('right must be an array of uint8, int8, uint16, int16, int32, float32 or float64 and two or three dimensions, not an array of bool with shape (120, 160)', grey, grey > 7),
+                ('left must be an array of uint8, int8, uint16, int16, int32, float32 or float64 and two or three dimensions, not an array of >u2 with shape (120, 160)', grey.astype('>u2'), grey),
+                ('left must be an array of uint8, int8, uint16, int16, int32, float32 or float64 and two or three dimensions, not an array of uint8 with shape (160,)', grey[0], grey[0]),
+                ('left must be an array of uint8, int8, uint16, int16, int32, float32 or float64 and two or three dimensions, not an array of uint8 with shape (4, 4, 3, 2)',
                  np.zeros((4, 4, 3, 2), np.uint8), grey)):
             self.assertRaisesText(ValueError, text, matcher.compute, left, right)
         for bad, kind in ((None, 'None: could the image be read?'), (LEFT.tolist(), 'list'), ('left', 'str'),
                           (7, 'int')):
             self.assertRaisesText(TypeError, 'left must be a numpy array, not ' + kind, matcher.compute, bad, RIGHT)
             self.assertRaisesText(TypeError, 'right must be a numpy array, not ' + kind, matcher.compute, LEFT, bad)
+            for getter in (matcher.getConfidence, matcher.getReasons, matcher.getDisparitySigma):
+                self.assertIsNone(getter())
+            self.assertTrue(matcher.getPairModel().empty())
         self.assertSame(expected, matcher.compute(LEFT, RIGHT))
 
     def test_what_the_last_compute_did(self):
@@ -908,6 +919,10 @@ class Storage(Test):
         before = parameters(matcher)
         self.assertRaises(FileNotFoundError, matcher.read, self.path / 'none.yml')
         self.assertRaises(FileNotFoundError, matcher.save, self.path / 'none' / 'matcher.yml')
+        with open(self.path / 'open', 'w') as file: # descriptors would be closed
+            for read in matcher.read, HDPTreeMatcher.load, hdpstereo.PairModel.load, matcher.save:
+                self.assertRaises(TypeError, read, file.fileno())
+            file.write('open')
         self.assertRaises(FileNotFoundError, DisparityPredictionModel.load, self.path / 'none.yml')
         matcher.save(self.path / 'good.yml')
         good = (self.path / 'good.yml').read_text()
