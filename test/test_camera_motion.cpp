@@ -103,7 +103,7 @@ TEST(HDPStereo_CameraMotion, backward)
         const int x = rng.uniform(0, 600), y = rng.uniform(0, 400);
         const double now = rng.uniform(5., 60.);
         const Vec3d before = project(motion.forward.inv(), Vec3d(x, y, now + minDisparity));
-        const Point2f place = backward.place(x, y, (float)now);
+        const Point2f place = backward.placeBefore(x, y, (float)now);
         EXPECT_NEAR(before[0], place.x, 1e-2);
         EXPECT_NEAR(before[1], place.y, 1e-2);
         const DisparityChange& change = backward.change;

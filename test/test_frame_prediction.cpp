@@ -279,6 +279,33 @@ TEST(HDPStereo_FramePrediction, contrast)
     }
 }
 
+//! Something bright comes before a faint scene: the levels of the scene stay as they are, whatever mean and deviation are
+TEST(HDPStereo_FramePrediction, a_lamp_comes)
+{
+    SyntheticVideo video(Size(203, 131), 10.3, 0.5);
+    const SyntheticFrame frame = video.render(0, someBoards());
+    const auto faint = [](const Mat& image) { return Mat(image * 0.1 + 400); };
+    const Mat before = faint(greyOf(frame)), next = faint(greyOf(video.render(1, someBoards())));
+    hdp::LevelScale scale;
+    scale.black = 80 * 256;
+    scale.white = 144 * 256;
+    const auto stretched = [](const Mat& image) { return Mat((cv::min(image, 576) - 320) * 4); };
+    Mat lit = next.clone();
+    lit(Rect(60, 40, 12, 12)).setTo(960);
+    VideoScratch scratch;
+    FramePrediction prediction;
+    for (const bool comes : { true, false })
+    {
+        predictFrame(comes ? stretched(before) : lit, comes ? scale : hdp::LevelScale(), usualKey(), FrameMemory(),
+                     scratch, prediction);
+        const FrameMemory last = remember(frame, prediction, 1);
+        predictFrame(comes ? lit : stretched(before), comes ? hdp::LevelScale() : scale, usualKey(), last, scratch,
+                     prediction);
+        EXPECT_EQ(CONTINUED, prediction.verdict) << comes;
+        EXPECT_GE(countNonZero(prediction.sources), 0.9 * prediction.sources.total()) << comes;
+    }
+}
+
 TEST(HDPStereo_FramePrediction, camera_at_rest)
 {
     SyntheticVideo video(Size(203, 131), 10.3, 2);

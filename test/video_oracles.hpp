@@ -27,7 +27,7 @@ inline bool blockShift(const hdp::BackwardMotion& motion, const Mat& disparity, 
     int lastStep = 0;
     for (int step = 0; step < 4; ++step)
     {
-        const Point2f place = motion.place(centre.x, centre.y, now);
+        const Point2f place = motion.placeBefore(centre.x, centre.y, now);
         if (!(place.x >= 0 && place.y >= 0 && place.x <= disparity.cols - 1 && place.y <= disparity.rows - 1))
             return false;
         const Point next((int)std::floor(place.x + 0.5f), (int)std::floor(place.y + 0.5f));

@@ -174,12 +174,12 @@ CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, doubl
     }
 
     // Things that move by themselves may look as if the camera did, but most points tell whether it is at rest.
-    const double moved = std::sqrt(medianSquaredError(forward, normed)) * unit;
-    const double still = std::sqrt(medianSquaredError(Matx44d::eye(), normed)) * unit;
-    motion.error = still;
-    if (!(still > motionFactor * moved))
+    const double error = std::sqrt(medianSquaredError(forward, normed)) * unit;
+    const double errorAtRest = std::sqrt(medianSquaredError(Matx44d::eye(), normed)) * unit;
+    motion.error = errorAtRest;
+    if (!(errorAtRest > motionFactor * error)) // also if one of them is NaN
         return motion;
-    motion.error = moved;
+    motion.error = error;
     const Matx44d toNormed = enlarging(1 / unit, -centre.x / unit, -centre.y / unit, 1 / disparityUnit);
     motion.forward = enlarging(unit, centre.x, centre.y, disparityUnit) * forward * toNormed;
     motion.isStill = false;

@@ -24,8 +24,8 @@ struct CameraMotion
 //! Moves points to where a motion in their pixels takes them; those that leave the image are nowhere.
 CV_EXPORTS void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>& points);
 
-//! Fits a motion to most of the points, at most tolerance pixels from a first guess; others, as on things that move by
-//! themselves, lose their weight. None if most are where they were, or if there are less than minPoints.
+//! Fits a motion to most of the points, at most tolerance pixels from a first guess, more than 0.25; others, as on
+//! things that move by themselves, lose their weight. None if most are where they were, or if there are less than minPoints.
 CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance);
 
 //! The motion in pixels of an image that is scale times as large
@@ -64,10 +64,10 @@ struct CV_EXPORTS BackwardMotion
     BackwardMotion() {}
     BackwardMotion(const CameraMotion& motion, double minDisparity, double maxDisparity);
 
-    //! Where a pixel was if this is its disparity now; at negative coordinates if it is behind the camera
-    CV_ALWAYS_INLINE Point2f place(int atX, int atY, float disparity) const
+    //! Where a pixel was in the last frame if this is its disparity now; (-1, -1) if that is behind the camera
+    CV_ALWAYS_INLINE Point2f placeBefore(int atX, int atY, float disparity) const
     {
-        const float minW = 0.001f; // no pixel of a camera that looks ahead: less divides by 0
+        const float minW = 0.001f; // of what is in front of the camera it is larger; the division stays finite
         const float ownW = w[0] * atX + w[1] * atY + w[2] * disparity + w[3];
         const float factor = 1 / (ownW > minW ? ownW : minW);
         const float placeX = (x[0] * atX + x[1] * atY + x[2] * disparity + x[3]) * factor;

@@ -45,7 +45,7 @@ bool stepBack(const BackwardMotion& motion, const Size& size, bool isFirst, Bloc
     HDP_VECTORIZED for (int j = 0; j < count; ++j)
     {
         const float old = before[j] * unit, disparity = isFirst ? old : change.now(old, (float)centres[j], (float)rowY);
-        const Point2f place = m.place(centres[j], rowY, disparity);
+        const Point2f place = m.placeBefore(centres[j], rowY, disparity);
         // Beyond the image there is nothing to convert.
         const float x = std::min(std::max(place.x, -1.f), endX), y = std::min(std::max(place.y, -1.f), endY);
         const int isInside = (x >= 0) & (y >= 0) & (x <= endX - 1) & (y <= endY - 1);

@@ -12,13 +12,16 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(double, maxError, 1, "cells", "of the points near a motion: more follows what moves by itself");
-HDP_TUNABLE(double, noMotion, 1.25, "cells",
-            "median distance of the points from one that is none: more warps by wrong ones, less loses fast cameras");
+HDP_TUNABLE(double, maxError, 1, "cells",
+            "from a point to where the motion takes it, for it to count: more follows what moves by itself");
+HDP_TUNABLE(
+    double, noMotion, 1.25, "cells",
+    "median error of a motion, above which none is believed: more warps by wrong ones, less loses fast cameras");
 
 // Exposure, on the coarsest level
-HDP_TUNABLE(double, sameGain, 0.15, "difference from 1", "that frames are compared without: scenes change by as much");
-HDP_TUNABLE(double, sameMean, 10, "grey levels", "the same, of the mean");
+HDP_TUNABLE(double, sameGain, 0.15, "difference from 1",
+            "of the deviations, up to which frames are compared as they are: scenes change by as much");
+HDP_TUNABLE(double, sameMean, 10, "grey levels", "of the means, for the same reason");
 
 // What is no cut, on the coarsest level
 HDP_TUNABLE(int, cutShare, 60, "percent of the contrast",
@@ -30,42 +33,61 @@ HDP_TUNABLE(double, stillness, 2.5, "grey levels",
 HDP_TUNABLE(int, minNoise, 3, "grey levels", "that what is the same may change without noise, by rounding and warping");
 HDP_TUNABLE(int, noiseFactor, 4, "medians of all changes", "beside that: outliers of noise are as large");
 HDP_TUNABLE(int, contrastShare, 70, "percent of the contrast around",
-            "if it is more: edges change by fractions of a pixel, what differs by more is something else");
+            "around, up to which a change is none, however small the noise: edges move by fractions of a pixel");
 
 // Cells; side of the windows that changes and levels, and contrasts are averaged over
 const int changeSide = 3, changeCells = changeSide * changeSide, contrastSide = 5,
           contrastCells = contrastSide * contrastSide;
 
 const int cell = FrameMemory::cell;
-const int trackedReach = 4 * cell; // pixels, from a tracked point to the corners of the square that is compared
+const int trackedReach = 4 * cell; // pixels, from a tracked point to the corners of about the square that is compared
 
-/** The pyramid of this frame as the last one would show it: its levels between the same ends, or, if mean and deviation
-are not about the same then, by another exposure, between those that make them the same. They are only compared, so it
-need not be exact. */
-const std::vector<Mat>& exposedAsBefore(const FrameMemory& last, const LevelScale& levels, const std::vector<Mat>& now,
-                                        std::vector<Mat>& exposed)
+//! What levels of one frame are in another one
+struct LevelLine
+{
+    double gain, offset;
+
+    bool isSame() const { return gain == 1 && offset == 0; }
+};
+
+//! Of levels between the ends of this frame, in those of the last one; brightened levels are on no line
+LevelLine toEnds(const LevelScale& before, const LevelScale& now)
+{
+    const double levelsOfAll = 256; // from black to white
+    if (now.brightness != 1 || before.brightness != 1)
+        return { 1, 0 };
+    return { now.contrast() / before.contrast(), levelsOfAll * (now.darkest() - before.darkest()) / before.contrast() };
+}
+
+/** The same where the exposure has changed as well: if mean and deviation are not about the same between the same ends,
+the line that makes them so, unless the ends are others and frames differ more by it: something dark or bright came,
+then. Levels are only compared, so they need not be exact. */
+LevelLine toExposure(const Mat& before, const Mat& now, const LevelLine& toEnds)
 {
     Scalar meanBefore, deviationBefore, mean, deviation;
-    meanStdDev(last.grey.back(), meanBefore, deviationBefore);
-    meanStdDev(now.back(), mean, deviation);
-    double gain = 1, offset = 0;
-    if (levels.brightness == 1 && last.levels.brightness == 1)
-    {
-        gain = levels.contrast() / last.levels.contrast();
-        offset = 256 * (levels.darkest() - last.levels.darkest()) / last.levels.contrast();
-    }
-    const double exposure = deviationBefore[0] / std::max(gain * deviation[0], 1.);
-    if (std::abs(exposure - 1) >= sameGain || std::abs(meanBefore[0] - gain * mean[0] - offset) >= sameMean)
-    {
-        gain *= exposure;
-        offset = meanBefore[0] - gain * mean[0];
-    }
-    if (gain == 1 && offset == 0)
-        return now;
-    exposed.resize(now.size());
-    for (size_t level = 0; level < now.size(); ++level)
-        now[level].convertTo(exposed[level], CV_8U, gain, offset);
-    return exposed;
+    meanStdDev(before, meanBefore, deviationBefore);
+    meanStdDev(now, mean, deviation);
+    const double exposure = deviationBefore[0] / std::max(toEnds.gain * deviation[0], 1.);
+    if (std::abs(exposure - 1) < sameGain && std::abs(meanBefore[0] - toEnds.gain * mean[0] - toEnds.offset) < sameMean)
+        return toEnds;
+    const LevelLine exposed = { toEnds.gain * exposure, meanBefore[0] - toEnds.gain * exposure * mean[0] };
+    const auto difference = [&](const LevelLine& line) {
+        Mat changed;
+        now.convertTo(changed, CV_8U, line.gain, line.offset);
+        return norm(changed, before, NORM_L1);
+    };
+    return toEnds.isSame() || difference(exposed) < difference(toEnds) ? exposed : toEnds;
+}
+
+//! A pyramid in other levels; itself if these are the same
+const std::vector<Mat>& relevelled(const std::vector<Mat>& grey, const LevelLine& line, std::vector<Mat>& memory)
+{
+    if (line.isSame())
+        return grey;
+    memory.resize(grey.size());
+    for (size_t level = 0; level < grey.size(); ++level)
+        grey[level].convertTo(memory[level], CV_8U, line.gain, line.offset);
+    return memory;
 }
 
 //! Whether the square around a tracked pixel shows two surfaces. Outlines have texture, but no motion of their own.
@@ -149,7 +171,7 @@ int medianLevel(const Mat& image)
 //! How far each cell is from the mean around it
 void findContrast(const Mat& image, VideoScratch& scratch)
 {
-    Mat &levels = scratch.changes, &sums = scratch.contrasts; // which findSources() fills later
+    Mat &levels = scratch.changes, &sums = scratch.contrasts; // memory that findSources() fills after this
     image.convertTo(levels, CV_16U, contrastCells);
     sumOverWindows(image, contrastSide, CV_16U, sums);
     absdiff(levels, sums, sums);
@@ -198,13 +220,13 @@ void predictFrame(const Mat& left, const LevelScale& levels, const FrameKey& key
     buildPyramid({ p.grey[0] }, trackingLevels(scratch.halved.size()), p.grey);
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
-    const std::vector<Mat>& exposed = exposedAsBefore(last, levels, p.grey, scratch.exposed);
-    const CameraMotion motion = findMotion(last, exposed, scratch.points);
-    // Without common points, another exposure cannot be told from another scene: isCut() sees the levels as they are.
-    const bool hasPoints = (int)scratch.points.size() >= CameraMotion::minPoints;
-    const std::vector<Mat>& grey = hasPoints ? exposed : p.grey;
+    const LevelLine ends = toEnds(last.levels, levels), exposure = toExposure(last.grey.back(), p.grey.back(), ends);
+    const CameraMotion motion = findMotion(last, relevelled(p.grey, exposure, scratch.exposed), scratch.points);
     if (motion.error > noMotion * cell)
         return;
+    // Without common points, another exposure cannot be told from another scene.
+    const bool hasPoints = (int)scratch.points.size() >= CameraMotion::minPoints;
+    const std::vector<Mat>& grey = relevelled(p.grey, hasPoints ? exposure : ends, scratch.exposed);
     p.backward = BackwardMotion(motion, key.minDisparity, (double)key.maxDisparity / subpixelScale);
     const FrameWarp* const warp = motion.isStill ? nullptr : &p.warp;
     if (warp)
