@@ -258,7 +258,7 @@ private:
         PairFindings findings;
         PairModel model;
 
-        //! In levels of the images, not of brightened ones
+        //! In levels that may be stretched, but not brightened
         double noiseOfLayer(int layer) const { return LayerNoise{ model.noise, model.noiseLayer }.ofLayer(layer); }
     };
 
@@ -277,7 +277,7 @@ private:
         return result_.isMatched && layer >= result_.plan.finest().layer && layer <= result_.plan.top().layer;
     }
 
-    //! The images and their masks, what is missing filled, in pair_
+    //! Fills the pixels of the pair that have no data, see completePair(), into pair_
     void completeImages(const Mat& left, const Mat& right)
     {
         const GivenPixels given = toGivenPixels(pairModel_);
@@ -316,7 +316,7 @@ private:
                        [&] { alignPair(pairPlan.alignment, alignmentBuffers_, images, result_.findings, given); });
         VideoFindings video = { FIRST, false };
         if (pairPlan.followsVideo)
-            clock_.run("temporal prediction", [&] { video = predict(images[finest].left, pairPlan); });
+            clock_.run("temporal prediction", [&] { video = compareWithLastFrame(images[finest].left, pairPlan); });
 
         PairPlan adapted = adapt(pairPlan, result_.findings, video);
         layers_.resize(pairPlan.top().layer + 1);
@@ -345,12 +345,12 @@ private:
         return verdict;
     }
 
-    //! What a frame is to the one before
-    VideoFindings predict(const Mat& left, const PairPlan& plan)
+    //! Compares the left image of the finest layer with the last frame, see predictFrame(), into prediction_
+    VideoFindings compareWithLastFrame(const Mat& left, const PairPlan& pairPlan)
     {
-        const int finest = plan.finest().layer, scale = 1 << finest;
-        const FrameKey key = { plan.size, scale, plan.pyramids.minDisparity / (double)scale,
-                               largestDisparity(plan.numDisparities, finest) };
+        const int finest = pairPlan.finest().layer, scale = 1 << finest;
+        const FrameKey key = { pairPlan.size, scale, pairPlan.pyramids.minDisparity / (double)scale,
+                               largestDisparity(pairPlan.numDisparities, finest) };
         predictFrame(left, pyramids_.levels.scale, key, lastFrame_, shared_.video, prediction_);
         return { prediction_.verdict, predictsDisparities(lastFrame_, prediction_) };
     }

@@ -84,14 +84,14 @@ private:
             clock_.run("disparity prediction",
                        [&] { upperHistogram(in_.upper->disparity, plan_.numDisparities, result_.prior); });
         else if (plan_.trees.prior == SUPPORT_POINTS)
-            clock_.run("support points", [&] { countSupportPoints(); });
+            clock_.run("support points", [&] { priorOfSupportPoints(); });
     }
 
-    //! Support points of the left image; the authors' program counts those of the right one, too.
-    void countSupportPoints()
+    //! P(D_l) from support points of the left image; the authors' program counts those of the right one, too.
+    void priorOfSupportPoints()
     {
         Mat left = in_.images.left, right = in_.images.right;
-        if (left.depth() != CV_8U) // 10 bits, see greyLevels()
+        if (left.depth() != CV_8U) // in 1 / greyScale of a level
         {
             left.convertTo(left, CV_8U, 1. / greyScale);
             right.convertTo(right, CV_8U, 1. / greyScale);

@@ -81,9 +81,10 @@ Range supportedDisparities(const std::vector<CornerMatch>& matches, int& support
 int RangeSearch::findCornerRange(const Mat& left, const Mat& right, const PairMasks& masks, int maxRowOffset,
                                  Range& range)
 {
-    const int bits = bitsInUse(left, right); // what has no data has levels of what has some
-    greyLevels(left, bits, leftLevels_);
-    greyLevels(right, bits, rightLevels_);
+    LevelScale scale(bitsInUse(left, right)); // what has no data has levels of what has some
+    findEnds(left, right, masks, scale);
+    greyLevels(left, scale, leftLevels_);
+    greyLevels(right, scale, rightLevels_);
     const int width = left.cols;
     int support = 0;
     for (int finer = 0; finer <= mostFiner && support < minSupport; ++finer)

@@ -22,7 +22,7 @@ Mat compress(const Mat& image, int quality)
 Mat greyOf(const Mat& image)
 {
     Mat grey;
-    hdp::greyLevels(image, 8, grey);
+    hdp::greyLevels(image, hdp::LevelScale(), grey);
     return grey;
 }
 

@@ -34,8 +34,8 @@ Mat confidenceOf(const Mat& left, const Mat& right, const hdp::ConfidenceMaps& m
     if (isCensus)
     {
         Mat leftGrey, rightGrey;
-        hdp::greyLevels(left, 8, leftGrey);
-        hdp::greyLevels(right, 8, rightGrey);
+        hdp::greyLevels(left, hdp::LevelScale(), leftGrey);
+        hdp::greyLevels(right, hdp::LevelScale(), rightGrey);
         hdp::CensusCost cost;
         cost.prepare(leftGrey, rightGrey, numDisparities, blockSize);
         hdp::disparityConfidence(maps, numDisparities, cost, confidence);
@@ -230,8 +230,8 @@ TEST(HDPStereo_DisparityConfidence, pixels_without_data_hide_none)
     const hdp::PairMasks masks = { all.clone(), all };
     masks.left.colRange(80, 180).setTo(Scalar(0));
     Mat leftGrey, rightGrey, confidence[2];
-    hdp::greyLevels(plane.left, 8, leftGrey);
-    hdp::greyLevels(plane.right, 8, rightGrey);
+    hdp::greyLevels(plane.left, hdp::LevelScale(), leftGrey);
+    hdp::greyLevels(plane.right, hdp::LevelScale(), rightGrey);
     hdp::CensusCost cost;
     cost.prepare(leftGrey, rightGrey, numDisparities, 7, 0, masks);
     for (const bool isNearer : { false, true })

@@ -91,8 +91,8 @@ TEST(HDPStereo_DisparitySigma, mismatch_is_that_of_the_definition)
         const Mat left = randomImage(rng, size, CV_8UC1), right = randomImage(rng, size, CV_8UC1);
         Mat leftGrey, rightGrey, disparity(size, CV_16U), mismatch;
         rng.fill(disparity, RNG::UNIFORM, 0, 19 * 16 + 1);
-        hdp::greyLevels(left, 8, leftGrey);
-        hdp::greyLevels(right, 8, rightGrey);
+        hdp::greyLevels(left, hdp::LevelScale(), leftGrey);
+        hdp::greyLevels(right, hdp::LevelScale(), rightGrey);
         hdp::CensusCost cost;
         cost.prepare(leftGrey, rightGrey, 20, 7);
         hdp::levelMismatch(disparity, cost, mismatch);

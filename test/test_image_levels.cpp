@@ -11,6 +11,8 @@
 #include "systems.hpp"
 #include "../src/pair/image_levels.hpp"
 
+#include <numeric>
+
 namespace opencv_test { namespace {
 
 ////////////////////////////////////////////// the stage //////////////////////////////////////////////
@@ -24,7 +26,7 @@ TEST(HDPStereo_ImageLevels, grey_levels_in_quarters)
             SCOPED_TRACE(testing::Message() << size << " type " << type);
             const Mat image = randomImage(rng, Size(size.width + 5, size.height + 2), type)(Rect(Point(3, 1), size));
             Mat levels;
-            hdp::greyLevels(image, 8, levels);
+            hdp::greyLevels(image, hdp::LevelScale(), levels);
             ASSERT_EQ(CV_16UC1, levels.type());
             ASSERT_EQ(size, levels.size());
             // What is halfway between two quarters may go either way; one channel is exact.
@@ -36,7 +38,7 @@ TEST(HDPStereo_ImageLevels, grey_levels_in_quarters)
     for (int value = 0; value < 256; ++value) // three equal channels are grey
     {
         Mat levels;
-        hdp::greyLevels(Mat(1, 1, CV_8UC3, Scalar::all(value)), 8, levels);
+        hdp::greyLevels(Mat(1, 1, CV_8UC3, Scalar::all(value)), hdp::LevelScale(), levels);
         EXPECT_EQ(4 * value, levels.at<ushort>(0, 0));
     }
 }
@@ -51,8 +53,8 @@ TEST(HDPStereo_ImageLevels, of_16_bits)
             const Mat image = randomImage(rng, Size(size.width + 5, size.height + 2), CV_16UC1,
                                           std::min(3 << (bits - 1), 65536))(Rect(Point(3, 1), size));
             Mat buffer, grey;
-            const Mat bytes = hdp::byteLevels(image, bits, buffer);
-            hdp::greyLevels(image, bits, grey);
+            const Mat bytes = hdp::byteLevels(image, hdp::LevelScale(bits), buffer);
+            hdp::greyLevels(image, hdp::LevelScale(bits), grey);
             ASSERT_EQ(CV_8UC1, bytes.type());
             ASSERT_EQ(CV_16UC1, grey.type());
             ASSERT_EQ(size, bytes.size());
@@ -74,12 +76,12 @@ TEST(HDPStereo_ImageLevels, of_8_bits_are_the_image_without_alpha)
     for (int type : { CV_8UC1, CV_8UC3 })
     {
         const Mat image = randomImage(rng, Size(9, 7), type);
-        EXPECT_EQ(image.data, hdp::byteLevels(image, 8, buffer).data);
+        EXPECT_EQ(image.data, hdp::byteLevels(image, hdp::LevelScale(), buffer).data);
     }
     const Mat image = randomImage(rng, Size(9, 7), CV_8UC4);
     Mat expected;
     cv::cvtColor(image, expected, COLOR_BGRA2BGR);
-    expectIdentical(expected, hdp::byteLevels(image, 8, buffer));
+    expectIdentical(expected, hdp::byteLevels(image, hdp::LevelScale(), buffer));
 }
 
 TEST(HDPStereo_ImageLevels, without_colours)
@@ -293,6 +295,37 @@ TEST(HDPStereo_ImageLevels, of_low_contrast)
         }
 }
 
+//! Whatever the ends are, as a PairModel may have them
+TEST(HDPStereo_ImageLevels, of_any_ends)
+{
+    Mat bytes(1, 256, CV_8U), grey, buffer;
+    std::iota(bytes.ptr(), bytes.ptr() + 256, (uchar)0);
+    for (int contrast = 1; contrast <= hdp::LevelScale::end; contrast *= 4)
+        for (double brightness : { 1., 1.3, 2., 4. })
+        {
+            SCOPED_TRACE(testing::Message() << "contrast " << contrast << ", brightness " << brightness);
+            hdp::LevelScale scale(8, brightness);
+            scale.black = std::min(100 * 256, hdp::LevelScale::end - contrast);
+            scale.white = scale.black + contrast;
+            hdp::greyLevels(bytes, scale, grey);
+            const Mat ofBytes = hdp::byteLevels(bytes, scale, buffer);
+            const ushort* const levels = grey.ptr<ushort>();
+            for (int i = 0; i < 256; ++i)
+            {
+                ASSERT_EQ(levels[i] / 4, ofBytes.ptr()[i]) << i;
+                ASSERT_LE(levels[std::max(i - 1, 0)], levels[i]) << i;
+                if (256 * i <= scale.black)
+                {
+                    ASSERT_EQ(0, levels[i]) << i;
+                }
+                else if (256 * i >= scale.white)
+                {
+                    ASSERT_EQ(hdp::whiteLevel, levels[i]) << i;
+                }
+            }
+        }
+}
+
 //! The ends of levels that all are in first..last, of 256
 hdp::LevelScale endsOf(int type, double first, double last, const hdp::PairMasks& masks = hdp::PairMasks())
 {
@@ -337,6 +370,16 @@ TEST(HDPStereo_ImageLevels, ends_of_low_contrast)
             EXPECT_GE(constant.black, 0);
             EXPECT_LE(constant.white, +hdp::LevelScale::end);
         }
+        Mat lit(80, 60, CV_8U, Scalar(255)), times16; // white in any number of bits
+        Mat unlit = lit.rowRange(5, 80);
+        cvtest::randUni(theRNG(), unlit, Scalar(90), Scalar(201));
+        lit.convertTo(times16, CV_16U, 16);
+        hdp::LevelScale ofLit, ofTimes16(12);
+        hdp::findEnds(lit, lit, hdp::PairMasks(), ofLit);
+        hdp::findEnds(times16, times16, hdp::PairMasks(), ofTimes16);
+        EXPECT_TRUE(ofLit.isStretched());
+        EXPECT_EQ(ofLit.black, ofTimes16.black);
+        EXPECT_EQ(ofLit.white, ofTimes16.white);
         for (double level : { 0., 256. - 1 / 16. }) // black and white have nothing to lose
             EXPECT_FALSE(endsOf(type, std::min(level, type == CV_16UC1 ? level : 255.), level).isStretched()) << level;
         hdp::PairMasks masks = { Mat(60, 80, CV_8U, Scalar(255)), Mat(60, 80, CV_8U, Scalar(255)) };

@@ -137,10 +137,10 @@ private:
     {
         const std::vector<size_t> all = squaresAround(index);
         const auto agreeing = std::count_if(all.begin(), all.end(), [&](size_t i) { return agrees_[i]; });
-        return 5 * agreeing >= 2 * (int)all.size() || (isRightInTheMain() && meanExcess(index) < 2);
+        return 5 * agreeing >= 2 * (int)all.size() || (isMostlyRight() && meanExcess(index) < 2.5);
     }
 
-    bool isRightInTheMain() const
+    bool isMostlyRight() const
     {
         int agreeing = 0, contradicted = 0;
         for (size_t i = 0; i < points_.size(); ++i)

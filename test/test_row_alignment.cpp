@@ -165,8 +165,8 @@ TEST(HDPStereo_RowAlignment, matches_correlate_best)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(200, 150), 24, 3);
     Mat left, right;
-    hdp::greyLevels(pair.left, 8, left);
-    hdp::greyLevels(misalign(pair.right, makeModel(1)), 8, right);
+    hdp::greyLevels(pair.left, hdp::LevelScale(), left);
+    hdp::greyLevels(misalign(pair.right, makeModel(1)), hdp::LevelScale(), right);
     hdp::SearchWindows windows;
     std::vector<hdp::CornerMatch> matches;
     hdp::findCornerMatches(left, right, hdp::PairMasks(), Range(0, 25), 4, windows, matches);
@@ -193,8 +193,8 @@ TEST(HDPStereo_RowAlignment, matches_within_few_disparities)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(120, 90), 4, 3);
     Mat left, right;
-    hdp::greyLevels(pair.left, 8, left);
-    hdp::greyLevels(pair.right, 8, right);
+    hdp::greyLevels(pair.left, hdp::LevelScale(), left);
+    hdp::greyLevels(pair.right, hdp::LevelScale(), right);
     hdp::SearchWindows windows;
     std::vector<hdp::CornerMatch> matches;
     hdp::findCornerMatches(left, right, hdp::PairMasks(), Range(0, 4), 4, windows, matches);
@@ -217,8 +217,8 @@ TEST(HDPStereo_RowAlignment, matches_are_tracked_to_a_fraction)
     const SyntheticPair pair = makeSlantedPlane(Size(320, 240), 32, 4);
     const RowModel model = makeModel(0.4, 2e-3);
     Mat left, right;
-    hdp::greyLevels(pair.left, 8, left);
-    hdp::greyLevels(misalign(pair.right, model) * 0.7 + Scalar::all(20), 8, right); // other light
+    hdp::greyLevels(pair.left, hdp::LevelScale(), left);
+    hdp::greyLevels(misalign(pair.right, model) * 0.7 + Scalar::all(20), hdp::LevelScale(), right); // other light
     std::vector<hdp::CornerMatch> matches;
     for (int y = 20; y < 220; y += 10)
         for (int x = 60; x < 300; x += 10)

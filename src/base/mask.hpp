@@ -24,7 +24,7 @@ struct PairMasks
     int wholeWidth = 0;                // of the image that they are tiles of; 0: that of the masks
 };
 
-//! Of the pixel of a mask: whether half of the image's pixels that it stands for have data
+//! Whether more than half of the image's pixels that a pixel of a mask stands for have data: means are rounded down.
 inline bool hasData(uchar share) { return share >= 128; }
 
 //! hasData() of all pixels of a mask: CV_8UC1, 255 where, else 0

@@ -18,7 +18,7 @@ void CostLimits::prepare(const PairMasks& masks, int numDisparities)
     }
     width_ = left.cols;
     copyMakeBorder(pixelsWithData(left), left_, 0, 0, margin, margin, BORDER_REPLICATE);
-    Mat limits = max(pixelsWithData(right), +ordinary), mirrored;
+    Mat limits = max(pixelsWithData(right), +ordinary), mirrored; // none where there is data
     firstColumns_.resize(right.rows);
     for (int y = 0; y < right.rows; ++y)
     {

@@ -46,7 +46,7 @@ struct ForestBuffers
 /** Builds the forest of a layer by Kruskal's algorithm: tries one edge after the other in the order of Rule 1, and
 joins the trees at its ends if Rule 2 and DT-Rule 2 allow it. Edges by ascending weight are tried in stripes of the
 image side by side; the trees and their roots are those of trying one edge after the other, for any number of stripes.
-@param image CV_8UC1 or CV_8UC3, the image that gives the edge weights.
+@param image CV_8UC1, CV_8UC3 or CV_16UC1, the image that gives the edge weights, see weighEdges().
 @param pixelIntv CV_16UC2 of its size.
 @param beta Threshold of DT-Rule 2.
 @param link Whether to join what Rule 2 left apart, by a second pass without it, if the strategy does so. */

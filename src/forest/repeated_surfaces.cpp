@@ -202,20 +202,21 @@ private:
 
     bool isRepeated(int pixel) const { return firsts_[pixel + 1] - firsts_[pixel] > 1; }
 
-    //! Pixels with several surfaces, of areas that are not small. They are of one area if they have some in common: not
-    //! only if they touch, as the corners of a grid do not.
+    //! Pixels with several surfaces, in areas that are not small. Pixels of one area share a surface; to touch is not
+    //! enough, as corners of a grid do.
     std::vector<int> findRepeated() const
     {
         Sets areas(sizes_.size());
         for (int i = 0; i < pixels_; ++i)
             for (int a = firsts_[i] + 1; a < firsts_[i + 1]; ++a)
                 areas.join(runs_[a - 1].surface, runs_[a].surface);
+        const auto areaOf = [&](int pixel) { return areas.find(runs_[firsts_[pixel]].surface); };
         std::vector<int> areaSizes(sizes_.size()), repeated;
         for (int i = 0; i < pixels_; ++i)
             if (isRepeated(i))
-                ++areaSizes[areas.find(runs_[firsts_[i]].surface)];
+                ++areaSizes[areaOf(i)];
         for (int i = 0; i < pixels_; ++i)
-            if (isRepeated(i) && areaSizes[areas.find(runs_[firsts_[i]].surface)] >= minPixels)
+            if (isRepeated(i) && areaSizes[areaOf(i)] >= minPixels)
                 repeated.push_back(i);
         return repeated;
     }

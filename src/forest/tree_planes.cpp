@@ -205,7 +205,8 @@ private:
 
 //! Gives the pixels of a tree the disparities of its plane, but for those whose costs contradict it. Those that have
 //! its candidates keep their own fractions.
-void put(const Plane& plane, const int* pixels, const DisparityTree& tree, const CostVolume& volume, Mat& disparity)
+void applyPlane(const Plane& plane, const int* pixels, const DisparityTree& tree, const CostVolume& volume,
+                Mat& disparity)
 {
     const int width = volume.size.width;
     const float first = (float)tree.interval.first / volume.steps, last = (float)tree.interval.last / volume.steps;
@@ -237,7 +238,7 @@ int takeTreePlanes(const DisparityForest& forest, const CostVolume& volume, Mat&
         const Plane plane = of.findPlane();
         hasPlane[t] = of.rise(plane) < maxRise && of.shareOn(plane) >= minShare;
         if (hasPlane[t])
-            put(plane, pixels, tree, volume, disparity);
+            applyPlane(plane, pixels, tree, volume, disparity);
     });
     return (int)std::count(hasPlane.begin(), hasPlane.end(), 1);
 }

@@ -9,7 +9,7 @@
 #include "../base/window_sums.hpp"
 #include "left_right_check.hpp"
 
-#include "opencv2/core/hal/intrin.hpp"
+#include <cmath>
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -154,12 +154,6 @@ void compareAlternatives(const Mat& disparity, int numDisparities, const Matchin
     sumOverWindows(costs[0] + costs[1], patchWindow, CV_32S, others);
 }
 
-void takeSquareRoots(std::vector<float>& values)
-{
-    for (size_t i = 0; i < values.size(); i += 4)
-        v_store(&values[i], v_sqrt(v_load(&values[i])));
-}
-
 } // namespace
 
 void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const MatchingCost& cost, Mat& confidence)
@@ -183,7 +177,7 @@ void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const M
     confidence.create(disparity.size(), CV_8U);
     parallel_for_(Range(0, disparity.rows), [&](const Range& rows) {
         std::vector<short> padded(width + 2 * far + distanceBlock), squares(width + distanceBlock);
-        std::vector<float> agreement(2 * byMedian.cols), factors(alignSize(width, 4));
+        std::vector<float> agreement(2 * byMedian.cols);
         for (int y = rows.start; y < rows.end; ++y)
         {
             const int *const p = fromUpper.ptr<int>(y / 2), *const m = byMedian.ptr<int>(y / 2);
@@ -192,21 +186,19 @@ void disparityConfidence(const ConfidenceMaps& maps, int numDisparities, const M
                     upper * median / ((upper + (float)p[x]) * (median + (float)m[x]));
             const int *const c = own.ptr<int>(y), *const a = others.ptr<int>(y);
             squareDistances(inColumns.ptr(y), width, &padded[far], squares.data());
-            for (int x = 0; x < width; ++x)
-                factors[x] = squares[x];
-            takeSquareRoots(factors);
+            const short* const distances =
+                squares.data(); // squared; local, as are the next ones, as stores may alias all
+            const float* const agrees = agreement.data();
             const uchar* const isVisible = visible.ptr(y);
             uchar* const row = confidence.ptr(y);
             HDP_VECTORIZED for (int x = 0; x < width; ++x)
             {
                 const int more = a[x] - 2 * c[x], all = a[x] + 2 * c[x];
-                factors[x] = factors[x] / (float)far * ((more > 0 ? (float)more : 0.f) / (all > 0 ? (float)all : 1.f));
+                const float fromStep = std::sqrt((float)distances[x]) / (float)far,
+                            unique = (more > 0 ? (float)more : 0.f) / (all > 0 ? (float)all : 1.f);
+                const float factor = std::sqrt(std::sqrt(fromStep * unique) * agrees[x]);
+                row[x] = (uchar)(int)(255 * (isVisible[x] ? 1.f : hidden) * factor + 0.5f);
             }
-            takeSquareRoots(factors);
-            HDP_VECTORIZED for (int x = 0; x < width; ++x) factors[x] *= agreement[x];
-            takeSquareRoots(factors);
-            for (int x = 0; x < width; ++x)
-                row[x] = (uchar)(int)(255 * (isVisible[x] ? 1.f : hidden) * factors[x] + 0.5f);
         }
     });
 }

@@ -37,7 +37,8 @@ inline bool isInBar(const VoteRows& rows, int x, ushort middle)
     return (!left && !right && (up || down)) || (!up && !down && (left || right));
 }
 
-//! Differences of 16 pixels of a row from a colour: of the channel that has the largest one
+//! How far 16 pixels of row r of the window, from column start on, are from a colour: the largest difference of any
+//! channel
 template <int channels>
 CV_ALWAYS_INLINE SixteenWords differenceOf(const VoteRows& rows, int r, int start, const SixteenWords* colour)
 {

@@ -25,29 +25,30 @@ HDP_TUNABLE(double, distanceScale, 8, "pixels of the image", "by which the weigh
 HDP_TUNABLE(double, flatness, 0.1, "squared distanceScale", "by which planes resist being tilted: points in a row");
 HDP_TUNABLE(
     double, contradiction, 7, "bits",
-    "that a cost is higher by, half of it in the mean of the points around, which may have an error in common, or "
-    "where no point opposes the winner, which may be of a small thing: more follows errors, and loses small things");
-HDP_TUNABLE(
-    double, enoughWeight, 0.25, "weight of points",
-    "from which half of it is enough: with less, less is, as points that are far away know less of small things");
+    "by which the mean cost may be higher; half of that for the mean of the points around, which may have an error in "
+    "common, and where no point opposes the winner: more follows errors, and loses small things");
+HDP_TUNABLE(double, enoughWeight, 0.25, "weight of points",
+            "around, from which half of the contradiction is allowed; in proportion below: far points know less of "
+            "small things");
 HDP_TUNABLE(
     double, indifference, 2.5, "bits",
-    "the same on bare walls, where no point agrees with the winners, which are noise: more follows errors there");
+    "the same where few points agree with the winners, as on bare walls, whose winners are noise: more follows errors");
 HDP_TUNABLE(double, mostContradicted, 0.25, "times the points that agree",
             "of a prior that is believed on such walls: more believes that of another scene, less misses bare scenes");
 HDP_TUNABLE(int, around, 3, "times the reach",
             "on each side, that points are around: in less, all of a large wrong patch are opposed to the winners");
 
-const int windowSide = 5; // pixels; of the costs that are compared: single ones are noise
+// Pixels; side of the windows of costs that are compared: single ones are noise
+const int windowSide = 5, windowArea = windowSide * windowSide;
 
 //! What is known of a point
 enum PointState
 {
-    AGREES,
+    AGREES,       // with the winner
     COUNTS,       // against the winner
     CLAIMS,       // it will count, or be contradicted
     CONTRADICTED, // by the costs, which speak for the winner
-    FAILS
+    FAILS         // says nothing
 };
 
 //! Joins a layer's winners with its points.
@@ -82,25 +83,26 @@ public:
                         limits.at<float>(y, x) = propose(Point(x, y), maxDisparity, seen, hypotheses.at<ushort>(y, x));
         });
         sumCosts(hypotheses, ofHypotheses);
-        const int area = windowSide * windowSide;
         parallelForRows(winners_.size(), [&](int y) {
             for (int x = 0; x < winners_.cols; ++x)
             {
                 const int more = ofHypotheses.ptr<ushort>(y)[x] - ofWinners_.ptr<ushort>(y)[x];
-                if (more <= area * limits.ptr<float>(y)[x])
+                if (more <= windowArea * limits.ptr<float>(y)[x])
                     winners_.ptr<ushort>(y)[x] = hypotheses.ptr<ushort>(y)[x];
             }
         });
     }
 
 private:
-    //! How far a pixel sees, in pixels of the layer: so far that there are enough points in a dense prior
+    //! How far a pixel of a layer of this size sees: so far that a square of the reach has pointsOfCell points in the
+    //! mean
     static int reachOf(Size size, size_t points, int farthest)
     {
         const int ofDensity = cvCeil(std::sqrt(pointsOfCell * size.area() / (double)points));
         return std::min(farthest, std::max(ofDensity, 2));
     }
 
+    //! Whether two disparities may be of one surface. sigma: of one of them, distance: of their places; all in pixels
     bool areAlike(float a, float b, float sigma, double distance) const
     {
         return std::abs(a - b) <= tolerance + 2 * sigma + slope * distance;
@@ -110,15 +112,15 @@ private:
     int excessOf(int index) const
     {
         const PriorPoint& point = points_[index];
-        const int radius = windowSide / 2, area = windowSide * windowSide;
-        int pixels[windowSide * windowSide], count = 0, sum = 0;
+        const int radius = windowSide / 2;
+        int pixels[windowArea], count = 0, sum = 0;
         for (int dy = -radius; dy <= radius; ++dy)
             for (int dx = -radius; dx <= radius; ++dx)
                 pixels[count++] = clamped(point.place.y + dy, 0, winners_.rows - 1) * winners_.cols +
                                   clamped(point.place.x + dx, 0, winners_.cols - 1);
-        uchar costs[4 * windowSide * windowSide];
-        cost_.evaluate(pixels, area, cvRound(point.disparity), 4, costs);
-        for (int i = 0; i < area; ++i)
+        uchar costs[4 * windowArea];
+        cost_.evaluate(pixels, windowArea, cvRound(point.disparity), 4, costs);
+        for (int i = 0; i < windowArea; ++i)
             sum += costs[4 * i];
         return sum - ofWinners_.ptr<ushort>(point.place.y)[point.place.x];
     }
@@ -158,14 +160,13 @@ private:
                 Vec4d(excess_[i], states_[i] == CLAIMS, states_[i] == AGREES, 1);
         const int side = 2 * (around * farthest_ / grid_.reach()) + 1;
         boxFilter(sums, sums, -1, Size(side, side), Point(-1, -1), false, BORDER_CONSTANT);
-        const int area = windowSide * windowSide;
-        const bool isRight = isRightInTheMain();
+        const bool isRight = isMostlyRight();
         for (size_t i = 0; i < points_.size(); ++i)
         {
             const Vec4d own = sums.ptr<Vec4d>()[grid_.cellOf(points_[i].place)];
             const double excess = own[0], claims = own[1], agreeing = own[2], all = own[3];
-            const bool isContradictedHere = isContradicted(i) || excess > contradiction / 2 * area * claims;
-            const bool isUnseen = isRight && excess < indifference * area * claims;
+            const bool isContradictedHere = isContradicted(i) || excess > contradiction / 2 * windowArea * claims;
+            const bool isUnseen = isRight && excess < indifference * windowArea * claims;
             if (agreeing < minAgreement * all && !isUnseen)
                 states_[i] = FAILS;
             else if (states_[i] == CLAIMS)
@@ -174,10 +175,10 @@ private:
     }
 
     //! By the costs at the point alone
-    bool isContradicted(size_t index) const { return excess_[index] > contradiction * windowSide * windowSide; }
+    bool isContradicted(size_t index) const { return excess_[index] > contradiction * windowArea; }
 
-    //! Whether the costs contradict few claims in terms of the points that agree
-    bool isRightInTheMain() const
+    //! Whether the costs contradict few claims, compared with the points that agree
+    bool isMostlyRight() const
     {
         double agreeing = 0, contradicted = 0;
         for (size_t i = 0; i < points_.size(); ++i)
@@ -203,9 +204,9 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    //! The disparity that the points around a pixel propose: its winner, which proposed has, if they speak for it or
-    //! half of them, by weight, were contradicted where they differ from it. Returns by how many bits its cost may be
-    //! higher.
+    //! The disparity that the points around a pixel propose; returns by how many bits its cost may be higher. proposed
+    //! stays the winner if fewer than two points are not contradicted, if as much speaks for it as against it, or if
+    //! half of the points, by weight, were contradicted in favour of winners like it.
     float propose(Point place, int maxDisparity, Surroundings& seen, ushort& proposed) const
     {
         const float winner = winners_.ptr<ushort>(place.y)[place.x] * (1.f / subpixelScale);
@@ -232,7 +233,7 @@ private:
         return (float)(against > 0 ? contradiction : contradiction / 2 * std::min(all / enoughWeight, 1.));
     }
 
-    //! The disparity of the plane through the points that are alike
+    //! The disparity at a place of the plane through the largest set of points that are alike
     float planeAt(Point place, const std::vector<Neighbour>& found) const
     {
         double best = -1;

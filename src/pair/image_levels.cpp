@@ -24,7 +24,8 @@ HDP_TUNABLE(double, lampShare, 1. / 128, "of all pixels",
             "that may become white: as few are lamps and what they shine on");
 HDP_TUNABLE(double, sceneShare, 1. / 16, "of all pixels",
             "that would become white, for which a pair stays as it is: as many are a part of the scene");
-HDP_TUNABLE(int, rowsThatTell, 64, "rows", "of a pair, about: more cost time and tell the same");
+HDP_TUNABLE(int, rowsThatTell, 64, "rows",
+            "of an image, and twice as many columns, about: more cost time and tell the same");
 HDP_TUNABLE(int, margin, 6, "shares of the contrast",
             "of which one is left at each end: more leaves faint texture, less cuts off what few pixels have");
 HDP_TUNABLE(double, mostContrast, 4, "times", "that a pair gets: more would make noise look like texture");
@@ -71,8 +72,9 @@ struct Conversion
     {
         if (isStretched)
             dispatched::stretchRow(levels, width, black, gain, (int)brightened.size() - 1);
-        for (int x = 0; x < width && (int)brightened.size() > whiteEnd; ++x)
-            levels[x] = brightened[levels[x]];
+        if ((int)brightened.size() > whiteEnd)
+            for (int x = 0; x < width; ++x)
+                levels[x] = brightened[levels[x]];
     }
 };
 
@@ -87,25 +89,27 @@ struct LevelCounts
 
     template <typename T> void add(const Mat& image, const Mat& mask, int bits)
     {
-        const int rows = std::max(image.rows / rowsThatTell, 1), columns = std::max(image.cols / (2 * rowsThatTell), 1);
-        const int channels = image.channels(), shift = maxBits - bits, white = (1 << bits) - 1;
-        for (int y = 0; y < image.rows; y += rows)
-            for (int x = 0; x < image.cols; x += columns)
+        const int rowStep = std::max(image.rows / rowsThatTell, 1),
+                  columnStep = std::max(image.cols / (2 * rowsThatTell), 1);
+        const int channels = image.channels(), shift = maxBits - bits, most = (1 << bits) - 1;
+        const int white = 255 << (bits - minBits); // the same for levels of 8 bits that are multiplied
+        const bool isColour = channels > 1;        // alpha does not count
+        for (int y = 0; y < image.rows; y += rowStep)
+            for (int x = 0; x < image.cols; x += columnStep)
             {
                 if (!mask.empty() && mask.at<uchar>(y, x) == 0)
                     continue;
                 const T* const p = image.ptr<T>(y) + (ptrdiff_t)x * channels;
-                const int second = channels > 1 ? p[1] : p[0], third = channels > 1 ? p[2] : p[0];
-                const int low = std::min<int>(p[0], std::min(second, third)),
-                          high = std::max<int>(p[0], std::max(second, third));
+                const int low = isColour ? std::min(p[0], std::min(p[1], p[2])) : p[0],
+                          high = isColour ? std::max(p[0], std::max(p[1], p[2])) : p[0];
                 if (high > 0)
-                    ++darkest[(std::min(low, white) << shift) / step];
+                    ++darkest[(std::min(low, most) << shift) / step];
                 if (low < white)
-                    ++brightest[(std::min(high, white) << shift) / step];
+                    ++brightest[(std::min(high, most) << shift) / step];
             }
     }
 
-    //! The first step that all are from on, but for a few
+    //! The first step up to which there are more pixels than outliers
     static int firstOf(const std::vector<int>& counts)
     {
         const int outliers = std::accumulate(counts.begin(), counts.end(), 0) / pixelsPerBright;
@@ -116,11 +120,11 @@ struct LevelCounts
     }
 };
 
-//! Pixels of a pair that are not below each of some levels, in every row or every step-th one
+//! How many pixels of a pair are at each of some levels or above, in every step-th row
 std::vector<double> countFrom(const std::vector<int>& levels, const Mat& left, const Mat& right, int step)
 {
     const int width = left.cols;
-    Mat ofRows((left.rows + step - 1) / step, (int)levels.size(), CV_32S);
+    Mat ofRows((left.rows + step - 1) / step, (int)levels.size(), CV_64F);
     parallelFor(ofRows.rows, [&](int i) {
         const ushort *l = left.ptr<ushort>(i * step), *r = right.ptr<ushort>(i * step);
         for (int k = 0; k < ofRows.cols; ++k)
@@ -128,17 +132,16 @@ std::vector<double> countFrom(const std::vector<int>& levels, const Mat& left, c
             const int level = levels[k];
             int count = 0;
             HDP_VECTORIZED for (int x = 0; x < width; ++x) count += (l[x] >= level) + (r[x] >= level);
-            ofRows.at<int>(i, k) = count;
+            ofRows.at<double>(i, k) = count;
         }
     });
     std::vector<double> counts;
-    for (int k = 0; k < ofRows.cols; ++k)
-        counts.push_back(sum(ofRows.col(k))[0]);
+    reduce(ofRows, counts, 0, REDUCE_SUM);
     return counts;
 }
 
 //! The grey levels of a row, see greyLevels()
-void greyRow(const Mat& image, int y, int bits, const Conversion& convert, ushort* levels)
+void levelsOfRow(const Mat& image, int y, int bits, const Conversion& convert, ushort* levels)
 {
     const int times = minBits - bits + convert.doublings, up = std::max(times, 0), down = std::max(-times, 0);
     const int width = image.cols, white = (whiteEnd << convert.doublings) - 1;
@@ -173,7 +176,9 @@ int bitsInUse(const Mat& left, const Mat& right, double share)
 bool hasNoColours(const Mat& image)
 {
     const int channels = image.channels(), width = image.cols;
-    for (int y = 0; y < image.rows && channels > 1; ++y) // a few rows tell of most images with colours
+    if (channels == 1)
+        return true;
+    for (int y = 0; y < image.rows; ++y) // a few rows tell of most images with colours
     {
         const uchar* const row = image.ptr(y);
         uchar differences = 0;
@@ -192,7 +197,7 @@ Mat byteLevels(const Mat& image, const LevelScale& scale, Mat& buffer)
     {
         buffer.create(image.size(), CV_8UC1);
         parallelForRows(image.size(), std::vector<ushort>(image.cols), [&](int y, std::vector<ushort>& levels) {
-            greyRow(image, y, scale.bits, convert, levels.data());
+            levelsOfRow(image, y, scale.bits, convert, levels.data());
             const int width = image.cols; // local, as stores of bytes may alias all else
             const ushort* const row = levels.data();
             uchar* const bytes = buffer.ptr(y);
@@ -200,22 +205,21 @@ Mat byteLevels(const Mat& image, const LevelScale& scale, Mat& buffer)
         });
         return buffer;
     }
-    Mat colors = image;
+    Mat colours = image;
     if (image.channels() == 4)
     {
         cvtColor(image, buffer, COLOR_BGRA2BGR);
-        colors = buffer;
+        colours = buffer;
     }
     if (convert.doublings == 0)
-        return colors;
+        return colours;
     std::vector<ushort> levels(256);
-    for (int level = 0; level < 256; ++level)
-        levels[level] = (ushort)(level * greyScale << convert.doublings);
-    convert(levels.data(), 256);
     Mat bytes(1, 256, CV_8U);
+    std::iota(bytes.ptr(), bytes.ptr() + 256, (uchar)0);
+    levelsOfRow(bytes, 0, minBits, convert, levels.data());
     for (int level = 0; level < 256; ++level)
         bytes.at<uchar>(level) = (uchar)(levels[level] / greyScale);
-    LUT(colors, bytes, buffer);
+    LUT(colours, bytes, buffer);
     return buffer;
 }
 
@@ -223,7 +227,7 @@ void greyLevels(const Mat& image, const LevelScale& scale, Mat& grey)
 {
     const Conversion convert(scale);
     grey.create(image.size(), CV_16U);
-    parallelForRows(image.size(), [&](int y) { greyRow(image, y, scale.bits, convert, grey.ptr<ushort>(y)); });
+    parallelForRows(image.size(), [&](int y) { levelsOfRow(image, y, scale.bits, convert, grey.ptr<ushort>(y)); });
 }
 
 void findEnds(const Mat& left, const Mat& right, const PairMasks& masks, LevelScale& scale)

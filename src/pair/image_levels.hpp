@@ -18,7 +18,7 @@ struct LevelScale
 {
     static const int end = 1 << 16; // of black and white
 
-    LevelScale(int bitsInUse = 8, double brightened = 1) : bits(bitsInUse), brightness(brightened) {}
+    explicit LevelScale(int bitsInUse = 8, double brightened = 1) : bits(bitsInUse), brightness(brightened) {}
 
     bool isStretched() const { return black > 0 || white < end; }
     double gain() const { return brightness * end / (white - black); } // of differences of levels, about
@@ -47,9 +47,9 @@ CV_EXPORTS Mat byteLevels(const Mat& image, const LevelScale& scale, Mat& buffer
 more than 8, between black and white. Means of many pixels tell faint texture apart that 8 bits lose: the census cost of
 the coarse layers lives on it.
 
-A brightness is 1 to 4: 2 or 4 doubles levels once or twice; what is brighter then is white. One between doubles, the
-last time, levels below a knee alone, the share b - 1 of white for b < 2 and b / 2 - 1 for b > 2; those above it are on
-the line from there to white. So the levels depend on the brightness without a jump.
+A brightness is 1 to 4. Levels are doubled once for one up to 2, and twice above. In the last doubling, those above a
+knee only move up the line to white; the knee is (brightness - 1) of white up to 2, and (brightness / 2 - 1) above. So
+levels depend on the brightness without a jump.
 @param image CV_8UC1, CV_8UC3, CV_8UC4, whose alpha is left out, or CV_16UC1.
 @param grey Receives CV_16UC1. */
 CV_EXPORTS void greyLevels(const Mat& image, const LevelScale& scale, Mat& grey);

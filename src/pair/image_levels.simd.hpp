@@ -12,7 +12,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 //! Grey levels of BGR pixels, doubled some times and not cut off, see greyLevels(). channels: 3, or 4 with alpha.
 void greyRow(const uchar* pixels, int channels, int width, int times, ushort* levels);
 
-//! Makes (level - black) * gain / 65536 of each level of a row, from 0 to white.
+//! Makes (level - black) * gain / 65536 of each level of a row, from 0 to white. gain: 1 to 2^30, of any contrast
 void stretchRow(ushort* levels, int width, int black, int gain, int white);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
@@ -29,8 +29,9 @@ void greyRow(const uchar* pixels, int channels, int width, int times, ushort* le
 
 void stretchRow(ushort* levels, int width, int black, int gain, int white)
 {
+    const int most = (int)(((int64)(white + 1) << 16) / gain) + 1; // that becomes white: products stay below 2^31
     HDP_VECTORIZED for (int x = 0; x < width; ++x) levels[x] =
-        (ushort)std::min(std::max(levels[x] - black, 0) * gain >> 16, white);
+        (ushort)std::min(std::min(std::max(levels[x] - black, 0), most) * gain >> 16, white);
 }
 
 #endif

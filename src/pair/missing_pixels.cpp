@@ -58,7 +58,8 @@ bool fillRow(uchar* row, const uchar* has, int width, size_t pixel)
     return true;
 }
 
-//! Of 8 or 16 bits and any number of channels; mask: CV_8UC1, 255 where there is data, else 0
+//! Fills pixels without data along their rows, and rows without any from the nearest one that has some. image: 8 or 16
+//! bits, any number of channels; mask: CV_8UC1, 255 where there is data, else 0
 void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
 {
     std::vector<uchar> has(image.rows);
@@ -73,7 +74,7 @@ void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
             filled.row(rows[y]).copyTo(filled.row(y));
 }
 
-//! Of the pixels that are in the masks
+//! The levels that become black and white: the lowest and the highest one with data, but for outliers
 FloatLevels findLevels(const Mat& left, const Mat& right, const PairMasks& masks)
 {
     std::vector<float> values;

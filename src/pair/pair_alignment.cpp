@@ -15,7 +15,10 @@ namespace {
 HDP_TUNABLE(int, sideWeight, 27, "1/256",
             "of a pixel's neighbour in a noisy pair: more loses texture, less keeps noise");
 
-bool isGrey(const std::vector<LayerImages>& images) { return images[0].right.depth() == CV_16U; } // see greyLevels()
+bool hasGreyLevels(const std::vector<LayerImages>& images)
+{
+    return images[0].right.depth() == CV_16U;
+} // see greyLevels()
 
 void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const std::vector<LayerImages>& images,
                    PairFindings& findings)
@@ -26,16 +29,16 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
         left.push_back(layer.left);
         right.push_back(layer.right);
     }
-    if (!isGrey(images))
+    if (!hasGreyLevels(images))
     {
-        greyLevels(images[0].left, 8, buffers.leftLevels);
-        greyLevels(images[0].right, 8, buffers.rightLevels);
+        greyLevels(images[0].left, LevelScale(), buffers.leftLevels);
+        greyLevels(images[0].right, LevelScale(), buffers.rightLevels);
         left.assign(1, buffers.leftLevels);
         right.assign(1, buffers.rightLevels);
     }
     matchCoarsely(left, right, images[0].masks, Range(0, plan.numDisparities), plan.maxRowOffset, 0, buffers.coarse);
     estimateRows(buffers.coarse, plan.finestLayer, plan.maxRowOffset, findings);
-    if (plan.findsLight && isGrey(images))
+    if (plan.findsLight && hasGreyLevels(images))
         findings.hasLight = estimateLight(buffers.coarse, findings.light);
 }
 
@@ -61,13 +64,31 @@ void smoothNoise(const Mat& image, Mat& smoothed)
     });
 }
 
+namespace {
+
+//! Smooths both images of the matched layers
+void smoothPair(int finestLayer, AlignmentBuffers& buffers, std::vector<LayerImages>& images)
+{
+    buffers.smoothed.resize(images.size());
+    for (size_t layer = finestLayer; layer < images.size(); ++layer)
+    {
+        LayerImages& smoothed = buffers.smoothed[layer];
+        smoothNoise(images[layer].left, smoothed.left);
+        smoothNoise(images[layer].right, smoothed.right);
+        images[layer].left = smoothed.left;
+        images[layer].right = smoothed.right;
+    }
+}
+
+} // namespace
+
 void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
                PairFindings& findings, const GivenPair& given)
 {
     findings = given.findings;
     if (!given.isGiven)
         findAlignment(plan, buffers, images, findings);
-    findings.hasLight &= isGrey(images);
+    findings.hasLight &= hasGreyLevels(images);
     const ImageFrame frame =
         (given.isGiven ? given.frame : ImageFrame(images[0].guide.size())).ofLayer(plan.finestLayer);
 
@@ -89,17 +110,8 @@ void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector
             halveImage(images[layer - 1].masks.right, images[layer].masks.right);
         }
 
-    if (!isGrey(images) || !plan.isNoisy(findings.noise))
-        return;
-    buffers.smoothed.resize(images.size());
-    for (size_t layer = plan.finestLayer; layer < images.size(); ++layer)
-    {
-        LayerImages& smoothed = buffers.smoothed[layer];
-        smoothNoise(images[layer].left, smoothed.left);
-        smoothNoise(images[layer].right, smoothed.right);
-        images[layer].left = smoothed.left;
-        images[layer].right = smoothed.right;
-    }
+    if (hasGreyLevels(images) && plan.isNoisy(findings.noise))
+        smoothPair(plan.finestLayer, buffers, images);
 }
 
 }}} // namespace cv::stereo::hdp

@@ -37,7 +37,7 @@ void checkPair(const Mat& left, const Mat& right)
 
 namespace {
 
-//! Without the levels of what has no data
+//! The image with black pixels where there is no data; itself without a mask
 Mat blackened(const Mat& image, const Mat& mask)
 {
     if (mask.empty())
@@ -47,8 +47,8 @@ Mat blackened(const Mat& image, const Mat& mask)
     return blackened;
 }
 
-//! Grey levels of a pair that is moved, with its masks, brightened if it is dark, and without the blocks of
-//! compression. share: with data
+//! Makes the grey levels of a pair that is moved, as are its masks: brightened if it is dark, without the blocks of
+//! compression. share: of the pixels, with data; isKnown: whether pyramids.levels were given
 void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, double share, bool isKnown,
                 bool smoothsBlocks, PairPyramids& pyramids)
 {
@@ -76,7 +76,7 @@ void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, doubl
     smoothBlocks(leftLevels, rightLevels, found.leftBlocks, found.rightBlocks);
 }
 
-//! The masks of a layer, and what became of the columns of the images
+//! The masks of a layer, with the columns in which its images begin behind added and moved ones
 PairMasks layerMasks(const Mat& left, const Mat& right, const PyramidPlan& plan, int layer)
 {
     PairMasks masks(left, right);
@@ -126,7 +126,7 @@ void buildPairPyramids(const Mat& left, const Mat& right, const PairMasks& masks
         images[layer] = { l.colours[layer], seesLevels ? l.matched[layer] : l.colours[layer], l.matched[layer],
                           r.matched[layer], layerMasks(l.mask[layer], r.mask[layer], plan, layer) };
     for (std::vector<Mat>* pyramid : { &l.colours, &l.matched, &r.matched, &l.mask, &r.mask })
-        pyramid->front().release(); // may be the caller's
+        pyramid->front().release(); // it may be the caller's image, of which nothing is kept after this pair
 }
 
 Mat shiftColumns(const Mat& image, int minDisparity, int extension, Mat& memory)
@@ -138,7 +138,7 @@ Mat shiftColumns(const Mat& image, int minDisparity, int extension, Mat& memory)
     const auto columnAt = [&](int x) { return (int)clamped<int64>(x - shift, 0, image.cols - 1); };
     const Mat inside = image.colRange(columnAt(0), columnAt(width - 1) + 1);
     const int rest = width - inside.cols, before = (int)clamped<int64>(shift, 0, rest);
-    // Isolated: around a region of a larger image, that is not looked at.
+    // Isolated: if the image is a region of a larger one, pixels around it are not read.
     copyMakeBorder(inside, memory, 0, 0, before, rest - before, BORDER_REPLICATE | BORDER_ISOLATED);
     return memory;
 }

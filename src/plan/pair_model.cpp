@@ -9,8 +9,10 @@
 #include "../pair/image_levels.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <cfloat>
 #include <cmath>
+#include <fstream>
 
 namespace cv { namespace stereo {
 
@@ -140,12 +142,24 @@ void PairModel::read(const FileNode& fn)
 void PairModel::save(const String& filename) const
 {
     checkPairModel(*this); // what was in the file stays
-    FileStorage fs(filename, FileStorage::WRITE);
-    if (!fs.isOpened())
+    const bool isCompressed = filename.size() > 3 && filename.substr(filename.size() - 3) == ".gz";
+    FileStorage fs(filename, FileStorage::WRITE | (isCompressed ? 0 : FileStorage::MEMORY));
+    bool isWritten = fs.isOpened();
+    if (isWritten)
+    {
+        fs.startWriteStruct("pairModel", FileNode::MAP);
+        write(fs);
+        fs.endWriteStruct();
+        if (!isCompressed) // a FileStorage does not notice a full disk
+        {
+            std::ofstream file(filename);
+            file << fs.releaseAndGetString();
+            file.close();
+            isWritten = !file.fail();
+        }
+    }
+    if (!isWritten)
         CV_Error(Error::StsError, "cannot write '" + filename + "'");
-    fs.startWriteStruct("pairModel", FileNode::MAP);
-    write(fs);
-    fs.endWriteStruct();
 }
 
 PairModel PairModel::load(const String& filename)

@@ -340,9 +340,8 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
     const int layers = countLayers(p, whole, plan.predictionModel);
     checkPairModelOf(model, size, type, layers);
     const int finest = std::min(p.finestLayer, layers - 1);
-    const int matchedType = CV_MAT_DEPTH(type) == CV_32F ? CV_16UC1 : type; // see completePair()
-    const int extension = countExtension(p, size, matchedType, layers);
     const bool isCensus = p.matchingCost == M::COST_CENSUS, isFloat = CV_MAT_DEPTH(type) == CV_32F;
+    const int extension = countExtension(p, size, isFloat ? CV_16UC1 : type, layers); // see completePair()
     plan.pyramids = { p.minDisparity, extension,           layers, isCensus, p.noiseThreshold > 0,
                       whole.width,    isCensus && !isFloat };
     plan.alignment = { p.numDisparities, p.maxRowOffset, p.useLightAlignment, p.noiseThreshold, finest };

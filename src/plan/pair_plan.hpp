@@ -44,7 +44,7 @@ struct CostPlan
 {
     bool isCensus = false;
     int windowSide = 0; // pixels
-    int tolerance = 0;  // of the census, in grey levels of the images, see CensusCost::prepare()
+    int tolerance = 0;  // of the census, in grey levels as they are matched, see CensusCost::prepare()
     ColorGradientParams colorGradient = ColorGradientParams();
 };
 

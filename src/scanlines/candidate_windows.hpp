@@ -58,7 +58,8 @@ nothing, and there are some only if this range has less than CandidateWindow::ca
 @param windows Receives a CandidateWindow per pixel of upper, CV_16UC4. */
 CV_EXPORTS void predictWindows(const Mat& upper, const Mat& others, int numDisparities, Mat& windows);
 
-/** Leaves runs out of windows that have no candidate which a pixel may have: the other run's window is whole then.
+/** Drops a run from a window if none of its candidates is in the pixel's interval; the other run's surface gets all
+candidates then. If neither run has one, the window moves into the interval.
 @param intervals A DisparityInterval per window, the hull of those of its pixels.
 @param windows From predictWindows(), changed. */
 CV_EXPORTS void restrictWindows(const Mat& intervals, int numDisparities, Mat& windows);

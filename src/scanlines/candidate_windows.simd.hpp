@@ -54,9 +54,8 @@ void predictRow(const ushort* upper, const ushort* others, int width, int numDis
         const int around = firstCandidate(nearest, all, numDisparities);
         const int first = firstCandidate(nearest, length, numDisparities);
         const int beyond = firstCandidate(nearestOther, length, numDisparities);
-        // Two runs would overlap: one window over both
         const int between =
-            std::max(std::min((first + beyond + length - all) >> 1, numDisparities + outside - all), -outside);
+            firstCandidate(((first + beyond + length) >> 1) - 1, all, numDisparities); // if runs overlap
 
         const int hasOther = (int)(other != here);
         const int overlaps = hasOther & (std::abs(first - beyond) < length), isApart = hasOther - overlaps;

@@ -240,7 +240,7 @@ public:
         enterBlock(rows, stripe);
         for (int x = width_ - 1; x >= 0; --x)
             for (int r = 0; r < height; ++r)
-                followRight(rows_[r], x);
+                followFromRight(rows_[r], x);
         for (int t = 0; t < width_ + height - 1; ++t)
         {
             const Range active(std::max(t - width_ + 1, 0), std::min(t + 1, height));
@@ -325,8 +325,8 @@ private:
         }
     }
 
-    //! From the right: adds E to that from below.
-    CV_ALWAYS_INLINE void followRight(const Row& row, int x)
+    //! The direction from the right at a pixel: adds its E to that from below.
+    CV_ALWAYS_INLINE void followFromRight(const Row& row, int x)
     {
         uchar* const below = row.below + x * lanes_.bytes();
         Pixel costs, e, sums;

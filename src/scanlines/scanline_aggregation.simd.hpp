@@ -63,8 +63,8 @@ public:
             }
             Block::Carried h[ScanlineScratch::blocks];
             const Range turns(0, countTurns(blocks));
-            takesWinners ? follow<false, true>(turns, blocks, stored, h)
-                         : follow<false, false>(turns, blocks, stored, h);
+            takesWinners ? runTurns<false, true>(turns, blocks, stored, h)
+                         : runTurns<false, false>(turns, blocks, stored, h);
             for (int i = 0; takesWinners && i < blocks; ++i)
                 blocks_[i].finish(y + i * groups, rows_.end, disparity, residual);
             y += blocks * groups;
@@ -118,24 +118,24 @@ private:
                 blocks_[i].storeCosts(
                     Range(std::max(turns.start - i * behind, 0), std::min(turns.end - i * behind, steps_)), stored[i]);
             if (task == SUM)
-                follow<true, true>(turns, blocks, stored, h);
+                runTurns<true, true>(turns, blocks, stored, h);
             else if (task == FOLLOW)
-                follow<true, false>(turns, blocks, stored, h);
+                runTurns<true, false>(turns, blocks, stored, h);
         }
     }
 
-    //! Lets the blocks take their steps in some turns.
+    //! Runs some turns, in each of which a block takes a step; the second block, if there is one, is behind the first.
     template <bool isUpward, bool sums>
-    void follow(const Range& turns, int blocks, uchar* const* stored, Block::Carried* carried) const
+    void runTurns(const Range& turns, int blocks, uchar* const* stored, Block::Carried* carried) const
     {
         if (blocks == 1)
-            follow<isUpward, sums, 1>(turns, stored, carried);
+            runTurns<isUpward, sums, 1>(turns, stored, carried);
         else
-            follow<isUpward, sums, 2>(turns, stored, carried);
+            runTurns<isUpward, sums, 2>(turns, stored, carried);
     }
 
     template <bool isUpward, bool sums, int blocks>
-    void follow(const Range& turns, uchar* const* stored, Block::Carried* carried) const
+    void runTurns(const Range& turns, uchar* const* stored, Block::Carried* carried) const
     {
         const Block a = blocks_[0], b = blocks_[1];
         Block::Carried first = carried[0], second = carried[1];
@@ -169,6 +169,7 @@ private:
         blocks_[block].enter(y, tables_[enteredTables_], isNew && !isFirst);
     }
 
+    //! The stored costs and sums of the block whose upper row is y
     uchar* storedOf(int y) const
     {
         return stored_ + (y - reach_.start) * (ptrdiff_t)ScanlineScratch::storedBytes(p_.size.width);

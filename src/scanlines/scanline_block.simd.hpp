@@ -370,7 +370,8 @@ private:
         }
     }
 
-    //! A row's disparities, with winnerFraction(), and residuals
+    //! Writes the disparities, with winnerFraction(), and residuals of a group's row. costs are above the residuals by
+    //! ScanlinePenalties::max.
     void finishRow(int group, ushort* disparity, uchar* residual) const
     {
         const float blunt = p_.blunt, sharp = p_.sharp;
@@ -388,8 +389,8 @@ private:
                 ((((lane + 1) & (Window::runLength - 1)) > 1) | (low == high)) & (lane > 0) & (lane < last);
             const float slope = (float)std::max(std::max(before, after) - sum, 1);
             const float rise = (float)((before - after) & -isInner);
-            const int tip = whole * subpixelScale + subpixelUnits(winnerFraction(rise, slope, blunt, sharp));
-            disparity[x] = (ushort)clamped(tip, 0, maxDisparity);
+            const int subpixel = whole * subpixelScale + subpixelUnits(winnerFraction(rise, slope, blunt, sharp));
+            disparity[x] = (ushort)clamped(subpixel, 0, maxDisparity);
         }
         HDP_VECTORIZED for (int x = 0; x < width_; ++x) residual[x] = (uchar)(costs[x] - ScanlinePenalties::max);
     }

@@ -55,6 +55,8 @@ public:
         OWN = -1 // each pixel has its own
     };
 
+    //! lines: memory for L of the last pixel of each scanline, L of this pixel of each, the sums of a pixel, and zeros
+    //! that end with a margin of none, in lines of lineLength()
     LineBlock(const VolumeProblem& problem, int scanlines, int length, short* lines)
         : p_(problem), scanlines_(scanlines), length_(length), lineLength_(problem.lineLength()),
           before_(lines + margin), here_(before_ + scanlines * (ptrdiff_t)lineLength_),
@@ -70,7 +72,7 @@ public:
     {
         if (!p_.volume.isUniform)
             return follow<role, OWN>(direction);
-        switch (p_.volume.of(0).chunks()) // of 32, 64 and 128 candidates, and of up to 48
+        switch (p_.volume.of(0).chunks()) // 2, 3, 4 and 8 of 16 candidates are usual
         {
         case 2:
             return follow<role, 2>(direction);

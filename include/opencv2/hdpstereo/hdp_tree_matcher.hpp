@@ -482,8 +482,8 @@ public:
 
         /** @brief Number of disparities of the range that was searched.
 
-        That of the parameter, if it is > 0. If it is 0, both this and minDisparity were found in the pair, or are those
-        of the PairModel that is set; a pixel without data, or that a filter rejected, then has this minDisparity - 1.
+        That of the parameter, if it is > 0. If it is 0, both this and minDisparity are those of the PairModel that is
+        set, or of setDisparityRange(), or found in the pair; what has no data or is rejected has this minDisparity - 1.
         */
         CV_PROP int numDisparities;
 
@@ -620,10 +620,10 @@ public:
     /** @brief Returns why each pixel has its disparity in the last compute().
 
     REASON_OCCLUDED is what the left-right check finds in the map, within a pixel of the layer at which matching ends,
-    whether a filter rejects it or not, and what matches masked pixels. REASON_OUTSIDE has nothing in the right image to
-    be compared with, so disp12MaxDiff does not reject it. It is computed by this call.
-    @param reasons Receives CV_8UC1 of the left image's size: values of HDPTreeMatcher::Reason. Empty before the first
-    compute() and after one that threw an exception.
+    whether a filter rejects it or not, and what matches masked pixels; half a pixel may be rounded otherwise than by
+    disp12MaxDiff. REASON_OUTSIDE has nothing in the right image to be compared with, so disp12MaxDiff does not reject
+    it, but for single pixels at the border. It is computed by this call.
+    @param reasons Receives CV_8UC1 of the left image's size: values of HDPTreeMatcher::Reason, or empty as the sigma.
      */
     CV_WRAP virtual void getReasons(OutputArray reasons) const = 0;
 
