@@ -297,29 +297,31 @@ void pointsOfLayer(const Mat& disparity, const Mat& sigma, int minDisparity, int
     points.clear();
     const float scale = 1.f / (1 << layer);
     const int side = 1 << layer, rows = disparity.rows >> layer, columns = (disparity.cols + extension) >> layer;
+    std::vector<Vec2f> known; // disparity and sigma of the image's pixels in one of the layer
     for (int y = 0; y < rows; ++y)
         for (int x = extension >> layer; x < columns; ++x)
         {
-            float nearest = -1, sum = 0, sigmas = 0;
+            known.clear();
+            float nearest = -1;
+            for (int i = y * side; i < (y + 1) * side; ++i)
+                for (int j = x * side - extension; j < (x + 1) * side - extension; ++j)
+                {
+                    const float own = (disparity.ptr<float>(i)[j] - minDisparity) * scale;
+                    if (!(own >= 0 && own <= numDisparities - 1)) // or NaN
+                        continue;
+                    known.push_back(Vec2f(own, sigma.ptr<float>(i)[j] * scale));
+                    nearest = std::max(nearest, own);
+                }
+            Vec2f sum;
             int count = 0;
-            for (int pass = 0; pass < 2; ++pass)
-                for (int i = y * side; i < (y + 1) * side; ++i)
-                    for (int j = x * side - extension; j < (x + 1) * side - extension; ++j)
-                    {
-                        const float own = (disparity.ptr<float>(i)[j] - minDisparity) * scale;
-                        if (!(own >= 0 && own <= numDisparities - 1))
-                            continue;
-                        if (pass == 0)
-                            nearest = std::max(nearest, own);
-                        else if (own >= nearest - 1)
-                        {
-                            sum += own;
-                            sigmas += sigma.ptr<float>(i)[j] * scale;
-                            ++count;
-                        }
-                    }
+            for (const Vec2f& pixel : known)
+                if (pixel[0] >= nearest - 1) // of the nearest surface
+                {
+                    sum += pixel;
+                    ++count;
+                }
             if (count > 0)
-                points.push_back({ Point(x, y), sum / count, sigmas / count });
+                points.push_back({ Point(x, y), sum[0] / count, sum[1] / count });
         }
 }
 

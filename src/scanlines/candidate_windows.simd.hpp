@@ -45,8 +45,7 @@ void findOthersOfRow(const DisparityRow& filtered, const DisparityRow& unfiltere
 
 void predictRow(const ushort* upper, const ushort* others, int width, int numDisparities, ushort* windows)
 {
-    const int length = CandidateWindow::runLength, all = CandidateWindow::candidates,
-              outside = CandidateWindow::beyondRange;
+    const int length = CandidateWindow::runLength, all = CandidateWindow::candidates;
     HDP_VECTORIZED for (int x = 0; x < width; ++x) // without branches, so that it can be
     {
         const int here = 2 * upper[x], other = others[x];

@@ -76,6 +76,7 @@ struct Winners
     //! candidates per pixel of disparity, else 0
     CV_ALWAYS_INLINE void takeDisparities(int count, int bit, int halving, ushort* disparity) const
     {
+        // Bits per direction, as bluntSlope and sharpSlope are of scanlines over windows
         const float unit = 4.f * bit, blunt = 8 * unit, sharp = 14 * unit;
         const ushort* const candidates = whole;
         const short *const rises = rise, *const slopes = slope;
