@@ -94,7 +94,7 @@ SyntheticPair boxesBeforeWall(int seed, bool isBare)
     return pair;
 }
 
-TEST(HDPStereo_DisparityPrior, a_bare_wall)
+TEST(HDPStereo_SlowDisparityPrior, a_bare_wall)
 {
     const Mat all(Size(320, 200), CV_8U, Scalar(255));
     for (const System& preset : presetsWithPrior)

@@ -137,7 +137,7 @@ private:
     {
         const std::vector<size_t> all = squaresAround(index);
         const auto agreeing = std::count_if(all.begin(), all.end(), [&](size_t i) { return agrees_[i]; });
-        return 5 * agreeing >= 2 * (int)all.size() || (isMostlyRight() && meanExcess(index) < 2.5);
+        return 5 * agreeing >= 2 * (int)all.size() || (isMostlyRight() && meanExcess(index) < 2.2);
     }
 
     bool isMostlyRight() const

@@ -31,7 +31,7 @@ HDP_TUNABLE(double, enoughWeight, 0.25, "weight of points",
             "around, from which half of the contradiction is allowed; in proportion below: far points know less of "
             "small things");
 HDP_TUNABLE(
-    double, indifference, 2.5, "bits",
+    double, indifference, 2.2, "bits",
     "the same where few points agree with the winners, as on bare walls, whose winners are noise: more follows errors");
 HDP_TUNABLE(double, mostContradicted, 0.25, "times the points that agree",
             "of a prior that is believed on such walls: more believes that of another scene, less misses bare scenes");
