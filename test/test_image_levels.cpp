@@ -219,39 +219,53 @@ double doubledBelow(double knee, double level)
     return knee >= 1 ? 1 : 1 - (1 - level) * (1 - knee) / (1 - knee / 2);
 }
 
+//! By how much an expected level is above one that is rounded down, in the mean and at most
+struct Rounding
+{
+    double rest, tolerance;
+};
+
+//! What random pixels become, whose exact levels are known: bytes of their channels, and grey levels in quarters
+template <typename Expected>
+void expectLevels(RNG& rng, int type, const hdp::LevelScale& scale, const Expected& expected, const Rounding& ofBytes,
+                  const Rounding& ofGrey)
+{
+    SCOPED_TRACE(testing::Message() << "type " << type << ", brightness " << scale.brightness);
+    const int colors = std::min(CV_MAT_CN(type), 3);
+    const Mat image = randomImage(rng, Size(37, 9), type, type == CV_16UC1 ? 4096 : 256);
+    Mat buffer, grey;
+    const Mat bytes = hdp::byteLevels(image, scale, buffer);
+    ASSERT_EQ(colors, bytes.channels());
+    hdp::greyLevels(image, scale, grey);
+    Mat_<double> exact;
+    if (type == CV_16UC1)
+        image.convertTo(exact, CV_64F, 1. / 16);
+    else
+        exact = oracle::exactGrey(image);
+    for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+        {
+            for (int i = 0; i < colors; ++i)
+            {
+                const double level = type == CV_16UC1 ? exact(y, x) : image.ptr(y)[x * image.channels() + i];
+                ASSERT_NEAR(expected(level), bytes.ptr(y)[x * colors + i] + ofBytes.rest, ofBytes.tolerance);
+            }
+            ASSERT_NEAR(4 * expected(exact(y, x)), grey.at<ushort>(y, x) + ofGrey.rest, ofGrey.tolerance);
+        }
+}
+
 TEST(HDPStereo_ImageLevels, of_dark_images)
 {
     RNG rng(54);
     for (int type : { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 })
         for (double brightness : { 1., 1.015625, 1.5, 1.984375, 2., 2.25, 3.75, 4. })
         {
-            SCOPED_TRACE(testing::Message() << "type " << type << ", brightness " << brightness);
             const auto expected = [&](double level) { // of 256
                 const double once = doubledBelow(std::min(brightness - 1, 1.), level / 256);
                 return std::min(256 * doubledBelow(std::max(brightness / 2 - 1, 0.), once), 255.75);
             };
-            const int colors = std::min(CV_MAT_CN(type), 3);
-            const Mat image = randomImage(rng, Size(37, 9), type, type == CV_16UC1 ? 4096 : 256);
-            const int bits = type == CV_16UC1 ? 12 : 8;
-            Mat buffer, grey;
-            const Mat bytes = hdp::byteLevels(image, hdp::LevelScale(bits, brightness), buffer);
-            ASSERT_EQ(colors, bytes.channels());
-            hdp::greyLevels(image, hdp::LevelScale(bits, brightness), grey);
-            Mat_<double> exact;
-            if (type == CV_16UC1)
-                image.convertTo(exact, CV_64F, 1. / 16);
-            else
-                exact = oracle::exactGrey(image);
-            for (int y = 0; y < image.rows; ++y)
-                for (int x = 0; x < image.cols; ++x)
-                {
-                    for (int i = 0; i < colors; ++i)
-                    {
-                        const double level = type == CV_16UC1 ? exact(y, x) : image.ptr(y)[x * image.channels() + i];
-                        ASSERT_NEAR(expected(level), bytes.ptr(y)[x * colors + i] + 0.625, 0.63);
-                    }
-                    ASSERT_NEAR(4 * expected(exact(y, x)), grey.at<ushort>(y, x) + (type == CV_16UC1 ? 1. : 0.5), 1.01);
-                }
+            const hdp::LevelScale scale(type == CV_16UC1 ? 12 : 8, brightness);
+            expectLevels(rng, type, scale, expected, { 0.625, 0.63 }, { type == CV_16UC1 ? 1. : 0.5, 1.01 });
         }
 }
 
@@ -262,36 +276,16 @@ TEST(HDPStereo_ImageLevels, of_low_contrast)
     for (int type : { CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1 })
         for (double brightness : { 1., 2.25 })
         {
-            SCOPED_TRACE(testing::Message() << "type " << type << ", brightness " << brightness);
             hdp::LevelScale scale(type == CV_16UC1 ? 12 : 8, brightness);
             scale.black = 90 * 256;
             scale.white = 154 * 256;
-            const int colors = std::min(CV_MAT_CN(type), 3);
-            const Mat image = randomImage(rng, Size(37, 9), type, type == CV_16UC1 ? 4096 : 256);
             const auto expected = [&](double level) { // of 256
                 double stretched = std::min(std::max((level - 90) / 64, 0.), 1.);
                 if (brightness > 1)
                     stretched = doubledBelow(brightness / 2 - 1, doubledBelow(1, stretched));
                 return std::min(256 * stretched, 255.75);
             };
-            Mat buffer, grey;
-            const Mat bytes = hdp::byteLevels(image, scale, buffer);
-            hdp::greyLevels(image, scale, grey);
-            Mat_<double> exact;
-            if (type == CV_16UC1)
-                image.convertTo(exact, CV_64F, 1. / 16);
-            else
-                exact = oracle::exactGrey(image);
-            for (int y = 0; y < image.rows; ++y)
-                for (int x = 0; x < image.cols; ++x)
-                {
-                    for (int i = 0; i < colors; ++i)
-                    {
-                        const double level = type == CV_16UC1 ? exact(y, x) : image.ptr(y)[x * image.channels() + i];
-                        ASSERT_NEAR(expected(level), bytes.ptr(y)[x * colors + i] + 0.5, 0.51);
-                    }
-                    ASSERT_NEAR(4 * expected(exact(y, x)), grey.at<ushort>(y, x) + 0.5, 1.1);
-                }
+            expectLevels(rng, type, scale, expected, { 0.5, 0.51 }, { 0.5, 1.1 });
         }
 }
 

@@ -9,7 +9,6 @@
 #include "../pair/image_levels.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <cfloat>
 #include <cmath>
 #include <fstream>

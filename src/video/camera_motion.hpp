@@ -24,8 +24,8 @@ struct CameraMotion
 //! Moves points to where a motion in their pixels takes them; those that leave the image are nowhere.
 CV_EXPORTS void movePoints(const CameraMotion& motion, Size size, std::vector<TrackedPoint>& points);
 
-//! Fits a motion to most of the points, at most tolerance pixels from a first guess, more than 0.25; others, as on
-//! things that move by themselves, lose their weight. None if most are where they were, or if there are less than minPoints.
+//! Fits a motion to most of the points, at most tolerance pixels, more than 0.25, from a first guess; others, as on
+//! things that move by themselves, lose their weight. None if most are where they were, or of less than minPoints.
 CV_EXPORTS CameraMotion fitMotion(const std::vector<TrackedPoint>& points, Size size, double tolerance);
 
 //! The motion in pixels of an image that is scale times as large

@@ -51,7 +51,7 @@ struct LevelLine
 };
 
 //! Of levels between the ends of this frame, in those of the last one; brightened levels are on no line
-LevelLine toEnds(const LevelScale& before, const LevelScale& now)
+LevelLine lineOfEnds(const LevelScale& before, const LevelScale& now)
 {
     const double levelsOfAll = 256; // from black to white
     if (now.brightness != 1 || before.brightness != 1)
@@ -62,21 +62,21 @@ LevelLine toEnds(const LevelScale& before, const LevelScale& now)
 /** The same where the exposure has changed as well: if mean and deviation are not about the same between the same ends,
 the line that makes them so, unless the ends are others and frames differ more by it: something dark or bright came,
 then. Levels are only compared, so they need not be exact. */
-LevelLine toExposure(const Mat& before, const Mat& now, const LevelLine& toEnds)
+LevelLine lineOfExposure(const Mat& before, const Mat& now, const LevelLine& ends)
 {
     Scalar meanBefore, deviationBefore, mean, deviation;
     meanStdDev(before, meanBefore, deviationBefore);
     meanStdDev(now, mean, deviation);
-    const double exposure = deviationBefore[0] / std::max(toEnds.gain * deviation[0], 1.);
-    if (std::abs(exposure - 1) < sameGain && std::abs(meanBefore[0] - toEnds.gain * mean[0] - toEnds.offset) < sameMean)
-        return toEnds;
-    const LevelLine exposed = { toEnds.gain * exposure, meanBefore[0] - toEnds.gain * exposure * mean[0] };
+    const double exposure = deviationBefore[0] / std::max(ends.gain * deviation[0], 1.);
+    if (std::abs(exposure - 1) < sameGain && std::abs(meanBefore[0] - ends.gain * mean[0] - ends.offset) < sameMean)
+        return ends;
+    const LevelLine exposed = { ends.gain * exposure, meanBefore[0] - ends.gain * exposure * mean[0] };
     const auto difference = [&](const LevelLine& line) {
         Mat changed;
         now.convertTo(changed, CV_8U, line.gain, line.offset);
         return norm(changed, before, NORM_L1);
     };
-    return toEnds.isSame() || difference(exposed) < difference(toEnds) ? exposed : toEnds;
+    return ends.isSame() || difference(exposed) < difference(ends) ? exposed : ends;
 }
 
 //! A pyramid in other levels; itself if these are the same
@@ -220,7 +220,8 @@ void predictFrame(const Mat& left, const LevelScale& levels, const FrameKey& key
     buildPyramid({ p.grey[0] }, trackingLevels(scratch.halved.size()), p.grey);
     if (last.isEmpty() || last.disparity.size() != left.size() || !(last.key == key))
         return;
-    const LevelLine ends = toEnds(last.levels, levels), exposure = toExposure(last.grey.back(), p.grey.back(), ends);
+    const LevelLine ends = lineOfEnds(last.levels, levels),
+                    exposure = lineOfExposure(last.grey.back(), p.grey.back(), ends);
     const CameraMotion motion = findMotion(last, relevelled(p.grey, exposure, scratch.exposed), scratch.points);
     if (motion.error > noMotion * cell)
         return;

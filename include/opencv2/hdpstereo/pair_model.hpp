@@ -55,8 +55,8 @@ struct CV_EXPORTS_W_SIMPLE PairModel
 
     /** @brief Returns the model for images that this one's are a reduction of, by means of squares of pixels.
 
-    For images that are too large to be matched at once: rows and light are found in the reduced pair. Its black and
-    white, too: whose finest texture alone is dark and bright gets more contrast than the larger pair has room for.
+    For images that are too large to be matched at once: rows and light are found in the reduced pair, and black and
+    white, beyond which levels are cut off. Where only the finest texture is dark or bright, set these two yourself.
     @param times How often the images were halved, 0..15; minDisparity and numDisparities, too.
     @param width Of the larger images: this model's times 2^times, or up to 2^times - 1 more.
     @param height Of the larger images, likewise.
