@@ -128,8 +128,8 @@ if(HDPSTEREO_TOOLS)
     file(GLOB tools_test_sources CONFIGURE_DEPENDS tools/test/test_*.cpp)
     add_suites(opencv_test_hdpstereo_tools tools "" ${tools_test_sources})
   endif()
-  # The longest one under a sanitizer, and on one core for most of it: it begins first.
-  set_tests_properties(HDPStereo_Programs PROPERTIES COST 1)
+  # The longest ones under a sanitizer, and on one core for most of it: they begin first.
+  set_tests_properties(HDPStereo_Programs HDPStereo_Tiles PROPERTIES COST 1)
 endif()
 if(HDPSTEREO_PRELOAD)
   file(GLOB preload_test_sources CONFIGURE_DEPENDS preload/test/test_*.cpp)

@@ -117,7 +117,7 @@ TEST(HDPStereo_SlowDisparityPrior, a_bare_wall)
     }
 }
 
-TEST(HDPStereo_DisparityPrior, of_a_scene_to_which_boxes_were_added)
+TEST(HDPStereo_SlowDisparityPrior, of_a_scene_to_which_boxes_were_added)
 {
     const Mat all(Size(320, 200), CV_8U, Scalar(255));
     for (const System& preset : presetsWithPrior)

@@ -193,7 +193,7 @@ TEST(HDPStereo_Masks, nothing_has_data)
 }
 
 //! Beside masks maps are nearly as good as without them, where both images have data.
-TEST(HDPStereo_Masks, surfaces_go_on_beside_masks)
+TEST(HDPStereo_SlowMasks, surfaces_go_on_beside_masks)
 {
     Mat leftMask(160, 240, CV_8UC1, Scalar(255));
     cv::circle(leftMask, Point(140, 60), 25, Scalar(0), -1); // the same place in both, as what the cameras carry

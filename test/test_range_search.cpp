@@ -110,7 +110,7 @@ TEST(HDPStereo_SlowRangeSearch, all_presets_and_threads)
 }
 
 //! By more than corners are matched over
-TEST(HDPStereo_RangeSearch, rows_are_off)
+TEST(HDPStereo_SlowRangeSearch, rows_are_off)
 {
     for (const int rows : { 12, -16, -20 })
     {
@@ -155,7 +155,7 @@ TEST(HDPStereo_RangeSearch, fine_texture_and_small_images)
 }
 
 //! Lower than a cell of the corners' grid would be
-TEST(HDPStereo_RangeSearch, long_and_low_images)
+TEST(HDPStereo_SlowRangeSearch, long_and_low_images)
 {
     RNG rng(6);
     for (const Size& size : { Size(6000, 22), Size(2000, 26), Size(60, 3000) })
@@ -335,7 +335,7 @@ TEST(HDPStereo_RangeSearch, goes_on_where_disparities_end_with_what_was_searched
 }
 
 //! Its corners are few, and none of those of the wall is near its disparity.
-TEST(HDPStereo_RangeSearch, finds_a_bar_before_a_wall)
+TEST(HDPStereo_SlowRangeSearch, finds_a_bar_before_a_wall)
 {
     const Size size(640, 480);
     for (const int width : { 8, 16, 32 })

@@ -449,7 +449,7 @@ TEST(HDPStereo_RowAlignment, limit)
 
 //! The model is about the right image's centre, whatever columns are added.
 //! By more than the search for corners sees at once
-TEST(HDPStereo_RowAlignment, rows_far_away)
+TEST(HDPStereo_SlowRowAlignment, rows_far_away)
 {
     const SyntheticPair pair = makeSyntheticPair(Size(640, 480), 48, 4);
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 48);

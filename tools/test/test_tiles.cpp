@@ -79,7 +79,7 @@ Mat greyFloats(const Mat& image)
 }
 
 //! Tiles that know their place have no seams, whatever the file is read by.
-TEST(HDPStereo_Tiles, make_the_map_of_the_whole)
+TEST(HDPStereo_SlowTiles, make_the_map_of_the_whole)
 {
     const DatasetFolder folder;
     const SyntheticPair pair = makeSlantedPlane(Size(1000, 600), 32, 9);
