@@ -5,13 +5,13 @@
 #include "layer_matching.hpp"
 
 #include "base/units.hpp"
-#include "forest/disparity_prediction.hpp"
 #include "forest/repeated_surfaces.hpp"
 #include "forest/tree_planes.hpp"
 #include "pair/disparity_ranges.hpp"
 #include "map/left_right_check.hpp"
 #include "map/map_filters.hpp"
 #include "map/occlusion_filling.hpp"
+#include "paper/disparity_prediction.hpp"
 #include "paper/nonlocal_refinement.hpp"
 #include "video/temporal_prior.hpp"
 
@@ -70,7 +70,7 @@ private:
                 agrees = aggregateTreeMeans();
             else
                 aggregateForest(shared_.forest, own_.cost(plan_.cost), plan_.trees.gamma, plan_.hasFractions,
-                                shared_.aggregation, result_.winners);
+                                shared_.sums, result_.winners);
         });
         if (agrees)
             finishWinners();
@@ -116,7 +116,7 @@ private:
                              trees.margin, shared_.intervals);
             assignIntervals(in_.upper->disparity, size, shared_.intervals, own_.pixelIntv);
         }
-        if (in_.pair.hasRanges)
+        if (in_.pair.hasRanges && plan_.method == TREE_SUMS)
             intersectIntervals(candidateIntervals(), own_.pixelIntv);
     }
 
@@ -144,7 +144,8 @@ private:
     {
         const DisparityForest& forest = shared_.forest;
         CostVolume& volume = shared_.volume;
-        aggregateMeans(forest, TwoLayerCost(own_.census, in_.below), plan_.trees.gamma, shared_.aggregation, volume);
+        aggregateMeans(forest, TwoLayerCost(own_.census, in_.below), plan_.numDisparities, plan_.trees.gamma,
+                       shared_.means, volume);
         excludeBeyondRanges();
         if (plan_.checksLastFrame)
         {
@@ -154,12 +155,9 @@ private:
         }
         if (plan_.prefersLastFrame)
             preferPredicted(shared_.predicted, volume);
-        const bool hasPlanes = plan_.isTop && volume.isUniform; // with ranges, trees may have other candidates each
-        if (hasPlanes)
-            preferLargestSurfaces(own_.census, volume);
+        preferLargestSurfaces(own_.census, volume);
         scanVolume(forest.weights);
-        if (hasPlanes)
-            takeTreePlanes(forest, volume, result_.winners);
+        takeTreePlanes(forest, volume, result_.winners);
         return true;
     }
 
@@ -303,7 +301,7 @@ private:
     {
         findStable(result_.winners, own_.stable);
         refineNonLocal(shared_.forest, result_.winners, own_.stable, plan_.trees.refinementGamma, plan_.hasFractions,
-                       shared_.aggregation, own_.refined);
+                       shared_.sums, own_.refined);
         swap(own_.refined, result_.winners);
     }
 

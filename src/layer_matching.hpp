@@ -5,8 +5,9 @@
 #define OPENCV_HDPSTEREO_LAYER_MATCHING_HPP
 
 #include "base/stage_clock.hpp"
-#include "forest/forest_aggregation.hpp"
+#include "forest/tree_means.hpp"
 #include "paper/support_points.hpp"
+#include "paper/tree_sums.hpp"
 #include "plan/pair_plan.hpp"
 #include "scanlines/candidate_windows.hpp"
 #include "scanlines/smoothness_weights.hpp"
@@ -67,7 +68,8 @@ struct SharedScratch
     Mat supportPoints;
     std::vector<DisparityInterval> intervals;
     ForestBuffers forestBuffers;
-    AggregationBuffers aggregation;
+    SumBuffers sums;
+    MeanBuffers means;
     ScanlineBuffers scanlines;
     CostVolume volume;
     std::vector<short> volumeSums;

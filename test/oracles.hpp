@@ -12,7 +12,7 @@
 #include "../src/paper/color_gradient_cost.hpp"
 #include "../src/map/disparity_confidence.hpp"
 #include "../src/forest/disparity_forest.hpp"
-#include "../src/forest/disparity_prediction.hpp"
+#include "../src/paper/disparity_prediction.hpp"
 #include "../src/scanlines/scanline_aggregation.hpp"
 #include "../src/scanlines/range_scanlines.hpp"
 #include "../src/scanlines/volume_scanlines.hpp"
@@ -838,16 +838,11 @@ private:
 };
 
 //! L(p, d) of a direction in a volume of costs, see aggregateVolume(): from the pixel that is step away. costs: C, rows
-//! pixels, columns disparities, those of the candidates are used; weights: of the edges; intervals: CV_16UC2, the
-//! candidates.
-inline Mat_<int> scanlineCosts(const Mat_<uchar>& costs, const Mat& weights, const Mat& intervals,
-                               const hdp::VolumePenalties& penalties, Point step)
+//! pixels, columns disparities; weights: of the edges.
+inline Mat_<int> scanlineCosts(const Mat_<uchar>& costs, const Mat& weights, const hdp::VolumePenalties& penalties,
+                               Point step)
 {
     const Size size = weights.size();
-    const auto isCandidate = [&](const Point& pixel, int d) {
-        const Vec2w interval = intervals.at<Vec2w>(pixel);
-        return interval[0] <= d && d <= interval[1];
-    };
     Mat_<int> all(costs.size());
     for (int i = 0; i < size.area(); ++i)
     {
@@ -858,21 +853,16 @@ inline Mat_<int> scanlineCosts(const Mat_<uchar>& costs, const Mat& weights, con
         if (!Rect(Point(), size).contains(before))
             continue;
         const int* of = all[before.y * size.width + before.x];
-        int least = INT_MAX;
-        for (int d = 0; d < costs.cols; ++d)
-            if (isCandidate(before, d))
-                least = std::min(least, of[d]);
-        if (least == INT_MAX)
-            continue;
+        const int least = *std::min_element(of, of + costs.cols);
         const Point edge(std::min(here.x, before.x), std::min(here.y, before.y));
         const int w = weights.at<Vec2b>(edge)[step.x == 0];
         const int large = std::max(penalties.small, cvRound(penalties.large * std::exp(-w / penalties.gamma)));
         for (int d = 0; d < costs.cols; ++d)
         {
-            int best = least + large;
-            for (int other : { d - 1, d, d + 1 })
-                if (isCandidate(before, other))
-                    best = std::min(best, of[other] + (other == d ? 0 : penalties.small));
+            int best = std::min(least + large, of[d]);
+            for (int other : { d - 1, d + 1 })
+                if (0 <= other && other < costs.cols)
+                    best = std::min(best, of[other] + penalties.small);
             all(p, d) += best - least;
         }
     }
@@ -892,32 +882,27 @@ inline double tipOffset(const int* sum, int count, int k, int unit)
     return fraction(left, right, 8 * 4 * unit, 14 * 4 * unit);
 }
 
-/** aggregateVolume(), CV_16UC1. own: CV_16UC2, those of the candidates that winners' ends are taken of, if not of
-intervals. */
-inline Mat volumeDisparity(const Mat_<uchar>& costs, const Mat& weights, const Mat& intervals,
-                           const hdp::VolumePenalties& penalties, const Mat& own = Mat())
+//! aggregateVolume(), CV_16UC1. own: CV_16UC2, those of the candidates that winners' ends are taken of, if not of all
+inline Mat volumeDisparity(const Mat_<uchar>& costs, const Mat& weights, const hdp::VolumePenalties& penalties,
+                           const Mat& own = Mat())
 {
     Mat_<int> sums(costs.size(), 0);
     for (const Point& step : { Point(-1, 0), Point(1, 0), Point(0, -1), Point(0, 1) })
-        sums += scanlineCosts(costs, weights, intervals, penalties, step);
-    Mat disparity(weights.size(), CV_16UC1, Scalar(0));
+        sums += scanlineCosts(costs, weights, penalties, step);
+    Mat disparity(weights.size(), CV_16UC1);
     for (int p = 0; p < sums.rows; ++p)
     {
-        const Point pixel(p % disparity.cols, p / disparity.cols);
-        const int first = intervals.at<Vec2w>(pixel)[0], count = intervals.at<Vec2w>(pixel)[1] - first + 1;
-        if (count <= 0)
-            continue;
-        const int* sum = sums[p] + first;
-        const int winner = (int)(std::min_element(sum, sum + count) - sums[p]); // the first one
-        Range ends(first, first + count);
+        const int* sum = sums[p];
+        const int winner = (int)(std::min_element(sum, sum + sums.cols) - sum); // the first one
+        Range ends(0, sums.cols);
         if (!own.empty())
         {
-            const Range ofPixel(own.at<Vec2w>(pixel)[0], own.at<Vec2w>(pixel)[1] + 1);
-            const Range common = ends & ofPixel;
+            const Vec2w ofPixel = own.ptr<Vec2w>()[p];
+            const Range common = ends & Range(ofPixel[0], ofPixel[1] + 1);
             ends = common.start <= winner && winner < common.end ? common : ends;
         }
-        const double offset = tipOffset(sums[p] + ends.start, ends.size(), winner - ends.start, 8);
-        disparity.at<ushort>(pixel) = (ushort)(16 * winner + cvRound(16 * offset));
+        const double offset = tipOffset(sum + ends.start, ends.size(), winner - ends.start, 8);
+        disparity.ptr<ushort>()[p] = (ushort)(16 * winner + cvRound(16 * offset));
     }
     return disparity;
 }

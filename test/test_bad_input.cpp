@@ -242,9 +242,9 @@ TEST(HDPStereo_BadInput, scanlines_without_census)
     const Ptr<HDPTreeMatcher> matcher = createSystem(presetFast, 8);
     change(*matcher, [&](Params& p) { p.matchingCost = HDPTreeMatcher::COST_COLOR_GRADIENT; });
     expectRejected([&] { match(*matcher, image, image); },
-                   "matchingCost must be COST_CENSUS for AGGREGATION_SCANLINES");
+                   "matchingCost must be COST_CENSUS for an aggregation by scanlines");
     change(*matcher, [&](Params& p) { p.aggregation = HDPTreeMatcher::AGGREGATION_TREE_SCANLINES; });
-    expectRejected([&] { match(*matcher, image, image); }, "for AGGREGATION_TREE_SCANLINES");
+    expectRejected([&] { match(*matcher, image, image); }, "for an aggregation by scanlines");
     change(*matcher, [&](Params& p) { p.aggregation = HDPTreeMatcher::AGGREGATION_TREES; });
     expectRejected([&] { match(*matcher, image, image); }, "fillOcclusions");
     change(*matcher, [&](Params& p) { p.fillOcclusions = false; });

@@ -4,7 +4,8 @@
 #include "test_precomp.hpp"
 #include "helpers.hpp"
 #include "oracles.hpp"
-#include "../src/forest/forest_aggregation.hpp"
+#include "../src/forest/tree_means.hpp"
+#include "../src/paper/tree_sums.hpp"
 
 namespace opencv_test { namespace {
 
@@ -94,7 +95,7 @@ void expectExplicitSums(const Layer& layer, double gamma)
 {
     SCOPED_TRACE(testing::Message() << layer.left.size() << ", trees " << layer.forest.trees.size() << ", gamma "
                                     << gamma);
-    hdp::AggregationBuffers buffers;
+    hdp::SumBuffers buffers;
     Mat disparity(layer.left.size(), CV_16U);
     const int pixels = (int)disparity.total();
     for (int count : { 1, 2, 3, 4, 5, 7, 8, 9, 16, 17, 24 })
@@ -193,7 +194,7 @@ bool isWinner(const std::vector<double>& sums, int best, int disparity, bool sub
 }
 
 //! Every pixel's disparity, or that of every n-th pixel, is the winner of the explicit sums.
-void expectWinners(const Layer& layer, double gamma, bool subpixel, hdp::AggregationBuffers& buffers, int step = 1)
+void expectWinners(const Layer& layer, double gamma, bool subpixel, hdp::SumBuffers& buffers, int step = 1)
 {
     SCOPED_TRACE(testing::Message() << "gamma " << gamma << (subpixel ? ", sub-pixel" : ""));
     const int scale = hdp::subpixelScale;
@@ -241,48 +242,36 @@ struct CensusLayer : Layer
     }
 };
 
-//! Each mean of the volume is that of the formula, and near that of the explicit sums; each pixel has a place of its own.
-void expectMeans(const CensusLayer& layer, double gamma, hdp::AggregationBuffers& buffers, int step = 1)
+//! Each mean of the volume is that of the formula, and near that of the explicit sums; the pixels of each tree are told.
+void expectMeans(const CensusLayer& layer, int disparities, double gamma, hdp::MeanBuffers& buffers, int step = 1)
 {
     hdp::CostVolume volume;
     const hdp::TwoLayerCost cost(layer.census, nullptr);
-    hdp::aggregateMeans(layer.forest, cost, gamma, buffers, volume);
+    hdp::aggregateMeans(layer.forest, cost, disparities, gamma, buffers, volume);
     ASSERT_EQ(layer.left.size(), volume.size);
-    std::vector<char> isTaken(volume.chunks);
+    ASSERT_EQ(disparities, volume.numDisparities);
+    ASSERT_LE(volume.total(), volume.costs.size());
     hdp::TreeWalk walk;
-    for (const hdp::DisparityTree& tree : layer.forest.trees)
+    for (size_t t = 0; t < layer.forest.trees.size(); ++t)
     {
+        const hdp::DisparityTree& tree = layer.forest.trees[t];
         hdp::walkTree(layer.forest, tree, walk);
-        const hdp::DisparityInterval interval = tree.interval;
-        const Mat_<int> expected =
-            oracle::treeMeans(walk, tree.size, layer.costTable, gamma, interval.first, interval.size());
+        const Mat_<int> expected = oracle::treeMeans(walk, tree.size, layer.costTable, gamma, 0, disparities);
         for (int i = 0; i < tree.size; ++i)
         {
             const int p = walk.pixels[i];
-            const hdp::CostVolume::Candidates own = volume.of(p);
-            ASSERT_EQ(interval.empty(), own.interval.empty()) << "pixel " << p;
-            if (interval.empty())
-                continue;
-            ASSERT_EQ(interval.first, own.interval.first) << "pixel " << p;
-            ASSERT_EQ(interval.last, own.interval.last) << "pixel " << p;
-            ASSERT_LT(interval.last, volume.numDisparities);
-            for (int chunk = 0; chunk < own.chunks(); ++chunk)
-            {
-                ASSERT_LT(own.firstChunk + chunk, volume.chunks);
-                ASSERT_FALSE(isTaken[own.firstChunk + chunk]) << "pixel " << p;
-                isTaken[own.firstChunk + chunk] = true;
-            }
-            const uchar* means = volume.costs.data() + own.start();
-            for (int k = 0; k < interval.size(); ++k)
+            ASSERT_EQ(p, volume.treePixels[volume.treeStarts[t] + i]);
+            const uchar* means = &volume.costs[volume.start(p)];
+            for (int k = 0; k < disparities; ++k)
                 ASSERT_EQ(expected(i, k), means[k]) << "pixel " << p << ", candidate " << k;
             if (p % step != 0)
                 continue;
-            const std::vector<double> sums = oracle::aggregated(layer.expectedForest.neighbours, p, gamma,
-                                                                layer.costTable, interval.first, interval.last);
+            const std::vector<double> sums =
+                oracle::aggregated(layer.expectedForest.neighbours, p, gamma, layer.costTable, 0, disparities - 1);
             double similarity = 0;
             for (const std::pair<int, double>& other : oracle::similarities(layer.expectedForest.neighbours, p, gamma))
                 similarity += other.second;
-            for (int k = 0; k < interval.size(); ++k)
+            for (int k = 0; k < disparities; ++k)
                 ASSERT_NEAR(hdp::CostVolume::scale * sums[k] / similarity, means[k], 0.7)
                     << "pixel " << p << ", candidate " << k;
         }
@@ -292,39 +281,38 @@ void expectMeans(const CensusLayer& layer, double gamma, hdp::AggregationBuffers
 TEST(HDPStereo_ForestAggregation, means_over_trees)
 {
     RNG rng(27);
-    hdp::AggregationBuffers buffers;
+    hdp::MeanBuffers buffers;
     for (const Size& size : { Size(1, 1), Size(1, 40), Size(40, 1), Size(30, 24) })
         for (double gamma : { 1e-300, 4., 25.5, 1e6 })
-        {
-            SCOPED_TRACE(testing::Message() << size << ", gamma " << gamma);
-            const Mat fullRange(size, CV_16UC2, Scalar(0, numDisparities - 1));
-            expectMeans(CensusLayer(rng, size, *createSegmentTree(20), fullRange, 0.95, false), gamma, buffers);
-            expectMeans(CensusLayer(rng, size, *createMinimumSpanningTree(), stripedIntervals(size), 0.6, false), gamma,
-                        buffers);
-        }
+            for (const Ptr<TreeStrategy>& strategy : { createSegmentTree(20), createMinimumSpanningTree() })
+            {
+                SCOPED_TRACE(testing::Message() << size << ", gamma " << gamma << ", " << strategy->getDefaultName());
+                const Mat fullRange(size, CV_16UC2, Scalar(0, numDisparities - 1));
+                expectMeans(CensusLayer(rng, size, *strategy, fullRange, 0.95, false), numDisparities, gamma, buffers);
+            }
 }
 
 TEST(HDPStereo_ForestAggregation, means_of_any_number_of_disparities)
 {
     RNG rng(28);
-    hdp::AggregationBuffers buffers;
+    hdp::MeanBuffers buffers;
     const Size size(14, 11);
     for (int disparities : { 1, 2, 4, 5, 15, 16, 17, 32, 33, 41, 70 })
     {
         const Mat fullRange(size, CV_16UC2, Scalar(0, disparities - 1));
         const CensusLayer layer(rng, size, *createMinimumSpanningTree(), fullRange, 0.95, true, disparities);
-        expectMeans(layer, 5, buffers);
+        expectMeans(layer, disparities, 5, buffers);
     }
     const Size large(210, 160); // a tree whose candidates are in groups side by side
     const Mat fullRange(large, CV_16UC2, Scalar(0, 149));
-    expectMeans(CensusLayer(rng, large, *createMinimumSpanningTree(), fullRange, 0.95, true, 150), 4, buffers,
+    expectMeans(CensusLayer(rng, large, *createMinimumSpanningTree(), fullRange, 0.95, true, 150), 150, 4, buffers,
                 large.area() / 12 | 1);
 }
 
 TEST(HDPStereo_ForestAggregation, winner_of_explicit_sums)
 {
     RNG rng(20);
-    hdp::AggregationBuffers buffers; // reused
+    hdp::SumBuffers buffers; // reused
     for (const Size& size : { Size(1, 1), Size(1, 40), Size(40, 1), Size(30, 24) })
         for (const Ptr<TreeStrategy>& strategy :
              { createMinimumSpanningTree(), createSegmentTree(20), createRandomTree() })
@@ -342,7 +330,7 @@ TEST(HDPStereo_ForestAggregation, winner_of_explicit_sums)
 TEST(HDPStereo_ForestAggregation, winner_among_any_number_of_candidates)
 {
     RNG rng(21);
-    hdp::AggregationBuffers buffers;
+    hdp::SumBuffers buffers;
     const Size size(14, 11);
     for (bool subpixel : { false, true })
         for (int first : { 0, 2 })
@@ -360,7 +348,7 @@ TEST(HDPStereo_ForestAggregation, winner_among_any_number_of_candidates)
 TEST(HDPStereo_ForestAggregation, winner_of_several_runs)
 {
     RNG rng(26);
-    hdp::AggregationBuffers buffers;
+    hdp::SumBuffers buffers;
     const int candidates = 150;
     for (const Size& size : { Size(30, 12), Size(210, 160) })
     {
@@ -386,7 +374,7 @@ TEST(HDPStereo_ForestAggregation, lowest_disparity_wins_a_tie)
             hdp::buildForest(left, pixelIntv, *createMinimumSpanningTree(), 0.95, true, forestBuffers, forest);
             hdp::ColorGradientCost cost;
             cost.prepare(left, right, numDisparities, costParams);
-            hdp::AggregationBuffers buffers;
+            hdp::SumBuffers buffers;
             Mat disparity;
             for (bool subpixel : { false, true })
             {

@@ -60,7 +60,7 @@ Mat randomDisparity(RNG& rng, Size size, int count, bool subpixel)
 
 Mat refine(const Layer& layer, const Mat& disparity, const Mat& stable, double gamma, bool subpixel = true)
 {
-    hdp::AggregationBuffers buffers;
+    hdp::SumBuffers buffers;
     Mat refined;
     hdp::refineNonLocal(layer.forest, disparity, stable, gamma, subpixel, buffers, refined);
     return refined;

@@ -155,7 +155,7 @@ const Row withEffect[] = {
     { "disparityPrior", withTreesBelow, [](MatcherParameters& p) { p.disparityPrior = 1 - p.disparityPrior; } },
     { "intervalMargin", withTreesBelow, [](MatcherParameters& p) { p.intervalMargin = 7; } },
     { "useSubpixel", keep, [](MatcherParameters& p) { p.useSubpixel = !p.useSubpixel; } },
-    { "aggregation", withCensus, [](MatcherParameters& p) { p.aggregation = (p.aggregation + 1) % 3; } },
+    { "aggregation", withCensus, [](MatcherParameters& p) { p.aggregation = 1 - p.aggregation; } },
     { "topAggregation", withScanlines,
       [](MatcherParameters& p) { p.topAggregation = M::AGGREGATION_TREE_SCANLINES - p.topAggregation; } },
     { "topAggregation: scanlines", withScanlines,
@@ -345,21 +345,27 @@ TEST(HDPStereo_Plan, methods_of_the_presets)
     }
 }
 
-//! Between the top layer and the finest one, which has windows
-TEST(HDPStereo_Plan, trees_of_coarse_layers)
+TEST(HDPStereo_Plan, means_of_trees_are_for_the_top_layer)
 {
-    MatcherParameters p = parametersOf(M::PRESET_TREE);
-    p.numDisparities = 256;
-    const PairPlan plan = hdp::plan(p, Size(1280, 960), CV_8UC3);
-    ASSERT_EQ(3u, plan.layers.size());
-    EXPECT_EQ(hdp::TREE_SCANLINES, plan.layers[1].method);
-    EXPECT_EQ(hdp::UPPER_LAYER, plan.layers[1].trees.prior);
-    EXPECT_FALSE(plan.layers[1].seesBelow);
-    EXPECT_TRUE(plan.layers[1].passes.empty());
-    EXPECT_EQ(1u, plan.finest().passes.size());
-    EXPECT_TRUE(plan.finest().restoresThinStructures);
-    p.aggregation = M::AGGREGATION_TREES;
-    EXPECT_EQ(hdp::TREE_SUMS, hdp::plan(p, Size(1280, 960), CV_8UC3).finest().method);
+    for (int numDisparities : { 128, 192, 256 })
+    {
+        MatcherParameters p = parametersOf(M::PRESET_TREE);
+        p.numDisparities = numDisparities;
+        const PairPlan plan = hdp::plan(p, Size(1280, 960), CV_8UC3);
+        EXPECT_EQ(hdp::TREE_SCANLINES, plan.top().method);
+        for (size_t i = 1; i < plan.layers.size(); ++i)
+        {
+            const bool hasFew = !plan.layers[i].isFinest && numDisparities == 192;
+            EXPECT_EQ(hasFew ? hdp::RANGE_SCANLINES : hdp::WINDOW_SCANLINES, plan.layers[i].method) << numDisparities;
+        }
+        const std::string expected = planText(p);
+        p.aggregation = M::AGGREGATION_TREE_SCANLINES; // another name
+        EXPECT_EQ(expected, planText(p));
+        p.topAggregation = M::AGGREGATION_TREES;
+        EXPECT_EQ(expected, planText(p)) << "without effect then";
+        p.aggregation = M::AGGREGATION_TREES;
+        EXPECT_EQ(hdp::TREE_SUMS, hdp::plan(p, Size(1280, 960), CV_8UC3).finest().method);
+    }
 }
 
 //! Between the top layer and the finest one: all candidates while there are few, in halves of a pixel

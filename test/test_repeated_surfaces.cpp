@@ -41,7 +41,7 @@ struct Layer
                     costs(x, y)[background] = lowCost;
     }
 
-    uchar* costs(int x, int y) { return &volume.costs[volume.of(y * size.width + x).start()]; }
+    uchar* costs(int x, int y) { return &volume.costs[volume.start(y * size.width + x)]; }
 
     //! A candidate fits in the panel but for some columns on its left and on its right.
     void fit(int candidate, int left, int right)

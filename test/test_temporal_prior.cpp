@@ -18,15 +18,8 @@ const Size layerSize(64, 48);
 CostVolume flatVolume(Size size)
 {
     CostVolume volume;
-    volume.size = size;
-    volume.numDisparities = candidates;
-    volume.chunks = 2 * size.area();
-    volume.costs.assign(volume.chunks * CostVolume::chunk, (uchar)flatCost);
-    for (int i = 0; i < size.area(); ++i)
-    {
-        const CostVolume::Candidates own = { 2u * i, { 0, candidates - 1 } };
-        volume.candidates.push_back(own);
-    }
+    volume.create(size, candidates, 1);
+    volume.costs.assign(volume.total(), (uchar)flatCost);
     return volume;
 }
 
@@ -70,7 +63,7 @@ void prefer(const MovedVideo& video, bool areMeans, CostVolume& volume)
 
 void expectCosts(const CostVolume& volume, int x, int y, double disparity)
 {
-    const uchar* costs = &volume.costs[volume.candidates[y * volume.size.width + x].start()];
+    const uchar* costs = &volume.costs[volume.start(y * volume.size.width + x)];
     for (int k = 0; k < candidates; ++k)
         EXPECT_EQ(flatCost + (disparity < 0 ? 0 : penalty(disparity, k)), costs[k]) << Point(x, y) << ", " << k;
 }
@@ -143,7 +136,7 @@ TEST(HDPStereo_TemporalPrior, contradicted_frame)
     const auto contradicts = [&](int refused, int rise, bool areBeside) {
         CostVolume volume = flatVolume(layerSize / side);
         for (int i = 0; i < refused; ++i)
-            volume.costs[volume.candidates[i + (areBeside ? 96 : 0)].start() + 3] = (uchar)(flatCost - rise);
+            volume.costs[volume.start(i + (areBeside ? 96 : 0)) + 3] = (uchar)(flatCost - rise);
         Mat predicted;
         predictDisparities(video.last, video.next, side, volume.size, predicted);
         return refusesLastFrame(volume, predicted);
@@ -178,18 +171,16 @@ TEST(HDPStereo_CostVolume, prefer)
 {
     const int largest = 12;
     CostVolume volume = flatVolume(Size(3, 1));
-    const auto costsOf = [&](int pixel) { return &volume.costs[volume.candidates[pixel].start()]; };
-    const DisparityInterval none = { 1, 0 };
-    volume.candidates[1].interval = none;
+    const auto costsOf = [&](int pixel) { return &volume.costs[volume.start(pixel)]; };
     costsOf(2)[0] = 250;
     const std::vector<uchar> before = volume.costs;
-    for (int pixel = 0; pixel < 3; ++pixel)
+    for (int pixel : { 0, 2 })
         preferDisparity(pixel, 7.25, largest, volume);
     for (int k = 0; k < candidates; ++k)
     {
         const int rise = penalty(7.25, k, largest);
         EXPECT_EQ(flatCost + rise, costsOf(0)[k]);
-        EXPECT_EQ(before[2 * CostVolume::chunk + k], costsOf(1)[k]) << "of a pixel without candidates";
+        EXPECT_EQ(before[2 * CostVolume::chunk + k], costsOf(1)[k]) << "of another pixel";
         EXPECT_EQ(std::min(before[4 * CostVolume::chunk + k] + rise, 255), costsOf(2)[k]);
     }
     preferDisparity(0, 1e6, largest, volume); // beyond the candidates, whose costs all rise by as much
@@ -209,11 +200,8 @@ TEST(HDPStereo_CostVolume, prefer_of_many)
     const int many = 9000, largest = 12;
     const float disparity = 8123.25f;
     CostVolume volume;
-    volume.size = Size(1, 1);
-    volume.chunks = CostVolume::chunksOf({ 0, many - 1 });
-    volume.costs.assign(volume.chunks * CostVolume::chunk, (uchar)flatCost);
-    const CostVolume::Candidates own = { 0, { 0, many - 1 } };
-    volume.candidates.push_back(own);
+    volume.create(Size(1, 1), many, 1);
+    volume.costs.assign(volume.total(), (uchar)flatCost);
     preferDisparity(0, disparity, largest, volume);
     for (int k = 0; k < many; ++k)
         ASSERT_EQ(flatCost + penalty(disparity, k, largest), volume.costs[k]) << k;
@@ -222,8 +210,6 @@ TEST(HDPStereo_CostVolume, prefer_of_many)
 TEST(HDPStereo_CostVolume, contradicts)
 {
     CostVolume volume = flatVolume(Size(2, 1));
-    const DisparityInterval none = { 1, 0 };
-    volume.candidates[1].interval = none;
     const int best = 15;
     uchar* const costs = &volume.costs[0];
     costs[best] = (uchar)(flatCost - CostVolume::contradiction);
@@ -234,7 +220,7 @@ TEST(HDPStereo_CostVolume, contradicts)
     EXPECT_TRUE(isContradicted(0, -1e6, volume)) << "beyond the candidates";
     EXPECT_FALSE(isContradicted(0, best - 0.5f, volume)) << "the nearest candidate is the best";
     EXPECT_TRUE(isContradicted(0, best - 0.6f, volume));
-    EXPECT_FALSE(isContradicted(1, 7.25f, volume)) << "a pixel without candidates";
+    EXPECT_FALSE(isContradicted(1, 7.25f, volume)) << "another pixel";
 }
 
 //! In memory that held a larger volume before, too
@@ -256,16 +242,12 @@ TEST(HDPStereo_CostVolume, fill)
             volume.fill(cost, imageSize, count);
             EXPECT_EQ(imageSize, volume.size);
             EXPECT_EQ(count, volume.numDisparities);
-            ASSERT_LE(volume.chunks * CostVolume::chunk, volume.costs.size());
+            ASSERT_LE(volume.total(), volume.costs.size());
             for (int pixel = 0; pixel < imageSize.area(); ++pixel)
             {
-                const CostVolume::Candidates own = volume.of(pixel);
-                ASSERT_EQ(0, own.interval.first);
-                ASSERT_EQ(count, own.interval.size());
-                ASSERT_LE((size_t)own.firstChunk + own.chunks(), volume.chunks);
                 const Point at(pixel % imageSize.width, pixel / imageSize.width);
                 for (int k = 0; k < count; ++k)
-                    ASSERT_EQ(CostVolume::scale * census(at.y, at.x, k), volume.costs[own.start() + k])
+                    ASSERT_EQ(CostVolume::scale * census(at.y, at.x, k), volume.costs[volume.start(pixel) + k])
                         << at << ", " << k;
             }
         }

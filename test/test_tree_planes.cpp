@@ -22,18 +22,18 @@ struct Layer
         hdp::ForestBuffers buffers;
         hdp::buildForest(colors, Mat(colors.size(), CV_16UC2, Scalar(0, candidates - 1)), *createSegmentTree(), 0.6,
                          false, buffers, forest);
-        volume.create(forest);
-        volume.steps = steps;
+        volume.create(colors.size(), candidates, steps);
         hdp::TreeWalk walk;
-        for (size_t t = 0; t < forest.trees.size(); ++t)
+        for (const hdp::DisparityTree& tree : forest.trees)
         {
-            hdp::walkTree(forest, forest.trees[t], walk);
-            volume.place(forest, t, walk.pixels.data());
+            hdp::walkTree(forest, tree, walk);
+            volume.treeStarts.push_back((int)volume.treePixels.size());
+            volume.treePixels.insert(volume.treePixels.end(), walk.pixels.begin(), walk.pixels.begin() + tree.size);
         }
         std::fill(volume.costs.begin(), volume.costs.end(), (uchar)flatCost);
     }
 
-    uchar* costs(int x, int y) { return &volume.costs[volume.of(y * disparity.cols + x).start()]; }
+    uchar* costs(int x, int y) { return &volume.costs[volume.start(y * disparity.cols + x)]; }
 
     //! The disparity of a pixel with so low a cost
     void win(int x, int y, double value, int cost = winnerCost)

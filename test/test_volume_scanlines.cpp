@@ -13,32 +13,7 @@ namespace opencv_test { namespace {
 const int unit = hdp::CostVolume::scale;
 const hdp::VolumePenalties usualPenalties = { 12 * unit, 50 * unit, 20 };
 
-//! The trees are the given groups of pixels; nothing else of the forest counts.
-hdp::CostVolume createVolume(const Mat& intervals)
-{
-    std::map<std::pair<int, int>, std::vector<int>> pixels; // by interval
-    for (int p = 0; p < (int)intervals.total(); ++p)
-    {
-        const Vec2w interval = intervals.at<Vec2w>(p / intervals.cols, p % intervals.cols);
-        pixels[std::make_pair(interval[0], interval[1])].push_back(p);
-    }
-    hdp::DisparityForest forest;
-    forest.links.create(intervals.size(), CV_8U);
-    for (const auto& group : pixels)
-    {
-        const hdp::DisparityInterval interval = { (ushort)group.first.first, (ushort)group.first.second };
-        const hdp::DisparityTree tree = { group.second[0], (int)group.second.size(), interval };
-        forest.trees.push_back(tree);
-    }
-    hdp::CostVolume volume;
-    volume.create(forest);
-    size_t tree = 0;
-    for (const auto& group : pixels)
-        volume.place(forest, tree++, group.second.data());
-    return volume;
-}
-
-//! Rectangles of one interval each: the full range, one candidate, few, none, and so far apart that they do not meet
+//! Rectangles of one interval each: the full range, one candidate, few, and none
 Mat patchyIntervals(RNG& rng, Size size, int numDisparities)
 {
     Mat intervals(size, CV_16UC2, Scalar(0, numDisparities - 1));
@@ -57,35 +32,28 @@ Mat patchyIntervals(RNG& rng, Size size, int numDisparities)
 struct Layer
 {
     Mat_<uchar> costs; // rows pixels, columns disparities
-    Mat weights, intervals;
+    Mat weights;
     hdp::CostVolume volume;
 
     //! Costs below a limit. With a small one there are ties and long flat stretches; every fourth pixel has one
     //! candidate that stands out.
-    Layer(RNG& rng, Size size, int numDisparities, int limit = 256, bool isFull = true)
+    Layer(RNG& rng, Size size, int numDisparities, int limit = 256)
         : costs(randomImage(rng, Size(numDisparities, size.area()), CV_8UC1, limit)),
-          weights(oracle::edgeWeights(patchyImage(rng, size, CV_8UC3))),
-          intervals(isFull ? Mat(size, CV_16UC2, Scalar(0, numDisparities - 1))
-                           : patchyIntervals(rng, size, numDisparities)),
-          volume(createVolume(intervals))
+          weights(oracle::edgeWeights(patchyImage(rng, size, CV_8UC3)))
     {
+        volume.create(size, numDisparities, 1);
         for (int p = 0; p < costs.rows; p += 4)
         {
             costs.row(p).setTo(limit - 1);
             costs(p, rng.uniform(0, numDisparities)) = 0;
         }
         for (int p = 0; p < costs.rows; ++p)
-        {
-            const hdp::CostVolume::Candidates own = volume.of(p);
-            if (!own.interval.empty())
-                std::copy(costs[p] + own.interval.first, costs[p] + own.interval.last + 1,
-                          volume.costs.data() + own.start());
-        }
+            std::copy_n(costs[p], numDisparities, &volume.costs[volume.start(p)]);
     }
 
     Mat expected(const hdp::VolumePenalties& penalties) const
     {
-        return oracle::volumeDisparity(costs, weights, intervals, penalties);
+        return oracle::volumeDisparity(costs, weights, penalties);
     }
 
     Mat aggregate(const hdp::VolumePenalties& penalties, std::vector<short>& buffers) const
@@ -131,20 +99,19 @@ TEST(HDPStereo_VolumeScanlines, excluded_candidates)
 {
     RNG rng(64);
     std::vector<short> buffers;
-    for (bool isFull : { true, false })
-        for (int numDisparities : { 7, 33, 64 })
+    for (int numDisparities : { 7, 33, 64 })
+        for (int repetition = 0; repetition < 3; ++repetition)
         {
-            SCOPED_TRACE(testing::Message() << numDisparities << " disparities, " << isFull);
+            SCOPED_TRACE(testing::Message() << numDisparities << " disparities, " << repetition);
             const Size size(27, 13);
-            Layer layer(rng, size, numDisparities, 40, isFull);
+            Layer layer(rng, size, numDisparities, 40);
             const Mat own = patchyIntervals(rng, size, numDisparities);
             hdp::excludeCandidates(own, layer.volume);
             for (int p = 0; p < size.area(); ++p)
                 for (int d = 0; d < numDisparities; ++d)
                     if (d < own.ptr<Vec2w>()[p][0] || d > own.ptr<Vec2w>()[p][1])
                         layer.costs(p, d) = UCHAR_MAX;
-            const Mat expected =
-                oracle::volumeDisparity(layer.costs, layer.weights, layer.intervals, usualPenalties, own);
+            const Mat expected = oracle::volumeDisparity(layer.costs, layer.weights, usualPenalties, own);
             expectIdentical(expected, layer.aggregate(usualPenalties, buffers));
         }
 }
@@ -153,30 +120,13 @@ TEST(HDPStereo_VolumeScanlines, candidates_of_half_a_pixel)
 {
     RNG rng(63);
     std::vector<short> buffers;
-    for (bool isFull : { true, false })
-    {
-        Layer layer(rng, Size(19, 11), 33, 256, isFull);
-        const Mat ofPixels = layer.expected(usualPenalties);
-        layer.volume.steps = 2;
-        Mat expected(ofPixels.size(), CV_16U);
-        for (int p = 0; p < (int)expected.total(); ++p)
-            expected.ptr<ushort>()[p] = (ushort)(ofPixels.ptr<ushort>()[p] / 2);
-        expectIdentical(expected, layer.aggregate(usualPenalties, buffers));
-    }
-}
-
-TEST(HDPStereo_VolumeScanlines, formula_for_candidates_of_each_pixel)
-{
-    RNG rng(67);
-    std::vector<short> buffers;
-    for (int numDisparities : { 1, 2, 3, 5, 16, 17, 40, 100 })
-        for (int limit : { 3, 256 })
-            for (int i = 0; i < 6; ++i)
-            {
-                SCOPED_TRACE(testing::Message() << numDisparities << " disparities, costs below " << limit);
-                const Layer layer(rng, Size(23 + 20 * i, 19), numDisparities, limit, false);
-                expectIdentical(layer.expected(usualPenalties), layer.aggregate(usualPenalties, buffers));
-            }
+    Layer layer(rng, Size(19, 11), 33);
+    const Mat ofPixels = layer.expected(usualPenalties);
+    layer.volume.steps = 2;
+    Mat expected(ofPixels.size(), CV_16U);
+    for (int p = 0; p < (int)expected.total(); ++p)
+        expected.ptr<ushort>()[p] = (ushort)(ofPixels.ptr<ushort>()[p] / 2);
+    expectIdentical(expected, layer.aggregate(usualPenalties, buffers));
 }
 
 //! Of the largest, sums must not overflow.
@@ -187,7 +137,7 @@ TEST(HDPStereo_VolumeScanlines, any_penalties)
     const int largest = hdp::VolumePenalties::largest;
     for (int numDisparities : { 3, 33 })
     {
-        const Layer layer(rng, Size(43, 38), numDisparities, 256, numDisparities == 3);
+        const Layer layer(rng, Size(43, 38), numDisparities);
         for (int small : { 0, 1, 40, 400, largest })
             for (int large : { 0, 1, 100, largest })
                 for (double gamma : { 1e-300, 1., 20., 1e300 })
@@ -215,7 +165,7 @@ TEST(HDPStereo_VolumeScanlines, any_number_of_threads)
 {
     RNG rng(65);
     std::vector<short> buffers;
-    const Layer layer(rng, Size(75, 61), 29, 256, false);
+    const Layer layer(rng, Size(75, 61), 29);
     const int threads = cv::getNumThreads();
     const Mat expected = layer.aggregate(usualPenalties, buffers);
     for (int count : { 1, 2, 3, 8 })
@@ -233,9 +183,9 @@ TEST(HDPStereo_VolumeScanlines, lanes_without_vectors)
     for (int numDisparities : { 1, 16, 50 })
     {
         const Size size(14, 8); // one block of scanlines
-        const Layer layer(rng, size, numDisparities, 256, numDisparities == 16);
+        const Layer layer(rng, size, numDisparities);
         const hdp::VolumePenalties penalties = { 30, 300, 1e9 };
-        std::vector<short> sums(layer.volume.chunks * hdp::CostVolume::chunk);
+        std::vector<short> sums(layer.volume.total());
         Mat disparity(size, CV_16UC1);
         hdp::VolumeProblem problem = {
             layer.volume, layer.weights.ptr(), 30, {}, sums.data(), disparity.ptr<ushort>()

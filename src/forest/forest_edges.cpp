@@ -6,6 +6,7 @@
 
 #include "forest_edges.simd.hpp"
 #include "forest/forest_edges.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
+#include <cmath>
 #include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
@@ -37,6 +38,12 @@ void weighEdges(const Mat& image, Mat& weights)
         else
             dispatched::weighRow(image.ptr(y), image.ptr(next), image.cols, image.channels(), weights.ptr(y));
     });
+}
+
+EdgeSimilarity::EdgeSimilarity(double gamma)
+{
+    for (int w = 0; w < 256; ++w)
+        table[w] = w > 0 ? (float)std::exp(-w / gamma) : 1.f; // 0 / gamma is none if it is too small for a number
 }
 
 void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges)

@@ -33,6 +33,13 @@ three differences is a bit more, and hardly ever 0 where there is any.
 @param weights Receives CV_8UC2; weights.ptr()[e] is that of edge e; 0 at the border. */
 void weighEdges(const Mat& image, Mat& weights);
 
+//! S(p, q) of neighbours: exp(-w / gamma) for each weight w.
+struct CV_EXPORTS EdgeSimilarity
+{
+    explicit EdgeSimilarity(double gamma);
+    float table[256];
+};
+
 //! The edges of some rows that DT-Rule 1 keeps, by number; and those from the row above into them.
 void selectEdges(const Mat& weights, const Mat& pixelIntv, const Range& rows, std::vector<int>& edges);
 

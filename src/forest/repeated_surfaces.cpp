@@ -34,11 +34,10 @@ struct Run
 //! Adds the runs of a pixel's candidates up to fitRise above the lowest cost, with a barrier between two of them.
 void addRuns(const CostVolume& volume, int pixel, std::vector<Run>& runs)
 {
-    const CostVolume::Candidates own = volume.of(pixel);
-    const uchar *const costs = volume.costs.data() + own.start(), least = volume.lowestOf(own);
+    const uchar *const costs = &volume.costs[volume.start(pixel)], least = volume.lowestOf(pixel);
     bool isOpen = false;
     int lowest = 0, from = 0; // of the run
-    for (int k = 0; k < own.interval.size(); ++k)
+    for (int k = 0; k < volume.numDisparities; ++k)
     {
         if (costs[k] > least + fitRise)
         {
@@ -288,9 +287,8 @@ private:
         for (int a = best + 1; a < firsts_[pixel + 1]; ++a)
             if (sizes_[runs_[a].surface] > sizes_[runs_[best].surface])
                 best = a;
-        const CostVolume::Candidates own = volume_.of(pixel);
-        uchar* const costs = &volume_.costs[own.start()];
-        for (int k = 0; k < own.interval.size(); ++k)
+        uchar* const costs = &volume_.costs[volume_.start(pixel)];
+        for (int k = 0; k < volume_.numDisparities; ++k)
             if (k < runs_[best].first - 1 || k > runs_[best].last + 1)
                 costs[k] = saturate_cast<uchar>(costs[k] + penalty);
     }
@@ -307,7 +305,6 @@ private:
 
 int preferLargestSurfaces(const CensusCost& own, CostVolume& volume)
 {
-    CV_DbgAssert(volume.isUniform);
     return RepeatedSurfaces(own, volume).preferLargest();
 }
 

@@ -30,12 +30,12 @@ class TreeSamples
 {
 public:
     TreeSamples(const int* pixels, const DisparityTree& tree, const Mat& disparity, const CostVolume& volume)
-        : interval_(tree.interval), steps_((float)volume.steps)
+        : candidates_(volume.numDisparities), steps_((float)volume.steps)
     {
         const ushort* const winners = disparity.ptr<ushort>();
-        const int step = std::max(tree.size / samples, 1), candidates = interval_.size();
+        const int step = std::max(tree.size / samples, 1);
         count_ = (tree.size + step - 1) / step;
-        costs_.resize(count_ * candidates);
+        costs_.resize(count_ * candidates_);
         for (std::vector<float>* values : { &x_, &y_, &disparity_ })
             values->reserve(count_);
         for (int group = 0, sample = 0; group < groups; ++group)
@@ -45,16 +45,15 @@ public:
             for (int i = group * step; i < tree.size; i += groups * step, ++sample)
             {
                 const int pixel = pixels[i];
-                const CostVolume::Candidates own = volume.of(pixel);
-                const uchar* const costs = &volume.costs[own.start()];
-                std::copy(costs, costs + candidates, &costs_[sample * candidates]);
+                const uchar* const costs = &volume.costs[volume.start(pixel)];
+                std::copy_n(costs, candidates_, &costs_[sample * candidates_]);
                 x_.push_back((float)(pixel % volume.size.width));
                 y_.push_back((float)(pixel / volume.size.width));
                 disparity_.push_back(winners[pixel] / (float)subpixelScale);
                 before_ += costs[candidateAt(disparity_.back())];
-                const uchar lowest = volume.lowestOf(own);
+                const uchar lowest = volume.lowestOf(pixel);
                 lowest_[group] += lowest;
-                haveContrast_ = haveContrast_ || std::count(costs, costs + candidates, lowest) < candidates;
+                haveContrast_ = haveContrast_ || std::count(costs, costs + candidates_, lowest) < candidates_;
             }
         }
         firsts_[groups] = count_;
@@ -124,14 +123,14 @@ private:
     //! The candidate next to a disparity
     int candidateAt(float disparity) const
     {
-        const float first = interval_.first, last = interval_.last;
-        return (int)(std::min(std::max(steps_ * disparity, first), last) - first + 0.5f);
+        const float last = (float)(candidates_ - 1);
+        return (int)(std::min(std::max(steps_ * disparity, 0.f), last) + 0.5f);
     }
 
     //! The costs of a group on the plane, in sum
     int costsOf(const Plane& plane, int group) const
     {
-        const int begin = firsts_[group], count = firsts_[group + 1] - begin, stride = interval_.size();
+        const int begin = firsts_[group], count = firsts_[group + 1] - begin, stride = candidates_;
         const float offset = (float)plane[0], slopeX = (float)plane[1], slopeY = (float)plane[2];
         const float *const x = x_.data() + begin, *const y = y_.data() + begin;
         int* const at = at_.data();
@@ -190,7 +189,7 @@ private:
     }
 
     static const int groups = 8;
-    const DisparityInterval interval_;
+    const int candidates_;
     const float steps_; // candidates per pixel of disparity
     double extentX_, extentY_;
     int count_;
@@ -209,12 +208,12 @@ void applyPlane(const Plane& plane, const int* pixels, const DisparityTree& tree
                 Mat& disparity)
 {
     const int width = volume.size.width;
-    const float first = (float)tree.interval.first / volume.steps, last = (float)tree.interval.last / volume.steps;
+    const float last = (volume.numDisparities - 1) / (float)volume.steps;
     const auto candidateOf = [&](float value) { return cvFloor(volume.steps * value + 0.5f); };
     for (int i = 0; i < tree.size; ++i)
     {
         const int pixel = pixels[i], x = pixel % width, y = pixel / width;
-        const float value = clamped((float)(plane[0] + plane[1] * x + plane[2] * y), first, last);
+        const float value = clamped((float)(plane[0] + plane[1] * x + plane[2] * y), 0.f, last);
         ushort& own = disparity.ptr<ushort>()[pixel];
         if (candidateOf(value) != candidateOf(own / (float)subpixelScale) && !isContradicted(pixel, value, volume))
             own = (ushort)cvRound(value * subpixelScale);
@@ -225,13 +224,12 @@ void applyPlane(const Plane& plane, const int* pixels, const DisparityTree& tree
 
 int takeTreePlanes(const DisparityForest& forest, const CostVolume& volume, Mat& disparity)
 {
-    CV_DbgAssert(volume.isUniform);
     std::vector<uchar> hasPlane(forest.trees.size());
     parallelFor((int)forest.trees.size(), [&](int t) {
         const DisparityTree& tree = forest.trees[t];
         if (tree.size < samples)
             return;
-        const int* const pixels = volume.pixelsOf(t);
+        const int* const pixels = &volume.treePixels[volume.treeStarts[t]];
         const TreeSamples of(pixels, tree, disparity, volume);
         if (!of.haveContrast())
             return;

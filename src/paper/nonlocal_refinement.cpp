@@ -77,7 +77,7 @@ private:
 } // namespace
 
 void refineNonLocal(const DisparityForest& forest, const Mat& disparity, const Mat& stable, double gamma, bool subpixel,
-                    AggregationBuffers& buffers, Mat& refined)
+                    SumBuffers& buffers, Mat& refined)
 {
     disparity.copyTo(refined);
     takeWinners(forest, WeightedMedian(disparity, stable, subpixel), gamma, buffers, refined);

@@ -4,7 +4,7 @@
 #ifndef OPENCV_HDPSTEREO_NONLOCAL_REFINEMENT_HPP
 #define OPENCV_HDPSTEREO_NONLOCAL_REFINEMENT_HPP
 
-#include "../forest/forest_aggregation.hpp"
+#include "tree_sums.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -17,7 +17,7 @@ candidates beside it, which is exact where all stable disparities that matter ar
 @param refined Receives CV_16UC1 of its size, a disparity map; another Mat than disparity. The pixels of a tree without
 stable ones keep their disparity, as does a pixel to which none of them has a similarity > 0 in float. */
 CV_EXPORTS void refineNonLocal(const DisparityForest& forest, const Mat& disparity, const Mat& stable, double gamma,
-                               bool subpixel, AggregationBuffers& buffers, Mat& refined);
+                               bool subpixel, SumBuffers& buffers, Mat& refined);
 
 }}} // namespace cv::stereo::hdp
 

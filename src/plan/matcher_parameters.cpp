@@ -109,7 +109,6 @@ HDPTreeMatcher::Params::Params(int preset)
                                               "it is no blockSize, which setBlockSize() sets",
                                               (int)PRESET_PAPER, (int)PRESET_TREE, preset));
     const bool isPaper = preset == PRESET_PAPER, isTree = preset == PRESET_TREE, isQuality = preset == PRESET_QUALITY;
-    const bool hasScanlines = !isPaper && !isTree;
 
     disparityDepth = CV_16S;
     useTemporalPrediction = false;
@@ -130,16 +129,16 @@ HDPTreeMatcher::Params::Params(int preset)
     gradientTruncation = 2;
     colorWeight = 0.11;
 
-    aggregation = isPaper ? AGGREGATION_TREES : isTree ? AGGREGATION_TREE_SCANLINES : AGGREGATION_SCANLINES;
-    topAggregation = hasScanlines ? AGGREGATION_TREE_SCANLINES : AGGREGATION_TREES;
+    aggregation = isPaper ? AGGREGATION_TREES : AGGREGATION_SCANLINES;
+    topAggregation = isPaper ? AGGREGATION_TREES : AGGREGATION_TREE_SCANLINES;
     treeStrategy = isPaper ? createMinimumSpanningTree() : createSegmentTree(); // planes need segments
     gamma = isPaper ? 25.5 : 20;
     useMedianPrefilter = false;
 
-    disparityPrior = isTree ? PRIOR_UPPER_LAYER : PRIOR_SUPPORT_POINTS;
-    delta0 = isTree ? 0.02 : (double)AUTO;
-    beta = isTree ? 0.9 : (double)AUTO;
-    intervalMargin = isTree ? 2 : 0;
+    disparityPrior = PRIOR_SUPPORT_POINTS;
+    delta0 = AUTO;
+    beta = AUTO;
+    intervalMargin = 0;
 
     P1 = 16;
     P2 = 65;

@@ -94,12 +94,11 @@ void checkCombinations(const MatcherParameters& p, Size size, bool hasPrior)
                    "%d; minDisparity is %d and numDisparities %d",
                    SHRT_MIN / M::DISP_SCALE, SHRT_MAX / M::DISP_SCALE, (int)M::DISP_SCALE, p.minDisparity,
                    p.numDisparities));
-    const char* const needsCensus = p.aggregation == M::AGGREGATION_SCANLINES        ? "AGGREGATION_SCANLINES"
-                                    : p.aggregation == M::AGGREGATION_TREE_SCANLINES ? "AGGREGATION_TREE_SCANLINES"
-                                    : p.fillOcclusions                               ? "fillOcclusions"
-                                    : p.useTemporalPrediction                        ? "useTemporalPrediction"
-                                    : hasPrior                                       ? "setPriorDisparity()"
-                                                                                     : nullptr;
+    const char* const needsCensus = !hasTreeSums(p)           ? "an aggregation by scanlines"
+                                    : p.fillOcclusions        ? "fillOcclusions"
+                                    : p.useTemporalPrediction ? "useTemporalPrediction"
+                                    : hasPrior                ? "setPriorDisparity()"
+                                                              : nullptr;
     if (needsCensus && p.matchingCost != M::COST_CENSUS)
         CV_Error(Error::StsBadArg, format("matchingCost must be COST_CENSUS for %s", needsCensus));
     if (p.speckleWindowSize > 0 && size.area() > INT_MAX / speckleBytes)
@@ -163,15 +162,13 @@ CostPlan planCost(const MatcherParameters& p)
 //! layer: its place and its own number of disparities are known, not those that are compared.
 LayerMethod methodOf(const MatcherParameters& p, const LayerPlan& layer)
 {
-    if (layer.isFinest && !layer.isTop && !hasTreeSums(p))
-        return WINDOW_SCANLINES;
-    const bool hasScanlines = p.aggregation == M::AGGREGATION_SCANLINES;
-    if (hasScanlines && !layer.isTop)
-        return layer.numDisparities <= mostRangeDisparities ? RANGE_SCANLINES : WINDOW_SCANLINES;
-    const int aggregation = hasScanlines ? p.topAggregation : p.aggregation;
-    return aggregation == M::AGGREGATION_TREE_SCANLINES ? TREE_SCANLINES
-           : aggregation == M::AGGREGATION_SCANLINES    ? COST_SCANLINES
-                                                        : TREE_SUMS;
+    if (hasTreeSums(p))
+        return TREE_SUMS;
+    if (layer.isTop)
+        return p.topAggregation == M::AGGREGATION_TREE_SCANLINES ? TREE_SCANLINES
+               : p.topAggregation == M::AGGREGATION_SCANLINES    ? COST_SCANLINES
+                                                                 : TREE_SUMS;
+    return !layer.isFinest && layer.numDisparities <= mostRangeDisparities ? RANGE_SCANLINES : WINDOW_SCANLINES;
 }
 
 TreePlan planTrees(const MatcherParameters& p, const LayerPlan& layer, Size size)
@@ -299,6 +296,11 @@ MatcherParameters completed(MatcherParameters p, const Range& known)
 {
     if (p.numDisparities == 0)
         p = known.empty() ? withRange(p, 0, 1) : withRange(p, known.start, known.size());
+    if (p.aggregation == M::AGGREGATION_TREE_SCANLINES) // another name for both
+    {
+        p.aggregation = M::AGGREGATION_SCANLINES;
+        p.topAggregation = M::AGGREGATION_TREE_SCANLINES;
+    }
     if (!p.usePrediction) // there are no layers, and the plain tree algorithm matches the image
         p.aggregation = M::AGGREGATION_TREES;
     return p;
@@ -353,7 +355,7 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
         plan.layers.push_back(planLayer(p, whole, layer, layers, finest));
         plan.layers.back().frame = plan.given.frame.ofLayer(layer);
     }
-    if (plan.hasRanges && plan.top().method != COST_SCANLINES)
+    if (plan.hasRanges && plan.top().method == TREE_SUMS)
         plan.layers.front().trees.beta = rangeBeta;
     const int speckleRange = p.speckleWindowSize > 0 ? p.speckleRange : 0;
     plan.output = { p.minDisparity,  extension,           finest,      !p.useSubpixel,

@@ -5,7 +5,7 @@
 #include "range_scanlines.hpp"
 #include "range_scanlines.simd.hpp"
 #include "scanlines/range_scanlines.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../forest/forest_aggregation.hpp"
+#include "../forest/forest_edges.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

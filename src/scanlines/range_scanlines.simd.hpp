@@ -247,7 +247,7 @@ public:
             for (int r = active.start; r < active.end; ++r)
                 rows_[r].winner = finishPixel(rows_[r], t - r);
             for (int r = active.start; r < active.end; ++r)
-                rows_[r].winners.setWithin(t - r, rows_[r].sums, 0, rows_[r].winner, p_.candidates - 1,
+                rows_[r].winners.setWithin(t - r, rows_[r].sums, rows_[r].winner, p_.candidates - 1,
                                            rows_[r].costRow.interval(t - r));
         }
         for (int r = 0; r < height; ++r)

@@ -4,7 +4,7 @@
 #include "../precomp.hpp"
 #include "volume_scanlines.hpp"
 
-#include "../forest/forest_aggregation.hpp"
+#include "../forest/forest_edges.hpp"
 #include "volume_scanlines.simd.hpp"
 #include "scanlines/volume_scanlines.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
@@ -46,12 +46,9 @@ void aggregateVolume(const CostVolume& volume, const Mat& weights, const VolumeP
     const Size size = volume.size;
     disparity.create(size, CV_16U);
 
-    VolumeProblem problem = { volume,
-                              weights.ptr(),
-                              (short)penalties.small,
-                              {},
-                              grown(sums, volume.chunks * CostVolume::chunk),
-                              disparity.ptr<ushort>() };
+    VolumeProblem problem = {
+        volume, weights.ptr(), (short)penalties.small, {}, grown(sums, volume.total()), disparity.ptr<ushort>()
+    };
     const EdgeSimilarity similarity(penalties.gamma);
     for (int w = 0; w < 256; ++w)
         problem.large[w] = (short)std::max(penalties.small, cvRound(penalties.large * similarity.table[w]));

@@ -28,23 +28,23 @@ struct VolumeProblem
     static const int maxScanlines = 64; // that are followed side by side
     // before and behind the candidates of a pixel, for the first and the last one to have neighbours
     static const int margin = CostVolume::chunk;
-    //! Memory for a pixel, by disparity, and a chunk more, as an interval may begin at the last one
-    int lineLength() const { return margin + volume.numDisparities + CostVolume::chunk + margin; }
+    //! Memory for a pixel, by disparity
+    int lineLength() const { return margin + volume.stride() + margin; }
     //! Memory for scanlines that are followed side by side: two pixels of each, the sums of one, and a
     //! line for the padding
     int lineMemory(int scanlines) const { return (2 * scanlines + 2) * lineLength(); }
 };
 
-/** Semi-global matching over the candidates of each pixel, from the left, from the right, from above and from below.
+/** Semi-global matching over the candidates of a volume, from the left, from the right, from above and from below.
 With L(p, d) of a direction and q the pixel before p,
 L(p, d) = C(p, d) + min(L(q, d), L(q, d - 1) + small, L(q, d + 1) + small, m + large(p, q)) - m, m = min_k L(q, k),
 large(p, q) = max(small, round(large * exp(-w(p, q) / gamma))),
-where disparities that are not candidates of q are left out. L = C where there is no q, or none with candidates.
+where disparities that are no candidates are left out. L = C where there is no q.
 The winner has the lowest sum of the directions, the lowest disparity if there are several; its sum and those of both
 candidates beside it give the sub-pixel part, see winnerFraction(), whose limits are costs of 8 and 14 in each
 direction. Of the first candidate and of the last one, the fraction may lie towards the others: the sum beyond it is
 that of the slope between those next to it, or that which leaves the fraction at 0. First and last are those of
-volume.intervals, if it has some and the winner lies in its pixel's. Pixels without candidates get 0.
+volume.intervals, if it has some and the winner lies in its pixel's.
 @param volume The costs C.
 @param weights w, CV_8UC2, see weighEdges().
 @param sums Memory to work in: those of the directions so far, in the order of the volume; it only ever grows.

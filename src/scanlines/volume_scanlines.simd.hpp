@@ -48,13 +48,6 @@ public:
         MIDDLE, // adds to them
         LAST    // takes the winners, of scanlines that are side by side in memory
     };
-    //! What the compiler knows of the candidates: all pixels have those of so many vectors, or
-    enum Vectors
-    {
-        ANY = 0, // all have the same ones
-        OWN = -1 // each pixel has its own
-    };
-
     //! lines: memory for L of the last pixel of each scanline, L of this pixel of each, the sums of a pixel, and zeros
     //! that end with a margin of none, in lines of lineLength()
     LineBlock(const VolumeProblem& problem, int scanlines, int length, short* lines)
@@ -70,9 +63,7 @@ public:
 
     template <int role> void follow(const Direction& direction)
     {
-        if (!p_.volume.isUniform)
-            return follow<role, OWN>(direction);
-        switch (p_.volume.of(0).chunks()) // 2, 3, 4 and 8 of 16 candidates are usual
+        switch (p_.volume.stride() / Words::count) // 2, 3, 4 and 8 of 16 candidates are usual
         {
         case 2:
             return follow<role, 2>(direction);
@@ -83,33 +74,32 @@ public:
         case 8:
             return follow<role, 8>(direction);
         default:
-            return follow<role, ANY>(direction);
+            return follow<role, 0>(direction);
         }
     }
 
 private:
+    //! vectors: of the candidates, if the compiler is to know it, else 0
     template <int role, int vectors> void follow(const Direction& direction)
     {
-        const bool isUniform = vectors != OWN;
         // Local, as stores may alias all else
         const CostVolume& volume = p_.volume;
-        const CostVolume::Candidates all = volume.of(0);
-        const int stride = all.chunks() * CostVolume::chunk, halving = volume.steps == 2; // of whole and fraction
+        const int stride = vectors > 0 ? vectors * Words::count : volume.stride(),
+                  halving = volume.steps == 2; // of whole and fraction
         const uchar *const weights = p_.weights, *const costs = volume.costs.data();
         short *const sums = p_.sums, *const total = total_;
         ushort* const disparity = p_.disparity;
         CV_DbgAssert(volume.intervals.empty() || volume.intervals.isContinuous());
         const DisparityInterval* const intervals = volume.intervals.ptr<DisparityInterval>(); // or none
         const ptrdiff_t lineLength = lineLength_;
-        const int scanlines = scanlines_, length = length_;
+        const int scanlines = scanlines_, length = length_, last = volume.numDisparities - 1;
         const Words small = Words::repeat(p_.small);
         short *before = before_, *here = here_;
-        LastPixel last[VolumeProblem::maxScanlines];
+        int minima[VolumeProblem::maxScanlines] = {}; // of L of the pixel before
         ushort whole[VolumeProblem::maxScanlines];
         short rise[VolumeProblem::maxScanlines], slope[VolumeProblem::maxScanlines];
         const Winners winners = { whole, rise, slope }; // of the pixels side by side
-        if (isUniform)
-            beginLines(all.interval);
+        beginLines();
 
         for (int i = 0; i < length; ++i)
         {
@@ -117,28 +107,13 @@ private:
             ptrdiff_t pixel = first;
             for (int k = 0; k < scanlines; ++k, pixel += direction.across)
             {
-                const CostVolume::Candidates candidates = isUniform ? all : volume.of((int)pixel);
-                const DisparityInterval interval = candidates.interval;
-                if (!isUniform && interval.empty())
-                {
-                    last[k] = LastPixel();
-                    if (role == LAST)
-                        winners.set(k, total, 0, 0, 0);
-                    continue;
-                }
-                const size_t start = isUniform ? (size_t)pixel * stride : candidates.start();
-                int large = p_.large[weights[i > 0 ? 2 * pixel + direction.edge : 0]];
-                const Pixel own = {
-                    interval.first, interval.size(), (vectors > 0 ? vectors : candidates.chunks()) * Words::count,
-                    costs + start,  sums + start,    role == LAST ? total : sums + start
-                };
-                if (!isUniform && !last[k].reaches(own))
-                    large = enter(own, large, last[k], before + k * lineLength);
+                const ptrdiff_t start = pixel * stride;
+                const int large = p_.large[weights[i > 0 ? 2 * pixel + direction.edge : 0]];
+                const Pixel own = { costs + start, sums + start, role == LAST ? total : sums + start, stride };
                 const int winner =
-                    step<role, vectors>(own, small, large, before + k * lineLength, here + k * lineLength, last[k]);
+                    step<role, vectors>(own, small, large, before + k * lineLength, here + k * lineLength, minima[k]);
                 if (role == LAST)
-                    winners.setWithin(k, total, interval.first, winner, interval.size() - 1,
-                                      intervals ? intervals + pixel : nullptr);
+                    winners.setWithin(k, total, winner, last, intervals ? intervals + pixel : nullptr);
             }
             if (role == LAST)
                 winners.takeDisparities(scanlines, CostVolume::scale, halving, disparity + first);
@@ -148,73 +123,39 @@ private:
 
     struct Pixel
     {
-        int first, size, count; // candidates, and their number with the padding
         const uchar* costs;
         const short* sums;
         short* into; // the new sums
-    };
-
-    //! The pixel before: candidates [first, end), and the minimum of L
-    struct LastPixel
-    {
-        int first = 0, end = 0, minimum = 0;
-
-        bool isNone() const { return end == 0; }
-        //! Whether its margins reach those of the next one
-        bool reaches(const Pixel& next) const
-        {
-            return (end != 0) & (next.first - 1 >= first - margin) & (next.first + next.count + 1 <= end + margin);
-        }
+        int count;   // of candidates, with the padding
     };
 
     //! L of a disparity that is no candidate: more than any other, and four of them and a penalty fit into 16 bits.
     static const short none = 0x1f00;
 
-    //! For pixels of the same candidates, whose margins stay as they are: the first ones have L = C, whatever the
-    //! penalties.
-    void beginLines(const DisparityInterval& candidates)
+    //! The first pixels have L = C, whatever the penalties; the margins stay as they are.
+    void beginLines()
     {
         std::fill(before_ - margin, here_ - margin + scanlines_ * (ptrdiff_t)lineLength_, +none);
         for (int k = 0; k < scanlines_; ++k)
-            std::fill_n(before_ + k * (ptrdiff_t)lineLength_ + candidates.first, candidates.size(), (short)0);
+            std::fill_n(before_ + k * (ptrdiff_t)lineLength_, p_.volume.numDisparities, (short)0);
     }
 
-    //! Lets the L of the pixel before be read at candidates of another pixel and beside them; returns the large
-    //! penalty.
-    static int enter(const Pixel& own, int large, const LastPixel& last, short* before)
-    {
-        const int first = own.first - 1, end = own.first + own.count + 1;
-        if (last.isNone()) // L = C, whatever the penalties
-        {
-            std::fill(before + first, before + end, (short)0);
-            return 0;
-        }
-        const auto clear = [&](int begin, int finish) {
-            std::fill(before + begin, before + std::max(begin, finish), +none);
-        };
-        clear(first, std::min(last.first, end));
-        clear(std::max(last.end, first), end);
-        return large;
-    }
-
-    //! L of a pixel, from that of the pixel before; in the last direction, returns the first of the lowest sums.
+    //! L of a pixel, and its minimum, from those of the pixel before; in the last direction, returns the first of the
+    //! lowest sums.
     template <int role, int vectors>
     CV_ALWAYS_INLINE int step(const Pixel& own, const Words& small, int large, const short* before, short* here,
-                              LastPixel& last) const
+                              int& minimumOfAll) const
     {
-        const Words least = Words::repeat(last.minimum), jump = Words::repeat(last.minimum + large),
-                    noCandidate = Words::repeat(none);
-        before += own.first;
-        here += own.first;
-        Words minimum = noCandidate, lowestSum = Words::repeat(SHRT_MAX), position = lowestSum;
+        const Words least = Words::repeat(minimumOfAll), jump = Words::repeat(minimumOfAll + large);
+        Words minimum = Words::repeat(none), lowestSum = Words::repeat(SHRT_MAX), position = lowestSum;
         const int count = vectors > 0 ? vectors * Words::count : own.count;
-        const short* const padding = padding_ - own.size;
+        const short* const padding = padding_ - p_.volume.numDisparities;
         for (int d = 0; d < count; d += Words::count)
         {
             const Words beside = Words::load(before + d - 1).min(Words::load(before + d + 1)) + small;
             const Words best = Words::load(before + d).min(beside).min(jump);
             Words l = Words::load(own.costs + d) + (best - least);
-            if (vectors <= 0 || d == count - Words::count)
+            if (vectors == 0 || d == count - Words::count)
                 l = l.max(Words::load(padding + d));
             l.store(here + d);
             minimum = minimum.min(l);
@@ -225,17 +166,7 @@ private:
             position = position.whereNotGreater(lowestSum, sum, Words::repeat(d));
             lowestSum = lowestSum.min(sum);
         }
-        if (vectors == OWN)
-        {
-            for (int d = 0; d < margin; d += Words::count)
-            {
-                noCandidate.store(here - margin + d);
-                noCandidate.store(here + count + d);
-            }
-            last.first = own.first;
-            last.end = own.first + count;
-        }
-        last.minimum = minimum.minimum();
+        minimumOfAll = minimum.minimum();
         if (role != LAST)
             return 0;
         // Where the lowest sum is higher than that of all: no position

@@ -58,18 +58,16 @@ struct Winners
         slope[i] = (short)std::max(std::max(before, after) - sum, 1);
     }
 
-    //! The same with the ends of its pixel's own interval, if there is one and the winner lies in it: costs beyond are
-    //! not those of candidates.
+    //! The same of candidate k of 0 .. last, with the ends of its pixel's own interval, if there is one and the winner
+    //! lies in it: costs beyond are not those of candidates.
     template <typename Sum>
-    CV_ALWAYS_INLINE void setWithin(int i, const Sum* sums, int first, int k, int last,
-                                    const DisparityInterval* own) const
+    CV_ALWAYS_INLINE void setWithin(int i, const Sum* sums, int k, int last, const DisparityInterval* own) const
     {
-        const int begin = own ? std::max(own->first - first, 0) : 0,
-                  end = own ? std::min(own->last - first, last) : last;
+        const int begin = own ? own->first : 0, end = own ? std::min((int)own->last, last) : last;
         if (begin <= k && k <= end)
-            set(i, sums + begin, first + begin, k - begin, end - begin);
+            set(i, sums + begin, begin, k - begin, end - begin);
         else
-            set(i, sums, first, k, last);
+            set(i, sums, 0, k, last);
     }
 
     //! Disparities of a map. bit: what a bit of the census costs in one direction; halving: 1 if there are two

@@ -82,8 +82,8 @@ on several parameters or on the images is checked by compute(), before any work.
 - the output array is cv::noArray() or a std::vector, or has a fixed type other than CV_16SC1 and CV_32FC1, or another
   fixed size;
 - a mask or a prior has not the size of the images, or the maps of setDisparityRange() are larger;
-- a TreeStrategy throws, or does not leave a permutation of the edges, or trees have more than 2^36 costs. Only this is
-  found while matching; the matcher stays usable, and the output array is unchanged.
+- a TreeStrategy throws, or does not leave a permutation of the edges. Only this is found while matching; the matcher
+  stays usable, and the output array is unchanged.
 
 The result depends neither on the number of threads nor on the instruction set. A matcher may be used by one thread at a
 time; two matchers never share state. Its buffers are kept for the next pair. clear() forgets the frames of a video.
@@ -116,7 +116,7 @@ public:
         PRESET_FAST = 1,      //!< the default: scanlines, on the top layer over means of trees
         PRESET_ULTRAFAST = 2, //!< PRESET_FAST at half the resolution
         PRESET_QUALITY = 3,   //!< slower and more accurate than PRESET_FAST
-        PRESET_TREE = 4       //!< disparity trees on all layers but the finest one, and a finer top layer
+        PRESET_TREE = 4       //!< PRESET_FAST with a finer top layer
     };
 
     //! Cost aggregation, see Params::aggregation and Params::topAggregation
@@ -125,7 +125,7 @@ public:
         AGGREGATION_TREES = 0,         //!< the paper's: sums over disparity trees
         AGGREGATION_SCANLINES = 1,     //!< semi-global matching over predicted candidates, or all on coarse layers
         AGGREGATION_TREE_SCANLINES = 2 //!< semi-global matching over the means of the costs in disparity trees, on
-                                       //!< layers above the finest one
+                                       //!< the top layer
     };
 
     //! Matching cost, see Params::matchingCost
@@ -169,8 +169,8 @@ public:
     @endcode
 
     Values are checked by HDPTreeMatcher::setParams(). "All" and "others" are presets; sections are those of
-    @cite Luo2015HDP. Intervals are used where trees are below the top layer: in PRESET_PAPER, in PRESET_TREE with more
-    than 180 disparities, not with HDPTreeMatcher::AGGREGATION_SCANLINES.
+    @cite Luo2015HDP. Intervals are used where trees are below the top layer: in PRESET_PAPER, and with
+    HDPTreeMatcher::AGGREGATION_TREES in others.
      */
     struct CV_EXPORTS_W_SIMPLE Params
     {
@@ -295,20 +295,19 @@ public:
 
         /** @brief Cost aggregation of the layers below the top one, one of HDPTreeMatcher::Aggregation.
 
-        AGGREGATION_TREES is that of section 3. AGGREGATION_TREE_SCANLINES runs scanlines @cite Hirschmuller2008SGM over
-        weighted means of the costs in each pixel's tree: trees carry faint texture to where there is none, scanlines
-        follow slanted surfaces. On the finest layer, where costs tell more by themselves, it is the same as
-        AGGREGATION_SCANLINES. That is for the costs themselves, over 16 candidates per pixel around the disparity of
-        the layer above, or all of them on layers between the top and the finest one that have few. Those with
-        scanlines need COST_CENSUS. PAPER: AGGREGATION_TREES, TREE: AGGREGATION_TREE_SCANLINES, others:
+        AGGREGATION_TREES is that of section 3. AGGREGATION_SCANLINES runs scanlines @cite Hirschmuller2008SGM over 16
+        candidates per pixel around the disparity of the layer above, or over all of them on layers between the top and
+        the finest one that have few; it needs COST_CENSUS. AGGREGATION_TREE_SCANLINES, which files of earlier versions
+        have, is AGGREGATION_SCANLINES with this as topAggregation. PAPER: AGGREGATION_TREES, others:
         AGGREGATION_SCANLINES. */
         CV_PROP_RW int aggregation;
 
         /** @brief Cost aggregation of the top layer, one of HDPTreeMatcher::Aggregation.
 
-        All disparities are candidates there; with AGGREGATION_SCANLINES their costs are taken as they are, without
-        trees. Without effect unless aggregation is AGGREGATION_SCANLINES. PAPER and TREE: AGGREGATION_TREES, others:
-        AGGREGATION_TREE_SCANLINES. */
+        All disparities are candidates there. AGGREGATION_TREE_SCANLINES runs scanlines over weighted means of the costs
+        in each pixel's tree: trees carry faint texture to where there is none, scanlines follow slanted surfaces. With
+        AGGREGATION_SCANLINES costs are taken as they are, without trees. Without effect unless aggregation is
+        AGGREGATION_SCANLINES. PAPER: AGGREGATION_TREES, others: AGGREGATION_TREE_SCANLINES. */
         CV_PROP_RW int topAggregation;
 
         /** @brief Rule 1 and Rule 2 of the spanning trees (section 3.2); not empty.
@@ -342,8 +341,7 @@ public:
         /** @brief Source of P(D_l) (section 3.1), one of HDPTreeMatcher::DisparityPrior.
 
         The support points of @cite Geiger2010ELAS take time and miss the disparities of textureless surfaces; the upper
-        layer costs nothing, and is what counts with setDisparityRange(). TREE: PRIOR_UPPER_LAYER, others:
-        PRIOR_SUPPORT_POINTS. */
+        layer costs nothing, and is what counts with setDisparityRange(). All: PRIOR_SUPPORT_POINTS. */
         CV_PROP_RW int disparityPrior;
 
         /** @brief Threshold \f$\delta_0\f$ that ends the growth of a predicted interval (section 3.1).
@@ -351,20 +349,19 @@ public:
         A candidate of probability P joins an interval of total probability c while \f$P / (c + P) > \delta_l\f$, where
         \f$\delta_l = 2^l \delta_0\f$ in layer l. In [0, 1); the smaller, the wider the intervals. HDPTreeMatcher::AUTO:
         0.064 if the image is at least 1000 pixels wide, otherwise 0.004, as in the authors' program; the paper's text
-        has them the other way round. TREE: 0.02, others: AUTO. */
+        has them the other way round. All: AUTO. */
         CV_PROP_RW double delta0;
 
         /** @brief Threshold \f$\beta\f$ of DT-Rule 2 (section 3.2).
 
         Two trees are joined if their intervals overlap by at least this share of the hull of both. In [0, 1]; the
         larger, the more and the smaller the trees. HDPTreeMatcher::AUTO: 0.6 if the image is at least 1000 pixels wide,
-        otherwise 0.95, as in the authors' program; the paper's text has them the other way round. TREE: 0.9, others:
-        AUTO. */
+        otherwise 0.95, as in the authors' program; the paper's text has them the other way round. All: AUTO. */
         CV_PROP_RW double beta;
 
         /** @brief Number of candidates added on both sides of each predicted interval.
 
-        0..64. TREE: 2, because a sub-pixel winner needs neighbours, others: 0. */
+        0..64; 2 where winners are to have fractions, which need neighbours. All: 0. */
         CV_PROP_RW int intervalMargin;
 
         //! @}
@@ -561,9 +558,9 @@ public:
     /** @brief Tells which disparities each pixel of the left image may have: a coarse product, the depth of a room.
 
     No others occur in the map. A pixel for which there are none between minDisparity and the last one, or no multiple
-    of 1 / 16 in its range, or no whole one without Params::useSubpixel, gets minDisparity - 1. Trees search about their
-    pixels' ranges alone; what is found outside of a range moves to its end. The maps stay until others are set. They
-    are no parameters: files do not have them.
+    of 1 / 16 in its range, or no whole one without Params::useSubpixel, gets minDisparity - 1. Coarse
+    layers search the ranges alone, fine ones around them; what is found outside of a range moves to its end. The maps
+    stay until others are set. They are no parameters: files do not have them.
     @param smallest CV_16SC1 or CV_32FC1, in pixels, of the images' size or coarser: each pixel then has the range of
     the nearest one. Below 2048, as disparities of CV_16S are. NaN limits nothing. Copied. Both empty: there are no
     ranges.
@@ -647,8 +644,8 @@ public:
 
     /** @brief Returns the disparity forest of the last compute() (section 3.2), at the finest layer that has one.
 
-    With PRESET_FAST, ULTRAFAST and QUALITY this is the top layer, whose trees search the full range; with PRESET_TREE
-    the lowest layer above the finest one. Either may be cv::noArray().
+    With PRESET_PAPER that is the finest layer of all, with others the top layer, whose trees search the full range.
+    Either may be cv::noArray().
     @param trees Receives the number of each pixel's tree, from 0: CV_32SC1 of the layer's size. Empty before the first
     compute(), after one that threw an exception, and without trees, see Params::topAggregation.
     @param intervals Receives the first and the last candidate of each pixel's tree, TreeIntv, counted from

@@ -3,9 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
-#include "forest_aggregation.hpp"
+#include "tree_sums.hpp"
 #include "../base/vectorized.hpp"
-#include <cstring>
 
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
@@ -17,12 +16,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 @param costs M of pixel i and the k-th candidate at [i * lanes + k]; receives C. Others mean nothing. */
 void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const Range& run, int lanes, bool joins,
                   float* costs, RunWinner* winners);
-
-/** The means of a run of candidates over a tree, see aggregateMeans().
-@param costs M of pixel i and the k-th candidate at [i * lanes + k], times CostVolume::scale. Others mean nothing.
-@param means Memory for as many. */
-void averageRun(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, int lanes, const uchar* costs,
-                short* means, CostVolume& volume);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -112,79 +105,6 @@ template <int lanes> void takeWinners(const float* costs, int size, const Range&
     }
 }
 
-//! The share of a difference, rounded; as the instruction that multiplies and rounds does it
-inline short shareOf(short difference, short share)
-{
-    static_assert(MeanNode::unit == 1 << 15, "bits that are shifted out");
-    return (short)((((int)difference * share >> 14) + 1) >> 1);
-}
-
-inline short meanOf(uchar cost) { return (short)(cost * (MeanNode::meanScale / CostVolume::scale)); }
-
-//! From the leaves to the root: U, and the sums for those of the parents in place of theirs
-template <int lanes>
-void averageUp(const int* parents, const MeanNode* nodes, int size, const uchar* costs, short* means)
-{
-    for (int i = size - 1; i >= 0; --i)
-    {
-        const MeanNode& node = nodes[i];
-        const short toParent = node.toParent, hasChildren = node.hasChildren, hasSibling = node.hasSibling;
-        const uchar* const ownCosts = costs + (size_t)i * lanes;
-        const uchar* const parentCosts = costs + (size_t)parents[i] * lanes;
-        short* const own = means + (size_t)i * lanes;
-        short* const parent = means + (size_t)parents[i] * lanes;
-        short mean[lanes];
-        HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
-        {
-            mean[k] = (short)(meanOf(ownCosts[k]) + (own[k] & hasChildren));
-            own[k] = mean[k];
-        }
-        if (i > 0)
-            HDP_VECTORIZED for (int k = 0; k < lanes; ++k) parent[k] =
-                (short)((parent[k] & hasSibling) + shareOf((short)(mean[k] - meanOf(parentCosts[k])), toParent));
-    }
-}
-
-//! From the root to the leaves: V, rounded
-template <int lanes> inline void averageDown(const short* parent, short fromParent, short* own, uchar* rounded)
-{
-    const int unit = MeanNode::meanScale / CostVolume::scale;
-    HDP_VECTORIZED for (int k = 0; k < lanes; ++k)
-    {
-        const short mean = (short)(own[k] + shareOf((short)(parent[k] - own[k]), fromParent));
-        own[k] = mean;
-        rounded[k] = (uchar)((ushort)(mean + unit / 2) / unit);
-    }
-}
-
-//! averageRun()
-template <int lanes> struct AverageTask
-{
-    static void run(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, const uchar* costs,
-                    short* means, CostVolume& volume)
-    {
-        const int* const parents = walk.parents.data();
-        averageUp<lanes>(parents, nodes, size, costs, means);
-        uchar* const stored = volume.costs.data();
-        for (int i = 0; i < size; ++i)
-        {
-            const CostVolume::Candidates candidates = volume.of(walk.pixels[i]);
-            const int at = run.start - candidates.interval.first;
-            const short* const parent = means + (size_t)parents[i] * lanes;
-            short* const own = means + (size_t)i * lanes;
-            uchar* const to = stored + candidates.start() + at;
-            if (at + lanes <= candidates.chunks() * CostVolume::chunk) // the last ones are padding
-            {
-                averageDown<lanes>(parent, nodes[i].fromParent, own, to);
-                continue;
-            }
-            uchar rounded[lanes];
-            averageDown<lanes>(parent, nodes[i].fromParent, own, rounded);
-            std::memcpy(to, rounded, run.size());
-        }
-    }
-};
-
 //! aggregateRun()
 template <int lanes> struct AggregateTask
 {
@@ -207,12 +127,6 @@ void aggregateRun(const TreeWalk& walk, int size, const float* similarity, const
                   float* costs, RunWinner* winners)
 {
     runTask<AggregateTask>(lanes, walk, size, similarity, run, joins, costs, winners);
-}
-
-void averageRun(const TreeWalk& walk, const MeanNode* nodes, int size, const Range& run, int lanes, const uchar* costs,
-                short* means, CostVolume& volume)
-{
-    runTask<AverageTask>(lanes, walk, nodes, size, run, costs, means, volume);
 }
 
 #endif
