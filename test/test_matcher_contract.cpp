@@ -191,7 +191,7 @@ TEST(HDPStereo_MatcherContract, setters_are_shortcuts_to_params)
     EXPECT_FALSE(matcher->getUseTemporalPrediction());
     EXPECT_EQ(64, matcher->getMaxRowOffset());
     EXPECT_TRUE(matcher->getUseLightAlignment());
-    EXPECT_EQ(3, matcher->getNoiseThreshold());
+    EXPECT_EQ(2, matcher->getNoiseThreshold());
     EXPECT_NE(strategy.get(), matcher->getTreeStrategy().get());
     EXPECT_EQ(-3, matcher->getMinDisparity()) << "no field of Params";
 }

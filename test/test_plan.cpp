@@ -417,7 +417,7 @@ TEST(HDPStereo_Plan, adapts_to_noise)
     EXPECT_LT(0, some.finest().cost.tolerance);
     EXPECT_LT(some.finest().cost.tolerance, much.finest().cost.tolerance);
     EXPECT_FALSE(some.top().smoothsGuide);
-    EXPECT_TRUE(much.top().smoothsGuide) << "above the threshold";
+    EXPECT_TRUE(much.top().smoothsGuide) << "much above the threshold";
     EXPECT_EQ(0, quiet.finest().passes[0].edgeNoise);
     EXPECT_LT(0, some.finest().passes[0].edgeNoise);
     EXPECT_LT(some.finest().passes[0].edgeNoise, much.finest().passes[0].edgeNoise);
@@ -433,6 +433,29 @@ TEST(HDPStereo_Plan, adapts_to_noise)
     EXPECT_FALSE(hdp::adapt(hdp::plan(p, imageSize, CV_8UC3), withNoise(50), single).top().smoothsGuide);
 }
 
+TEST(HDPStereo_Plan, smooths_the_more_the_noisier_a_pair_is)
+{
+    MatcherParameters p = parametersOf(M::PRESET_FAST);
+    const auto smoothing = [&](double noise) {
+        return hdp::plan(p, imageSize, CV_8UC3).alignment.smoothing(withNoise(noise).noise);
+    };
+    EXPECT_EQ(0, smoothing(0));
+    EXPECT_EQ(0, smoothing(2));
+    int last = 0;
+    for (double noise = 2.25; noise <= 4; noise += 0.25)
+    {
+        EXPECT_LT(last, smoothing(noise)) << noise;
+        EXPECT_LE(smoothing(noise), last + 8) << noise << ", without a cliff";
+        last = smoothing(noise);
+    }
+    EXPECT_EQ(hdp::mostSmoothing + 0, smoothing(1e4));
+    p.noiseThreshold = 1;
+    EXPECT_EQ(0, smoothing(1));
+    EXPECT_LT(0, smoothing(1.5));
+    p.noiseThreshold = 0;
+    EXPECT_EQ(0, smoothing(1e4));
+}
+
 //! The threshold is one of the finest layer's noise, whichever layer the image's size lets matches be followed to.
 TEST(HDPStereo_Plan, noise_threshold_does_not_depend_on_the_size)
 {
@@ -444,7 +467,7 @@ TEST(HDPStereo_Plan, noise_threshold_does_not_depend_on_the_size)
             {
                 const hdp::LayerNoise finest = { noise, alignment.finestLayer };
                 const hdp::LayerNoise seen = { finest.ofLayer(layer), layer };
-                EXPECT_EQ(noise > alignment.noiseThreshold, alignment.isNoisy(seen))
+                EXPECT_NEAR(alignment.smoothing(finest), alignment.smoothing(seen), 1)
                     << noise << " seen in layer " << layer;
             }
     }

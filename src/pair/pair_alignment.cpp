@@ -12,8 +12,8 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(int, sideWeight, 27, "1/256",
-            "of a pixel's neighbour in a noisy pair: more loses texture, less keeps noise");
+HDP_TUNABLE(double, smoothingPerLevel, 32, "1/256 per grey level",
+            "of a pixel's neighbour, by the noise above the threshold: more loses texture, less keeps noise");
 
 bool hasGreyLevels(const std::vector<LayerImages>& images)
 {
@@ -43,9 +43,10 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
 }
 
 //! A row of smoothNoise(). columns: memory, and one more element at both ends
-void smoothRow(const ushort* above, const ushort* own, const ushort* below, int width, int* columns, ushort* smoothed)
+void smoothRow(const ushort* above, const ushort* own, const ushort* below, int width, int side, int* columns,
+               ushort* smoothed)
 {
-    const int side = sideWeight, middle = 256 - 2 * side;
+    const int middle = 256 - 2 * side;
     HDP_VECTORIZED for (int x = 0; x < width; ++x) columns[x] = middle * own[x] + side * (above[x] + below[x]);
     columns[-1] = columns[0];
     columns[width] = columns[width - 1];
@@ -55,26 +56,33 @@ void smoothRow(const ushort* above, const ushort* own, const ushort* below, int 
 
 } // namespace
 
-void smoothNoise(const Mat& image, Mat& smoothed)
+int AlignmentPlan::smoothing(const LayerNoise& noise) const
+{
+    const double above = noise.ofLayer(finestLayer) - noiseThreshold;
+    return noiseThreshold > 0 ? (int)clamped(smoothingPerLevel * above, 0., (double)mostSmoothing) : 0;
+}
+
+void smoothNoise(const Mat& image, int neighbour, Mat& smoothed)
 {
     smoothed.create(image.size(), CV_16U);
     parallelForRows(image.size(), std::vector<int>(image.cols + 2), [&](int y, std::vector<int>& columns) {
         smoothRow(image.ptr<ushort>(std::max(y - 1, 0)), image.ptr<ushort>(y),
-                  image.ptr<ushort>(std::min(y + 1, image.rows - 1)), image.cols, &columns[1], smoothed.ptr<ushort>(y));
+                  image.ptr<ushort>(std::min(y + 1, image.rows - 1)), image.cols, neighbour, &columns[1],
+                  smoothed.ptr<ushort>(y));
     });
 }
 
 namespace {
 
 //! Smooths both images of the matched layers
-void smoothPair(int finestLayer, AlignmentBuffers& buffers, std::vector<LayerImages>& images)
+void smoothPair(int finestLayer, int neighbour, AlignmentBuffers& buffers, std::vector<LayerImages>& images)
 {
     buffers.smoothed.resize(images.size());
     for (size_t layer = finestLayer; layer < images.size(); ++layer)
     {
         LayerImages& smoothed = buffers.smoothed[layer];
-        smoothNoise(images[layer].left, smoothed.left);
-        smoothNoise(images[layer].right, smoothed.right);
+        smoothNoise(images[layer].left, neighbour, smoothed.left);
+        smoothNoise(images[layer].right, neighbour, smoothed.right);
         images[layer].left = smoothed.left;
         images[layer].right = smoothed.right;
     }
@@ -110,8 +118,9 @@ void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector
             halveImage(images[layer - 1].masks.right, images[layer].masks.right);
         }
 
-    if (hasGreyLevels(images) && plan.isNoisy(findings.noise))
-        smoothPair(plan.finestLayer, buffers, images);
+    const int neighbour = plan.smoothing(findings.noise);
+    if (hasGreyLevels(images) && neighbour > 0)
+        smoothPair(plan.finestLayer, neighbour, buffers, images);
 }
 
 }}} // namespace cv::stereo::hdp

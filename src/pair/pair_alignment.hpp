@@ -16,16 +16,13 @@ struct AlignmentPlan
     int numDisparities;    // of the images
     int maxRowOffset;      // 0: rows stay
     bool findsLight;       // in grey levels alone
-    double noiseThreshold; // noise of the finest layer from which a pair is smoothed, in levels of 255; 0: never
+    double noiseThreshold; // noise of the finest layer above which a pair is smoothed, in levels of 255; 0: never
     int finestLayer;       // where matching ends
 
     bool looksForAnything() const { return maxRowOffset > 0 || findsLight || noiseThreshold > 0; }
 
-    //! Whether a pair is to be smoothed: by the noise where matching ends, whichever layer tells it.
-    bool isNoisy(const LayerNoise& noise) const
-    {
-        return noiseThreshold > 0 && noise.ofLayer(finestLayer) >= noiseThreshold;
-    }
+    //! What smoothNoise() is to do to a pair: by the noise where matching ends, whichever layer tells it.
+    CV_EXPORTS int smoothing(const LayerNoise& noise) const;
 };
 
 //! What was found in a pair, about the right image's centre, and what of it was applied
@@ -52,11 +49,15 @@ struct AlignmentBuffers
     std::vector<LayerImages> smoothed;
 };
 
-/** A Gaussian of half a pixel, over 3 x 3 pixels, for the images of a noisy pair. Of what a row or a column is mixed
-of, 27 / 256 are a pixel's neighbour on either side; the sum is rounded once. cv::GaussianBlur() does the same to
-numbers of 16 bits in several times as long.
-@param image CV_16UC1, values up to 1023; its border is repeated. */
-CV_EXPORTS void smoothNoise(const Mat& image, Mat& smoothed);
+/** A filter of 3 x 3 pixels for the images of a noisy pair. Of what a row or a column is mixed of, some 1 / 256 are a
+pixel's neighbour on either side; the sum is rounded once. cv::sepFilter2D() does the same to numbers of 16 bits in
+several times as long.
+@param image CV_16UC1, values up to 1023; its border is repeated.
+@param neighbour Their weight, up to mostSmoothing. */
+CV_EXPORTS void smoothNoise(const Mat& image, int neighbour, Mat& smoothed);
+
+//! A binomial filter: 1, 2, 1
+const int mostSmoothing = 64;
 
 /** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it, and
 smooths the grey levels of noisy pairs. The guides stay.

@@ -115,7 +115,7 @@ HDPTreeMatcher::Params::Params(int preset)
 
     maxRowOffset = isPaper ? 0 : 64;
     useLightAlignment = !isPaper;
-    noiseThreshold = isPaper ? 0 : 3;
+    noiseThreshold = isPaper ? 0 : 2;
 
     usePrediction = true;
     numLayers = isQuality || isTree ? 2 : 3; // PAPER: as in the authors' program; "L = 3" in the paper would be four

@@ -366,6 +366,7 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
 PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFindings& video)
 {
     PairPlan adapted = plan;
+    const int smoothing = plan.alignment.smoothing(findings.noise);
     for (LayerPlan& layer : adapted.layers)
     {
         // With what the last frame predicts, the layer above has its disparities from many frames.
@@ -379,7 +380,7 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
             penalties.edgeNoise = saturate_cast<uchar>(edgeNoise * findings.noise.ofLayer(layer.layer));
         if (layer.surfaceDifference > 0)
             layer.noise = findings.noise.ofLayer(layer.layer);
-        layer.smoothsGuide |= layer.method != WINDOW_SCANLINES && plan.alignment.isNoisy(findings.noise);
+        layer.smoothsGuide |= layer.method != WINDOW_SCANLINES && smoothing >= mostSmoothing / 2;
     }
     LayerPlan& top = adapted.layers.front();
     top.checksLastFrame = video.verdict == CONTINUED && top.method == TREE_SCANLINES;

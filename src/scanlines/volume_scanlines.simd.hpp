@@ -48,6 +48,7 @@ public:
         MIDDLE, // adds to them
         LAST    // takes the winners, of scanlines that are side by side in memory
     };
+
     //! lines: memory for L of the last pixel of each scanline, L of this pixel of each, the sums of a pixel, and zeros
     //! that end with a margin of none, in lines of lineLength()
     LineBlock(const VolumeProblem& problem, int scanlines, int length, short* lines)
@@ -109,7 +110,7 @@ private:
             {
                 const ptrdiff_t start = pixel * stride;
                 const int large = p_.large[weights[i > 0 ? 2 * pixel + direction.edge : 0]];
-                const Pixel own = { costs + start, sums + start, role == LAST ? total : sums + start, stride };
+                const Pixel own = { costs + start, sums + start, role == LAST ? total : sums + start };
                 const int winner =
                     step<role, vectors>(own, small, large, before + k * lineLength, here + k * lineLength, minima[k]);
                 if (role == LAST)
@@ -126,7 +127,6 @@ private:
         const uchar* costs;
         const short* sums;
         short* into; // the new sums
-        int count;   // of candidates, with the padding
     };
 
     //! L of a disparity that is no candidate: more than any other, and four of them and a penalty fit into 16 bits.
@@ -148,7 +148,7 @@ private:
     {
         const Words least = Words::repeat(minimumOfAll), jump = Words::repeat(minimumOfAll + large);
         Words minimum = Words::repeat(none), lowestSum = Words::repeat(SHRT_MAX), position = lowestSum;
-        const int count = vectors > 0 ? vectors * Words::count : own.count;
+        const int count = vectors > 0 ? vectors * Words::count : p_.volume.stride();
         const short* const padding = padding_ - p_.volume.numDisparities;
         for (int d = 0; d < count; d += Words::count)
         {

@@ -220,11 +220,12 @@ public:
         matched as they are. For HDPTreeMatcher::COST_CENSUS only. PAPER: false, others: true. */
         CV_PROP_RW bool useLightAlignment;
 
-        /** @brief Noise from which both images are smoothed before they are matched, see Findings::noise.
+        /** @brief Noise above which both images are smoothed before they are matched, see Findings::noise.
 
-        Without noise this would cost details. The blocks of strong JPEG compression are smoothed, too. Standard
-        deviation of the grey levels where matching ends, 255 being white, whatever the size of the images; of a pair
-        that is dark or of low contrast, as it is matched. Finite, >= 0; 0: nothing is smoothed. PAPER: 0, others: 3. */
+        The more noise, the stronger; without noise this would cost details. The blocks of strong JPEG compression are
+        smoothed, too. Standard deviation of the grey levels where matching ends, 255 being white, whatever the size of
+        the images; of a pair that is dark or of low contrast, as it is matched. Finite, >= 0; 0: nothing is smoothed.
+        PAPER: 0, others: 2. */
         CV_PROP_RW double noiseThreshold;
 
         //! @}
