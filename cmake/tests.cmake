@@ -1,6 +1,6 @@
 # The suite, for CTest; CMakePresets.json has the builds to run it in. Labels:
 #   unit, tools       one test for each test suite of opencv_test_hdpstereo and opencv_test_hdpstereo_tools
-#   slow, threads     unit tests that are left out under AddressSanitizer, as they take long; those for ThreadSanitizer
+#   slow, threads     tests that are left out under AddressSanitizer, as they take long; those for ThreadSanitizer
 #   instruction-sets  unit tests, and the maps to the bit, without the wider instruction sets; the objects for those
 #   preload           programs under hdpstereo-run, and what it puts in the place of StereoSGBM
 #   samples, python   programs of samples/ and of OpenCV's own samples; both Python modules

@@ -109,7 +109,7 @@ static void run(const CommandLineParser& parser)
         matcher->setTreeStrategy(strategy);
         Mat disparity, trees, intervals;
         matcher->compute(left, right, disparity);
-        matcher->getForest(trees, intervals); // of the finest layer that has trees
+        matcher->getForest(trees, intervals); // of the top layer, which has the trees
         //! [use]
         double lastTree;
         minMaxLoc(trees, nullptr, &lastTree);

@@ -14,7 +14,7 @@ packages=(build-essential cmake libopencv-dev)
 if [ "${1:-}" = --sanitize ]; then
     preset=sanitize
     shift
-    # No other instruction set than the widest one is run.
+    # Only the widest instruction set is built: no other would be run.
     options+=("-DHDPSTEREO_CPU_DISPATCH=$(grep -q avx512_bitalg /proc/cpuinfo && echo AVX512_ICL || echo AVX2)")
 else
     packages+=(python3-dev python3-numpy pybind11-dev mypy doxygen texlive-binaries libjs-mathjax

@@ -554,8 +554,7 @@ inline std::vector<double> aggregated(const Adjacency& neighbours, int p, double
 
 //! aggregateMeans() for a tree, in units of the volume. cost: M, rows pixels, columns disparities. Returns the means of
 //! the pixels of the walk (rows) and of so many disparities (columns).
-inline Mat_<int> treeMeans(const hdp::TreeWalk& walk, int size, const Mat_<double>& cost, double gamma, int first,
-                           int count)
+inline Mat_<int> treeMeans(const hdp::TreeWalk& walk, int size, const Mat_<double>& cost, double gamma, int count)
 {
     const int unit = 1 << 15, scale = 1 << 10; // of the shares and of the means
     const auto rounded = [&](int product) { return (int)std::floor(product / (double)unit + 0.5); };
@@ -566,14 +565,14 @@ inline Mat_<int> treeMeans(const hdp::TreeWalk& walk, int size, const Mat_<doubl
         s[i] = walk.weights[i] > 0 ? (float)std::exp(-walk.weights[i] / gamma) : 1.f;
         behind[walk.parents[i]] += s[i] * behind[i];
     }
-    Mat_<int> means(size, std::max(count, 0));
+    Mat_<int> means(size, count);
     for (int i = 0; i < size; ++i)
         for (int k = 0; k < count; ++k)
-            means(i, k) = scale * (int)cost(walk.pixels[i], first + k);
+            means(i, k) = scale * (int)cost(walk.pixels[i], k);
     for (int i = size - 1; i > 0; --i)
         for (int k = 0, parent = walk.parents[i]; k < count; ++k)
         {
-            const int difference = means(i, k) - scale * (int)cost(walk.pixels[parent], first + k);
+            const int difference = means(i, k) - scale * (int)cost(walk.pixels[parent], k);
             means(parent, k) += rounded(share(s[i] * behind[i] / behind[parent]) * difference);
         }
     all[0] = behind[0];

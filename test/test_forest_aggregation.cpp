@@ -242,7 +242,7 @@ struct CensusLayer : Layer
     }
 };
 
-//! Each mean of the volume is that of the formula, and near that of the explicit sums; the pixels of each tree are told.
+//! Each mean of the volume is that of the formula, and near that of the explicit sums; the volume has the pixels of each tree.
 void expectMeans(const CensusLayer& layer, int disparities, double gamma, hdp::MeanBuffers& buffers, int step = 1)
 {
     hdp::CostVolume volume;
@@ -256,7 +256,7 @@ void expectMeans(const CensusLayer& layer, int disparities, double gamma, hdp::M
     {
         const hdp::DisparityTree& tree = layer.forest.trees[t];
         hdp::walkTree(layer.forest, tree, walk);
-        const Mat_<int> expected = oracle::treeMeans(walk, tree.size, layer.costTable, gamma, 0, disparities);
+        const Mat_<int> expected = oracle::treeMeans(walk, tree.size, layer.costTable, gamma, disparities);
         for (int i = 0; i < tree.size; ++i)
         {
             const int p = walk.pixels[i];

@@ -245,7 +245,7 @@ const Change commonChanges[] = {
     }) },
 };
 
-//! For trees between the top layer and the finest one
+//! For trees below the top layer
 const Change intervalChanges[] = {
     { "delta0", inParams([](Params& p) { p.delta0 = 0.3; }) },
     { "beta", inParams([](Params& p) { p.beta = 0.1; }) },
@@ -311,11 +311,10 @@ TEST(HDPStereo_MatcherContract, parameters_have_an_effect)
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, disparities);
         const int aggregation = matcher->getParams().aggregation;
         const bool hasSums = aggregation == HDPTreeMatcher::AGGREGATION_TREES;
-        const bool hasTreesBelow = aggregation != HDPTreeMatcher::AGGREGATION_SCANLINES;
         expectEffects(preset, commonChanges, true);
-        expectEffects(preset, intervalChanges, hasTreesBelow, 3);
+        expectEffects(preset, intervalChanges, hasSums, 3);
         expectEffects(preset, refinementChanges, hasSums);
-        expectEffects(preset, topChanges, !hasTreesBelow);
+        expectEffects(preset, topChanges, !hasSums);
         if (matcher->getParams().matchingCost == HDPTreeMatcher::COST_COLOR_GRADIENT)
             expectEffects(preset, colorAndGradientChanges, true);
         // Otherwise the top layer alone is matched.
@@ -819,7 +818,7 @@ TEST(HDPStereo_MatcherContract, search_ratios)
     EXPECT_EQ(std::vector<double>(1, 1.), ratios);
 }
 
-//! At least two, or three that leave the top one 16 disparities or more, and so many that it has 32 or less, 48 or 64
+//! At least two, or three that leave the top one 16 disparities or more, and so many that it has 45 or less, 55 or 90
 TEST(HDPStereo_MatcherContract, number_of_layers)
 {
     for (const System& preset : presets)

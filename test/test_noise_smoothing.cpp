@@ -10,7 +10,7 @@ namespace opencv_test { namespace {
 TEST(HDPStereo_NoiseSmoothing, is_a_filter_of_3_x_3_pixels)
 {
     RNG rng(81);
-    for (int neighbour : { 0, 1, 27, hdp::mostSmoothing + 0 })
+    for (int neighbour : { 0, 1, 27, hdp::mostSmoothing })
     {
         const Mat weights = (Mat_<double>(3, 1) << neighbour, 256 - 2 * neighbour, neighbour) / 256;
         for (const Size& size : { Size(1, 1), Size(7, 1), Size(1, 9), Size(2, 2), Size(45, 31) })

@@ -448,7 +448,7 @@ TEST(HDPStereo_Plan, smooths_the_more_the_noisier_a_pair_is)
         EXPECT_LE(smoothing(noise), last + 8) << noise << ", without a cliff";
         last = smoothing(noise);
     }
-    EXPECT_EQ(hdp::mostSmoothing + 0, smoothing(1e4));
+    EXPECT_EQ(hdp::mostSmoothing, smoothing(1e4));
     p.noiseThreshold = 1;
     EXPECT_EQ(0, smoothing(1));
     EXPECT_LT(0, smoothing(1.5));

@@ -180,8 +180,8 @@ TEST(HDPStereo_CostVolume, prefer)
     {
         const int rise = penalty(7.25, k, largest);
         EXPECT_EQ(flatCost + rise, costsOf(0)[k]);
-        EXPECT_EQ(before[2 * CostVolume::chunk + k], costsOf(1)[k]) << "of another pixel";
-        EXPECT_EQ(std::min(before[4 * CostVolume::chunk + k] + rise, 255), costsOf(2)[k]);
+        EXPECT_EQ(before[volume.start(1) + k], costsOf(1)[k]) << "of another pixel";
+        EXPECT_EQ(std::min(before[volume.start(2) + k] + rise, 255), costsOf(2)[k]);
     }
     preferDisparity(0, 1e6, largest, volume); // beyond the candidates, whose costs all rise by as much
     EXPECT_EQ(flatCost + largest + largest, costsOf(0)[0]);

@@ -108,11 +108,6 @@ static std::vector<Variant> variantsOf(int preset)
         variants[0].name = "PRESET_TREE";
         addChange(variants, "aggregation = AGGREGATION_TREES", [](P& p) { p.aggregation = M::AGGREGATION_TREES; });
         add<int>(variants, "maxTopDisparities", &P::maxTopDisparities, { 32, 128 });
-        add<double>(variants, "delta0", &P::delta0, { 0.005, 0.08 });
-        add<double>(variants, "beta", &P::beta, { 0.6, 0.98 });
-        add<int>(variants, "intervalMargin", &P::intervalMargin, { 0, 4 });
-        addChange(variants, "disparityPrior = PRIOR_SUPPORT_POINTS",
-                  [](P& p) { p.disparityPrior = M::PRIOR_SUPPORT_POINTS; });
         add<bool>(variants, "usePrediction", &P::usePrediction, { false });
         addChange(variants, "matchingCost = COST_COLOR_GRADIENT, blockSize = 1", [](P& p) {
             p.matchingCost = M::COST_COLOR_GRADIENT;

@@ -24,6 +24,8 @@ void CostVolume::create(const Size& layerSize, int candidates, int stepsPerPixel
     numDisparities = candidates;
     steps = stepsPerPixel;
     intervals = Mat();
+    if ((uint64)size.area() * stride() > SIZE_MAX / sizeof(short)) // of sums, on machines of 32 bits
+        CV_Error(Error::StsNoMem, "numDisparities is too large for images of this size");
     grown(costs, total());
 }
 

@@ -5,11 +5,11 @@
 #define OPENCV_HDPSTEREO_COST_VOLUME_HPP
 
 #include "../cost/census_cost.hpp"
-#include "disparity_forest.hpp"
+#include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! Costs of the candidates of all pixels, which are the same for all of them
+//! The costs of all pixels, which have the same candidates
 struct CV_EXPORTS CostVolume
 {
     static const int scale = TwoLayerCost::scale; // of the costs, for their fractions
@@ -21,13 +21,21 @@ struct CV_EXPORTS CostVolume
     int steps = 1;            // candidates per pixel of disparity
     Mat intervals;            // DisparityInterval of each pixel, from excludeCandidates(); empty: all
     std::vector<uchar> costs; // that of pixel y * width + x and candidate d at [start(pixel) + d]; it only ever grows
-    // Of means over trees: pixels y * width + x, tree by tree, and where those of a tree begin
+    // Of aggregateMeans() alone: pixels y * width + x, tree by tree, and where those of each tree begin
     std::vector<int> treePixels, treeStarts;
 
     //! Costs in memory: of a pixel, in whole chunks, and of all
     int stride() const { return (numDisparities + chunk - 1) / chunk * chunk; }
     size_t total() const { return (size_t)size.area() * stride(); }
     size_t start(int pixel) const { return (size_t)pixel * stride(); }
+
+    //! The candidates that a pixel has
+    DisparityInterval intervalOf(int pixel) const
+    {
+        if (intervals.empty())
+            return { 0, (ushort)(numDisparities - 1) };
+        return intervals.ptr<DisparityInterval>()[pixel];
+    }
 
     //! The lowest cost of a pixel
     uchar lowestOf(int pixel) const;

@@ -35,9 +35,10 @@ struct Run
 void addRuns(const CostVolume& volume, int pixel, std::vector<Run>& runs)
 {
     const uchar *const costs = &volume.costs[volume.start(pixel)], least = volume.lowestOf(pixel);
+    const DisparityInterval own = volume.intervalOf(pixel);
     bool isOpen = false;
     int lowest = 0, from = 0; // of the run
-    for (int k = 0; k < volume.numDisparities; ++k)
+    for (int k = own.first; k <= own.last; ++k)
     {
         if (costs[k] > least + fitRise)
         {

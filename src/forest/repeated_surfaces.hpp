@@ -18,7 +18,7 @@ together with those that share one of these. A surface's size is the number of i
 up to a period, that repeat in the left image a period to the left or to the right, with some contrast in between. In
 each pixel of an area, all candidates but those of its largest surface get higher costs; the lowest one wins a tie.
 @param own The census of the layer, for its grey levels.
-@param volume The costs, to which those are added; all pixels have the same candidates.
+@param volume The costs, which are raised.
 @return Number of pixels in areas; small ones are noise, and change nothing, as does a volume of which a sample of
 pixels says that too few repeat. */
 CV_EXPORTS int preferLargestSurfaces(const CensusCost& own, CostVolume& volume);

@@ -32,8 +32,8 @@ struct MeanScratch
 
 typedef ScratchPool<MeanScratch> MeanBuffers;
 
-/** The weighted means of M over each tree, C(p, x) / sum over q in the tree of S(p, q). Unlike C they can be compared
-between pixels, of other trees as well. They are computed in whole numbers of 16 bits, in units of 1 /
+/** The weighted means of the cost M over each tree, sum over q of S(p, q) M(q, x) / sum over q of S(p, q). Unlike the
+paper's sums they can be compared between pixels, also of different trees. They are computed in whole numbers of 16 bits, in units of 1 /
 MeanNode::meanScale of a bit. With w(p) = 1 + sum over p's children c of S(p, c) w(c), and W(p) = S W(parent) + (1 -
 S^2) w(p), S = S(p, parent), W = w at the root, which are sums of S over the pixels behind p and over the whole tree, in
 floats, children from the last one of the walk on,
@@ -43,7 +43,7 @@ U(p) = M(p) + sum over p's children c of round(s(c) (U(c) - M(p)) / unit), from 
 V(p) = U(p) + round(t(p) (V(parent) - U(p)) / unit), from the root to the leaves; V = U at the root.
 Halves are rounded up. So means of equal costs are these costs, and all means are in the range of the costs, but for
 some 1 / 1024 of a bit.
-@param numDisparities All trees have as many candidates, from 0 on.
+@param numDisparities Candidates of all trees, from 0 on.
 @param volume Receives V times CostVolume::scale, rounded. */
 CV_EXPORTS void aggregateMeans(const DisparityForest& forest, const TwoLayerCost& cost, int numDisparities,
                                double gamma, MeanBuffers& buffers, CostVolume& volume);

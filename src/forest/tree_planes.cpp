@@ -53,7 +53,9 @@ public:
                 before_ += costs[candidateAt(disparity_.back())];
                 const uchar lowest = volume.lowestOf(pixel);
                 lowest_[group] += lowest;
-                haveContrast_ = haveContrast_ || std::count(costs, costs + candidates_, lowest) < candidates_;
+                const DisparityInterval own = volume.intervalOf(pixel);
+                haveContrast_ =
+                    haveContrast_ || std::count(costs + own.first, costs + own.last + 1, lowest) < own.size();
             }
         }
         firsts_[groups] = count_;

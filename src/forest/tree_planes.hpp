@@ -5,6 +5,7 @@
 #define OPENCV_HDPSTEREO_TREE_PLANES_HPP
 
 #include "cost_volume.hpp"
+#include "disparity_forest.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -18,7 +18,7 @@ const int64 costsAtOnce = 1 << 22;
 // Smaller trees are aggregated by one thread each.
 const int largeTree = 1 << 15;
 
-// Groups of candidates that a large tree's are divided into
+// The most groups that the candidates of a large tree are divided into
 const int maxGroups = 4;
 
 // Work, in aggregated costs, of a task of small trees
@@ -68,8 +68,8 @@ struct CandidateGroups
     }
 
     //! Calls take(group, scratch) for each; own: the scratch of this thread.
-    template <typename Buffers, typename Scratch, typename Take>
-    void forEach(Buffers& buffers, Scratch& own, const Take& take) const
+    template <typename Scratch, typename Take>
+    void forEach(ScratchPool<Scratch>& buffers, Scratch& own, const Take& take) const
     {
         if (count == 1)
             return take(0, own);

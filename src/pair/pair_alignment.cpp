@@ -13,7 +13,7 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_TUNABLE(double, smoothingPerLevel, 32, "1/256 per grey level",
-            "of a pixel's neighbour, by the noise above the threshold: more loses texture, less keeps noise");
+            "weight of a pixel's neighbour by the noise above the threshold: more loses texture, less keeps noise");
 
 bool hasGreyLevels(const std::vector<LayerImages>& images)
 {
@@ -43,23 +43,27 @@ void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const s
 }
 
 //! A row of smoothNoise(). columns: memory, and one more element at both ends
-void smoothRow(const ushort* above, const ushort* own, const ushort* below, int width, int side, int* columns,
+void smoothRow(const ushort* above, const ushort* own, const ushort* below, int width, int neighbour, int* columns,
                ushort* smoothed)
 {
-    const int middle = 256 - 2 * side;
-    HDP_VECTORIZED for (int x = 0; x < width; ++x) columns[x] = middle * own[x] + side * (above[x] + below[x]);
+    const int middle = 256 - 2 * neighbour;
+    HDP_VECTORIZED for (int x = 0; x < width; ++x) columns[x] = middle * own[x] + neighbour * (above[x] + below[x]);
     columns[-1] = columns[0];
     columns[width] = columns[width - 1];
     HDP_VECTORIZED for (int x = 0; x < width; ++x) smoothed[x] =
-        (ushort)((middle * columns[x] + side * (columns[x - 1] + columns[x + 1]) + (1 << 15)) >> 16);
+        (ushort)((middle * columns[x] + neighbour * (columns[x - 1] + columns[x + 1]) + (1 << 15)) >> 16);
 }
 
 } // namespace
 
+double AlignmentPlan::excessNoise(const LayerNoise& noise) const
+{
+    return noiseThreshold > 0 ? std::max(noise.ofLayer(finestLayer) - noiseThreshold, 0.) : 0;
+}
+
 int AlignmentPlan::smoothing(const LayerNoise& noise) const
 {
-    const double above = noise.ofLayer(finestLayer) - noiseThreshold;
-    return noiseThreshold > 0 ? (int)clamped(smoothingPerLevel * above, 0., (double)mostSmoothing) : 0;
+    return (int)std::min(smoothingPerLevel * excessNoise(noise), (double)mostSmoothing);
 }
 
 void smoothNoise(const Mat& image, int neighbour, Mat& smoothed)

@@ -21,7 +21,10 @@ struct AlignmentPlan
 
     bool looksForAnything() const { return maxRowOffset > 0 || findsLight || noiseThreshold > 0; }
 
-    //! What smoothNoise() is to do to a pair: by the noise where matching ends, whichever layer tells it.
+    //! By how much the noise of the finest layer, whichever layer it was measured in, is above the threshold, in levels
+    //! of 255; 0: it is not.
+    CV_EXPORTS double excessNoise(const LayerNoise& noise) const;
+    //! The weight of neighbours for smoothNoise(); 0: none
     CV_EXPORTS int smoothing(const LayerNoise& noise) const;
 };
 
@@ -49,15 +52,14 @@ struct AlignmentBuffers
     std::vector<LayerImages> smoothed;
 };
 
-/** A filter of 3 x 3 pixels for the images of a noisy pair. Of what a row or a column is mixed of, some 1 / 256 are a
-pixel's neighbour on either side; the sum is rounded once. cv::sepFilter2D() does the same to numbers of 16 bits in
-several times as long.
-@param image CV_16UC1, values up to 1023; its border is repeated.
-@param neighbour Their weight, up to mostSmoothing. */
-CV_EXPORTS void smoothNoise(const Mat& image, int neighbour, Mat& smoothed);
-
-//! A binomial filter: 1, 2, 1
+//! The largest weight of a neighbour: that of the binomial filter 1 2 1
 const int mostSmoothing = 64;
+
+/** A separable filter of 3 x 3 pixels for the images of a noisy pair: along rows and columns each neighbour weighs so
+many 1 / 256, the pixel the rest; the sum is rounded once.
+@param image CV_16UC1, values up to 1023; its border is repeated.
+@param neighbour That weight, 0..mostSmoothing. */
+CV_EXPORTS void smoothNoise(const Mat& image, int neighbour, Mat& smoothed);
 
 /** Gives the right image the rows and the light of the left one, from the finest layer on, if that is worth it, and
 smooths the grey levels of noisy pairs. The guides stay.

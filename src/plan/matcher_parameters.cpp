@@ -135,10 +135,11 @@ HDPTreeMatcher::Params::Params(int preset)
     gamma = isPaper ? 25.5 : 20;
     useMedianPrefilter = false;
 
-    disparityPrior = PRIOR_SUPPORT_POINTS;
-    delta0 = AUTO;
-    beta = AUTO;
-    intervalMargin = 0;
+    // TREE: better than the paper's for the census, if aggregation becomes AGGREGATION_TREES
+    disparityPrior = isTree ? PRIOR_UPPER_LAYER : PRIOR_SUPPORT_POINTS;
+    delta0 = isTree ? 0.02 : (double)AUTO;
+    beta = isTree ? 0.9 : (double)AUTO;
+    intervalMargin = isTree ? 2 : 0;
 
     P1 = 16;
     P2 = 65;

@@ -26,6 +26,9 @@ const int maxWindow = 31;
 HDP_TUNABLE(double, toleratedNoise, 0.45, "standard deviations of the noise",
             "what differs by less is not darker: more loses texture, less takes noise for it");
 
+HDP_TUNABLE(double, guideNoise, 1, "grey levels above the threshold",
+            "from which edges are those of a median: less loses edges, more takes noise for them");
+
 HDP_TUNABLE(double, allCandidatesP2, 1.3, "P2",
             "the large penalty of scanlines over all candidates: more drags surfaces across borders, less keeps noise");
 
@@ -244,7 +247,7 @@ LayerPlan planLayer(const MatcherParameters& p, Size size, int layer, int layers
     plan.cost = planCost(p);
     plan.method = methodOf(p, plan);
     const bool hasVolume = plan.method == TREE_SCANLINES || plan.method == COST_SCANLINES;
-    plan.seesBelow = (hasVolume && plan.isTop && !plan.isFinest) || plan.method == RANGE_SCANLINES;
+    plan.seesBelow = (hasVolume && !plan.isFinest) || plan.method == RANGE_SCANLINES;
     if (plan.seesBelow)
         plan.numDisparities = layerDisparities(p.numDisparities, layer - 1, false);
     if (plan.method == WINDOW_SCANLINES)
@@ -296,7 +299,7 @@ MatcherParameters completed(MatcherParameters p, const Range& known)
 {
     if (p.numDisparities == 0)
         p = known.empty() ? withRange(p, 0, 1) : withRange(p, known.start, known.size());
-    if (p.aggregation == M::AGGREGATION_TREE_SCANLINES) // another name for both
+    if (p.aggregation == M::AGGREGATION_TREE_SCANLINES) // an older name for these two values together
     {
         p.aggregation = M::AGGREGATION_SCANLINES;
         p.topAggregation = M::AGGREGATION_TREE_SCANLINES;
@@ -366,7 +369,7 @@ PairPlan plan(const MatcherParameters& parameters, Size size, int type, const Pa
 PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFindings& video)
 {
     PairPlan adapted = plan;
-    const int smoothing = plan.alignment.smoothing(findings.noise);
+    const bool hasNoisyGuide = plan.alignment.excessNoise(findings.noise) >= guideNoise;
     for (LayerPlan& layer : adapted.layers)
     {
         // With what the last frame predicts, the layer above has its disparities from many frames.
@@ -380,7 +383,7 @@ PairPlan adapt(const PairPlan& plan, const PairFindings& findings, const VideoFi
             penalties.edgeNoise = saturate_cast<uchar>(edgeNoise * findings.noise.ofLayer(layer.layer));
         if (layer.surfaceDifference > 0)
             layer.noise = findings.noise.ofLayer(layer.layer);
-        layer.smoothsGuide |= layer.method != WINDOW_SCANLINES && smoothing >= mostSmoothing / 2;
+        layer.smoothsGuide |= layer.method != WINDOW_SCANLINES && hasNoisyGuide;
     }
     LayerPlan& top = adapted.layers.front();
     top.checksLastFrame = video.verdict == CONTINUED && top.method == TREE_SCANLINES;

@@ -44,7 +44,7 @@ The winner has the lowest sum of the directions, the lowest disparity if there a
 candidates beside it give the sub-pixel part, see winnerFraction(), whose limits are costs of 8 and 14 in each
 direction. Of the first candidate and of the last one, the fraction may lie towards the others: the sum beyond it is
 that of the slope between those next to it, or that which leaves the fraction at 0. First and last are those of
-volume.intervals, if it has some and the winner lies in its pixel's.
+volume.intervals, if it has some and the winner lies in that of its pixel.
 @param volume The costs C.
 @param weights w, CV_8UC2, see weighEdges().
 @param sums Memory to work in: those of the directions so far, in the order of the volume; it only ever grows.

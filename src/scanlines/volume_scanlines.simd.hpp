@@ -80,7 +80,7 @@ public:
     }
 
 private:
-    //! vectors: of the candidates, if the compiler is to know it, else 0
+    //! vectors: their number per pixel, if the compiler is to know it; else 0
     template <int role, int vectors> void follow(const Direction& direction)
     {
         // Local, as stores may alias all else
@@ -140,8 +140,8 @@ private:
             std::fill_n(before_ + k * (ptrdiff_t)lineLength_, p_.volume.numDisparities, (short)0);
     }
 
-    //! L of a pixel, and its minimum, from those of the pixel before; in the last direction, returns the first of the
-    //! lowest sums.
+    //! L of a pixel, from that of the pixel before; in the last direction, returns the first of the lowest sums.
+    //! minimumOfAll: of L of the pixel before; receives this one's
     template <int role, int vectors>
     CV_ALWAYS_INLINE int step(const Pixel& own, const Words& small, int large, const short* before, short* here,
                               int& minimumOfAll) const

@@ -63,7 +63,7 @@ export function showFindings(result) {
         noise === 0
             ? 'not measured'
             : `${noise.toFixed(1)} of 255 levels` +
-                  (noiseThreshold > 0 && noise >= noiseThreshold ? ', so both images were smoothed' : ''),
+                  (noiseThreshold > 0 && noise > noiseThreshold ? ', so both images were smoothed' : ''),
     );
     addFinding(
         'Searched',

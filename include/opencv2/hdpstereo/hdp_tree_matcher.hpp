@@ -116,7 +116,7 @@ public:
         PRESET_FAST = 1,      //!< the default: scanlines, on the top layer over means of trees
         PRESET_ULTRAFAST = 2, //!< PRESET_FAST at half the resolution
         PRESET_QUALITY = 3,   //!< slower and more accurate than PRESET_FAST
-        PRESET_TREE = 4       //!< PRESET_FAST with a finer top layer
+        PRESET_TREE = 4       //!< PRESET_FAST with a finer top layer, from 61 disparities on
     };
 
     //! Cost aggregation, see Params::aggregation and Params::topAggregation
@@ -222,8 +222,8 @@ public:
 
         /** @brief Noise above which both images are smoothed before they are matched, see Findings::noise.
 
-        The more noise, the stronger; without noise this would cost details. The blocks of strong JPEG compression are
-        smoothed, too. Standard deviation of the grey levels where matching ends, 255 being white, whatever the size of
+        The noisier a pair is, the more it is smoothed; without noise, smoothing would cost details. The blocks of
+        strong JPEG compression are smoothed, too. Standard deviation of the grey levels where matching ends, 255 being white, whatever the size of
         the images; of a pair that is dark or of low contrast, as it is matched. Finite, >= 0; 0: nothing is smoothed.
         PAPER: 0, others: 2. */
         CV_PROP_RW double noiseThreshold;
@@ -299,7 +299,7 @@ public:
         AGGREGATION_TREES is that of section 3. AGGREGATION_SCANLINES runs scanlines @cite Hirschmuller2008SGM over 16
         candidates per pixel around the disparity of the layer above, or over all of them on layers between the top and
         the finest one that have few; it needs COST_CENSUS. AGGREGATION_TREE_SCANLINES, which files of earlier versions
-        have, is AGGREGATION_SCANLINES with this as topAggregation. PAPER: AGGREGATION_TREES, others:
+        have, is AGGREGATION_SCANLINES with this as topAggregation, whatever that is. PAPER: AGGREGATION_TREES, others:
         AGGREGATION_SCANLINES. */
         CV_PROP_RW int aggregation;
 
@@ -342,7 +342,8 @@ public:
         /** @brief Source of P(D_l) (section 3.1), one of HDPTreeMatcher::DisparityPrior.
 
         The support points of @cite Geiger2010ELAS take time and miss the disparities of textureless surfaces; the upper
-        layer costs nothing, and is what counts with setDisparityRange(). All: PRIOR_SUPPORT_POINTS. */
+        layer costs nothing, and is what counts with setDisparityRange(). TREE: PRIOR_UPPER_LAYER, others:
+        PRIOR_SUPPORT_POINTS. */
         CV_PROP_RW int disparityPrior;
 
         /** @brief Threshold \f$\delta_0\f$ that ends the growth of a predicted interval (section 3.1).
@@ -350,19 +351,20 @@ public:
         A candidate of probability P joins an interval of total probability c while \f$P / (c + P) > \delta_l\f$, where
         \f$\delta_l = 2^l \delta_0\f$ in layer l. In [0, 1); the smaller, the wider the intervals. HDPTreeMatcher::AUTO:
         0.064 if the image is at least 1000 pixels wide, otherwise 0.004, as in the authors' program; the paper's text
-        has them the other way round. All: AUTO. */
+        has them the other way round. TREE: 0.02, others: AUTO. */
         CV_PROP_RW double delta0;
 
         /** @brief Threshold \f$\beta\f$ of DT-Rule 2 (section 3.2).
 
         Two trees are joined if their intervals overlap by at least this share of the hull of both. In [0, 1]; the
         larger, the more and the smaller the trees. HDPTreeMatcher::AUTO: 0.6 if the image is at least 1000 pixels wide,
-        otherwise 0.95, as in the authors' program; the paper's text has them the other way round. All: AUTO. */
+        otherwise 0.95, as in the authors' program; the paper's text has them the other way round. TREE: 0.9, others:
+        AUTO. */
         CV_PROP_RW double beta;
 
         /** @brief Number of candidates added on both sides of each predicted interval.
 
-        0..64; 2 where winners are to have fractions, which need neighbours. All: 0. */
+        0..64. TREE: 2, because the fraction of a winner needs neighbours, others: 0. */
         CV_PROP_RW int intervalMargin;
 
         //! @}
@@ -559,9 +561,9 @@ public:
     /** @brief Tells which disparities each pixel of the left image may have: a coarse product, the depth of a room.
 
     No others occur in the map. A pixel for which there are none between minDisparity and the last one, or no multiple
-    of 1 / 16 in its range, or no whole one without Params::useSubpixel, gets minDisparity - 1. Coarse
-    layers search the ranges alone, fine ones around them; what is found outside of a range moves to its end. The maps
-    stay until others are set. They are no parameters: files do not have them.
+    of 1 / 16 in its range, or no whole one without Params::useSubpixel, gets minDisparity - 1. Coarse layers search
+    the ranges alone, fine ones around them; what is found outside of a range moves to its end. The maps stay until
+    others are set. They are no parameters: files do not have them.
     @param smallest CV_16SC1 or CV_32FC1, in pixels, of the images' size or coarser: each pixel then has the range of
     the nearest one. Below 2048, as disparities of CV_16S are. NaN limits nothing. Copied. Both empty: there are no
     ranges.
@@ -658,7 +660,7 @@ public:
     /** @brief Returns the \f$P(D_l)\f$ that predicted a layer's intervals in the last compute() (section 3.1).
     @param layer l >= 0, 0 being the image.
     @param prior Receives a number >= 0 per candidate of the layer, from its first disparity on, up to a factor. Empty
-    if nothing was predicted there, as in the top layer, and in layers of scanlines over windows or all candidates.
+    if nothing was predicted there, as in the top layer, and in layers of scanlines.
      */
     CV_WRAP virtual void getLayerPrior(int layer, CV_OUT std::vector<double>& prior) const = 0;
 

@@ -23,7 +23,7 @@ struct TreeState
 
 The edges of the layer's graph are tried one after another (Rule 1 gives the order); an edge joins the two trees at its
 ends if Rule 2 allows it. DT-Rule 1 and 2, which take disparity into account, belong to the matcher and apply to every
-strategy.
+strategy where intervals are predicted, see HDPTreeMatcher::AGGREGATION_TREES.
 
 Derive from this class for a custom strategy:
 
@@ -61,7 +61,7 @@ public:
     images, for HDPTreeMatcher::COST_CENSUS, 9 / 8 of the difference of their levels, rounded up. CV_8UC2 of the
     layer's size, continuous, so that weights.ptr()[e] is the weight of edge e. Those of the last column to its right
     and of the last row below belong to no edge.
-    @param edges The edges that DT-Rule 1 left, by number; without prediction all edges of the image. To be brought into
+    @param edges The edges that DT-Rule 1 left, by number; where no intervals are predicted, all edges. To be brought into
     the order in which they are tried. compute() throws cv::Exception if one is added, removed or repeated.
 
     The default is ascending weight, equal weights by number, see ordersByWeight().
