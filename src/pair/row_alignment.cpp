@@ -18,15 +18,12 @@ namespace {
 
 HDP_TUNABLE(int, trackedArea, 600000, "pixels", "of the finest layer that is looked at: finer ones tell no more");
 HDP_TUNABLE(double, ownDeviation, 0.02, "pixels of the layer", "of a match's row, beside what its window says of it");
-HDP_TUNABLE(double, slopeDeviation, 2e-3, "rows per pixel", "cameras are turned by a tenth of a degree");
-HDP_TUNABLE(double, slopeChange, 1e-3, "rows per pixel", "of a slope from border to border: lenses and keystones");
+HDP_TUNABLE(
+    double, slopeDeviation, 2e-3, "rows per pixel",
+    "cameras are turned by a tenth of a degree; lenses and keystones change a slope from border to border by that");
 
 // What moves rows by less costs more by interpolation than it gains.
 HDP_TUNABLE(double, minMove, 0.12, "pixels", "root of the mean square of a model that is applied");
-
-HDP_TUNABLE(int, noiseMatches, 200, "matches", "that the noise is measured by: more cost time, fewer vary");
-HDP_TUNABLE(double, noiseFall, 1.7, "factor from a layer to the next",
-            "white noise would halve; that of cameras, which neighbours share, falls less");
 
 typedef RowModel::Coefficients Coefficients;
 
@@ -54,7 +51,7 @@ std::vector<RowMove> toMoves(const std::vector<CornerMatch>& matches, int layer,
 
 RowFit fitRows(const std::vector<RowMove>& moves, Size size)
 {
-    const double curve = slopeChange / size.width;
+    const double curve = slopeDeviation / size.width;
     FitPrior<RowModel::terms> prior;
     prior.deviations = Coefficients(size.height, slopeDeviation, slopeDeviation, curve, curve);
     const double offset = medianOf(moves, [](const RowMove& move) { return move.value; });
@@ -65,13 +62,9 @@ RowFit fitRows(const std::vector<RowMove>& moves, Size size)
 //! window, where interpolation averages it.
 double noiseOf(const Mat& left, const Mat& right, const std::vector<CornerMatch>& matches)
 {
-    const auto isValid = [](const CornerMatch& match) { return match.isValid; };
-    const int count = (int)std::count_if(matches.begin(), matches.end(), isValid),
-              step = (count - 1) / noiseMatches + 1;
     std::vector<double> differences;
-    int i = 0;
     for (const CornerMatch& match : matches)
-        if (match.isValid && i++ % step == 0)
+        if (match.isValid)
             differences.push_back(quietDifference(left, right, match));
     const size_t tenth = differences.size() / 10;
     std::nth_element(differences.begin(), differences.begin() + tenth, differences.end());
@@ -176,10 +169,7 @@ void alignRow(const Mat& right, const RowModel& model, const ImageFrame& frame, 
 
 double LayerNoise::ofLayer(int other) const
 {
-    double noise = deviation; // not by std::pow(), which differs between machines
-    for (int l = layer; l != other; l += l < other ? 1 : -1)
-        noise = l < other ? noise / noiseFall : noise * noiseFall;
-    return noise;
+    return std::ldexp(deviation, layer - other); // white noise halves from a layer to the next
 }
 
 void estimateRows(const CoarseMatches& coarse, int finestLayer, int maxOffset, RowFindings& findings)

@@ -50,7 +50,6 @@ HDP_TUNABLE(
 // Scanlines over all candidates
 HDP_TUNABLE(int, mostRangeDisparities, 97, "disparities",
             "of layers that are matched over the whole range: more take longer, fewer lose surfaces at their borders");
-HDP_TUNABLE(double, rangeP1, 1.1, "P1", "of costs in half pixels: more flattens slanted surfaces, less keeps noise");
 HDP_TUNABLE(int, rangePriorDistance, 3, "candidates",
             "from what the layer above has, for each of which a cost rises by half a bit: more keeps its errors, less "
             "loses bare surfaces");
@@ -205,11 +204,10 @@ VolumePenalties planVolume(const MatcherParameters& p, const LayerPlan& layer)
 RangePenalties planRange(const MatcherParameters& p)
 {
     const auto halfBits = [](double bits) { return std::min(cvRound(2 * bits), +RangePenalties::largest); };
-    const double ofPixel = rangeP1 * p.P1; // for a step of a pixel
     RangePenalties penalties;
-    penalties.small = halfBits(ofPixel / 2); // candidates are half a pixel apart
+    penalties.small = halfBits(p.P1 / 2.); // candidates are half a pixel apart
     penalties.large = halfBits(allCandidatesP2 * p.P2);
-    penalties.leastLarge = halfBits(ofPixel); // another surface is nowhere cheaper than that step
+    penalties.leastLarge = halfBits(p.P1); // another surface is nowhere cheaper than a step of a pixel
     penalties.gamma = p.gamma * edgeGamma;
     penalties.priorDistance = rangePriorDistance;
     penalties.maxPrior = rangeMaxPrior;
