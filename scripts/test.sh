@@ -14,8 +14,7 @@ packages=(build-essential cmake libopencv-dev)
 if [ "${1:-}" = --sanitize ]; then
     preset=sanitize
     shift
-    # Only the widest instruction set is built: no other would be run.
-    options+=("-DHDPSTEREO_CPU_DISPATCH=$(grep -q avx512_bitalg /proc/cpuinfo && echo AVX512_ICL || echo AVX2)")
+    grep -q avx512_bitalg /proc/cpuinfo || options+=(-DHDPSTEREO_CPU_DISPATCH=AVX2) # the widest one that is run
 else
     packages+=(python3-dev python3-numpy pybind11-dev mypy doxygen texlive-binaries libjs-mathjax
         # programs for hdpstereo-run

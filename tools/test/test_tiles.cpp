@@ -379,7 +379,7 @@ TEST(HDPStereo_Tiles, sparse_files)
 }
 
 //! The files of images are not mapped into memory; what matches them has as much as it may.
-TEST(HDPStereo_Tiles, take_the_memory_they_may)
+TEST(HDPStereo_SlowTiles, take_the_memory_they_may)
 {
     const DatasetFolder folder;
     {
