@@ -33,8 +33,9 @@ struct MeanScratch
 typedef ScratchPool<MeanScratch> MeanBuffers;
 
 /** The weighted means of the cost M over each tree, sum over q of S(p, q) M(q, x) / sum over q of S(p, q). Unlike the
-paper's sums they can be compared between pixels, also of different trees. They are computed in whole numbers of 16 bits, in units of 1 /
-MeanNode::meanScale of a bit. With w(p) = 1 + sum over p's children c of S(p, c) w(c), and W(p) = S W(parent) + (1 -
+paper's sums they can be compared between pixels, also of different trees. They are computed in whole numbers of 16
+bits, in units of 1 / MeanNode::meanScale of a bit.
+With w(p) = 1 + sum over p's children c of S(p, c) w(c), and W(p) = S W(parent) + (1 -
 S^2) w(p), S = S(p, parent), W = w at the root, which are sums of S over the pixels behind p and over the whole tree, in
 floats, children from the last one of the walk on,
 s(p) = floor(unit S(p, parent) w(p) / w(parent)), t(p) = floor(unit S(p, parent) W(parent) / W(p)), unit =

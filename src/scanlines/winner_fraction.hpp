@@ -58,8 +58,8 @@ struct Winners
         slope[i] = (short)std::max(std::max(before, after) - sum, 1);
     }
 
-    //! The same for candidate k of 0 .. last, between the ends of the pixel's own interval, if it has one and the winner
-    //! lies in it: costs beyond are not those of candidates.
+    //! The same for candidate k of 0 .. last, between the ends of the pixel's own interval, if it has one and the
+    //! winner lies in it: costs beyond are not those of candidates.
     template <typename Sum>
     CV_ALWAYS_INLINE void setWithin(int i, const Sum* sums, int k, int last, const DisparityInterval* own) const
     {

@@ -223,9 +223,9 @@ public:
         /** @brief Noise above which both images are smoothed before they are matched, see Findings::noise.
 
         The noisier a pair is, the more it is smoothed; without noise, smoothing would cost details. The blocks of
-        strong JPEG compression are smoothed, too. Standard deviation of the grey levels where matching ends, 255 being white, whatever the size of
-        the images; of a pair that is dark or of low contrast, as it is matched. Finite, >= 0; 0: nothing is smoothed.
-        PAPER: 0, others: 2. */
+        strong JPEG compression are smoothed, too. Standard deviation of the grey levels where matching ends, 255 being
+        white, whatever the size of the images; of a pair that is dark or of low contrast, as it is matched. Finite,
+        >= 0; 0: nothing is smoothed. PAPER: 0, others: 2. */
         CV_PROP_RW double noiseThreshold;
 
         //! @}

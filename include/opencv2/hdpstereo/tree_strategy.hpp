@@ -61,8 +61,8 @@ public:
     images, for HDPTreeMatcher::COST_CENSUS, 9 / 8 of the difference of their levels, rounded up. CV_8UC2 of the
     layer's size, continuous, so that weights.ptr()[e] is the weight of edge e. Those of the last column to its right
     and of the last row below belong to no edge.
-    @param edges The edges that DT-Rule 1 left, by number; where no intervals are predicted, all edges. To be brought into
-    the order in which they are tried. compute() throws cv::Exception if one is added, removed or repeated.
+    @param edges The edges that DT-Rule 1 left, by number; where no intervals are predicted, all edges. To be brought
+    into the order in which they are tried. compute() throws cv::Exception if one is added, removed or repeated.
 
     The default is ascending weight, equal weights by number, see ordersByWeight().
      */
