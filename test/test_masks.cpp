@@ -346,7 +346,7 @@ TEST(HDPStereo_Masks, costs_of_pixels_without_data)
 {
     RNG rng(12);
     const Size size(50, 20);
-    const int numDisparities = 30;
+    const int numDisparities = 70;
     const Mat left = randomImage(rng, size, CV_16UC1, 1021), right = randomImage(rng, size, CV_16UC1, 1021);
     const hdp::PairMasks masks = { randomImage(rng, size, CV_8UC1), randomImage(rng, size, CV_8UC1) };
     hdp::CensusCost plain, limited;
@@ -354,9 +354,10 @@ TEST(HDPStereo_Masks, costs_of_pixels_without_data)
     limited.prepare(left, right, numDisparities, 7, 2, masks);
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
-            for (int lanes : { 4, 8, 16, 32 })
+            for (int lanes : { 4, 8, 16, 32, 64 })
             {
-                const int pixel = y * size.width + x, first = rng.uniform(0, numDisparities);
+                const int pixel = y * size.width + x, mostFirst = numDisparities + hdp::costPadding - lanes,
+                          first = rng.uniform(0, std::min(mostFirst + 1, numDisparities));
                 std::vector<float> expected(lanes), costs(lanes);
                 std::vector<uchar> bytes(lanes);
                 plain.evaluate(&pixel, 1, first, lanes, expected.data());

@@ -18,8 +18,10 @@ void expectCosts(const TwoLayerCost& cost, Size size, int candidates, const std:
 {
     std::vector<int> pixels(size.area());
     std::iota(pixels.begin(), pixels.end(), 0);
-    for (int lanes : { 4, 8, 16, 32 })
+    for (int lanes : { 4, 8, 16, 32, 64 })
     {
+        if (lanes > candidates + hdp::costPadding)
+            continue;
         std::vector<uchar> costs(pixels.size() * lanes);
         for (int first = 0; first < candidates; first += lanes)
         {
@@ -38,7 +40,7 @@ TEST(HDPStereo_TwoLayerCost, definition_per_pixel)
     RNG rng(50);
     for (int blockSize : { 7, 5, 3 })
         for (const Size& finer : { Size(2, 2), Size(3, 5), Size(41, 13), Size(66, 8) })
-            for (int candidates : { 1, 9, 40 })
+            for (int candidates : { 1, 9, 40, 100 })
             {
                 SCOPED_TRACE(testing::Message() << finer << ", candidates " << candidates << ", block " << blockSize);
                 const Size size(finer.width / 2, finer.height / 2);

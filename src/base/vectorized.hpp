@@ -10,7 +10,7 @@
 /** HDP_VECTORIZED before a loop whose iterations are independent of one another, for the compiler to make vector
 operations of: what one writes is neither read nor written in another, but for sums, extremes and bits in a local
 variable; and GCC does not unroll the loop before it could see that it is one for vectors. HDP_FOR_LANES(k, lanes) is
-such a loop over 4, 8, 16 or 32 lanes, a number that is known to the compiler, in groups of 8 that are unrolled. */
+such a loop over 4, 8, 16, 32 or 64 lanes, a number that is known to the compiler, in groups of 8 that are unrolled. */
 #if defined(__clang__)
 #pragma clang diagnostic ignored "-Wpass-failed" // a loop that it cannot make vectors of is slower, but not wrong
 #define HDP_VECTORIZED _Pragma("clang loop vectorize(assume_safety)")
@@ -49,7 +49,7 @@ CV_ALWAYS_INLINE int choose(int condition, int a, int b) { return b ^ ((a ^ b) &
 //! The value, or the limit that it is beyond
 template <typename T> CV_ALWAYS_INLINE T clamped(T value, T min, T max) { return std::min(std::max(value, min), max); }
 
-//! Task<lanes>::run(args...) for 4, 8, 16 or 32 lanes, then known to the compiler
+//! Task<lanes>::run(args...) for 4, 8, 16, 32 or 64 lanes, then known to the compiler
 template <template <int> class Task, typename... Args> CV_ALWAYS_INLINE void runTask(int lanes, Args&&... args)
 {
     switch (lanes)
@@ -60,8 +60,10 @@ template <template <int> class Task, typename... Args> CV_ALWAYS_INLINE void run
         return Task<8>::run(args...);
     case 16:
         return Task<16>::run(args...);
-    default:
+    case 32:
         return Task<32>::run(args...);
+    default:
+        return Task<64>::run(args...);
     }
 }
 

@@ -27,6 +27,8 @@ const int64 taskWork = 1 << 16;
 //! The lanes for a run of candidates: few more than there are, and not too many for the memory
 inline int countLanes(int candidates, int treeSize)
 {
+    if (candidates >= 64 && treeSize < largeTree) // as many of a large one are two tasks
+        return 64;
     int lanes = 4;
     while (lanes < candidates && lanes < 32 && (lanes < 8 || 2 * lanes * (int64)treeSize <= costsAtOnce))
         lanes *= 2;
