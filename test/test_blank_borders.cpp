@@ -177,6 +177,19 @@ TEST(HDPStereo_BlankBorders, darkness_is_none)
         image(spot).setTo(Scalar::all(0));
         EXPECT_FALSE(hasBorders(image, image));
     }
+
+    // Along a whole side, with an outline that is sharp, but rough: leaves, things on a shelf
+    for (int seed = 1; seed <= 8; ++seed)
+    {
+        RNG steps(seed);
+        Mat image = bright.clone();
+        for (int y = 0, length = 30; y < size.height; ++y)
+        {
+            length = std::min(std::max(length + steps.uniform(-4, 5), 10), 60);
+            image.row(y).colRange(0, length).setTo(Scalar::all(0));
+        }
+        EXPECT_FALSE(hasBorders(image, image)) << seed;
+    }
 }
 
 //! They begin at the sides of the whole, and may end beyond a tile.

@@ -12,11 +12,10 @@ HDP_TUNABLE(int, maxBlack, 2, "levels of 8 bits", "of borders, as JPEG leaves th
 HDP_TUNABLE(double, shareOfMean, 0.25, "share of the mean",
             "that ends a border: more takes shadows for it, less leaves what JPEG blurs at its end");
 HDP_TUNABLE(int, mostMixed, 10, "pixels", "between black and that level, as in a block of JPEG: shadows have more");
-HDP_TUNABLE(int, mostStep, 4, "pixels",
-            "between the ends of two rows: dark things in textured scenes have larger ones");
-HDP_TUNABLE(double, minRegular, 0.75, "share of the rows", "of a border that end so: others end at dark things");
-HDP_TUNABLE(double, minShallow, 0.9, "share of these",
-            "of a border between corners that end within a pixel of the one before: others end at dark things");
+HDP_TUNABLE(double, minSharp, 0.7, "share of the rows",
+            "of a border that end at that level: others end in dark parts of the scene");
+HDP_TUNABLE(int, span, 8, "rows", "between three whose ends lie on a line: fewer see a line in anything");
+HDP_TUNABLE(double, minSmooth, 0.9, "share of these", "of a border that do, but for rounding: other things are rough");
 HDP_TUNABLE(int, sidesPerBorder, 4, "lengths of a side",
             "of which one is in a border: less takes black things at the sides for it");
 HDP_TUNABLE(int, pixelsPerBorder, 100, "pixels", "of an image, of which one is in borders: fewer do no harm");
@@ -105,22 +104,24 @@ private:
     //! that reaches no corner is shallow, from nothing to nothing: that is how distortion bends the sides of an image.
     bool isBorder(int begin, int end) const
     {
-        const bool isInside = begin > 0 && end < side_.count;
-        int ending = 0, sharp = 0, regular = 0;
-        for (int i = begin, before = begin; i < end; ++i)
+        // What is black up to the end of a tile ends beyond it.
+        const auto endsHere = [this](int i) { return lines_[i].isSharp && lines_[i].blank < side_.length; };
+        int ending = 0, sharp = 0, compared = 0, smooth = 0;
+        for (int i = begin; i < end; ++i)
         {
             ending += !lines_[i].isOpen;
-            if (lines_[i].isOpen || !lines_[i].isSharp)
+            sharp += lines_[i].isSharp && !lines_[i].isOpen;
+            if (i < begin + span || i + span >= end || !endsHere(i - span) || !endsHere(i) || !endsHere(i + span))
                 continue;
-            ++sharp;
-            regular += std::abs(lines_[i].blank - lines_[before].blank) <= (isInside ? i - before : mostStep);
-            before = i;
+            ++compared;
+            const int bend = lines_[i - span].blank + lines_[i + span].blank - 2 * lines_[i].blank;
+            smooth += std::abs(bend) <= 2; // each is rounded
         }
         const bool goesOn = (begin == 0 && side_.isCutBefore) || (end == side_.count && side_.isCutBehind);
-        const bool isShallow =
-            regular >= minShallow * sharp && std::max(lines_[begin].blank, lines_[end - 1].blank) <= mostMixed;
-        return (goesOn || ending * sidesPerBorder >= side_.count) && regular >= minRegular * ending &&
-               (!isInside || isShallow);
+        const bool isShallow = std::max(lines_[begin].blank, lines_[end - 1].blank) <= mostMixed,
+                   reachesCorner = begin == 0 || end == side_.count;
+        return (goesOn || ending * sidesPerBorder >= side_.count) && sharp >= minSharp * ending &&
+               smooth >= minSmooth * compared && (reachesCorner || isShallow);
     }
 
     const Mat& image_;
