@@ -8,6 +8,8 @@
 #include "../src/base/units.hpp"
 #include "../src/map/prior_join.hpp"
 
+#include <numeric>
+
 namespace opencv_test { namespace {
 
 using hdp::PriorPoint;
@@ -23,6 +25,14 @@ public:
         const int enough = (int)std::ceil(std::sqrt(6. * winners.total() / points.size()));
         farthest_ = std::max(48 >> layer, 4);
         reach_ = std::min(farthest_, std::max(enough, 2));
+        const int columns = winners.cols / reach_ + 1;
+        const auto squareOf = [&](size_t i) {
+            const Point square = points[i].place / reach_;
+            return square.y * columns + square.x;
+        };
+        order_.resize(points.size());
+        std::iota(order_.begin(), order_.end(), 0);
+        std::stable_sort(order_.begin(), order_.end(), [&](size_t a, size_t b) { return squareOf(a) < squareOf(b); });
         for (const PriorPoint& point : points)
             agrees_.push_back(areAlike(winnerAt(point.place), point.disparity, point.sigma, 0));
         for (size_t i = 0; i < points.size(); ++i)
@@ -66,11 +76,11 @@ private:
         return std::abs(a - b) <= 0.7 + 2 * sigma + 0.15 * distance;
     }
 
-    //! The eight points within reach that weigh most
+    //! The eight points within reach that weigh most, of equal ones the first, square by square of the reach
     std::vector<Voice> around(Point place, const std::vector<bool>& asked) const
     {
         std::vector<Voice> voices;
-        for (size_t i = 0; i < points_.size(); ++i)
+        for (const size_t i : order_)
         {
             const double distance = distanceOf(points_[i].place, place);
             if (distance > reach_ || !asked[i])
@@ -241,6 +251,7 @@ private:
     int farthest_, reach_;
     std::vector<bool> agrees_, claims_, isContradicted_, speaks_; // by point
     std::vector<int> excess_;
+    std::vector<size_t> order_;
 };
 
 TEST(HDPStereo_PriorJoin, model)

@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "point_grid.hpp"
-
-#include "../base/vectorized.hpp"
+#include "point_grid.simd.hpp"
+#include "map/point_grid.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include <cmath>
 #include <numeric>
@@ -17,11 +17,14 @@ HDP_TUNABLE(double, colorScale, 30, "grey levels", "that weigh as much as a unit
 
 const int neighbours = 8; // that a pixel finds: more are farther away
 
+HDP_DISPATCH(weighPoints)
+
 } // namespace
 
 PointGrid::PointGrid(const std::vector<PriorPoint>& points, const Mat& guide, int reach, double unit)
-    : guide_(guide), reach_(reach), size_((guide.cols + reach - 1) / reach, (guide.rows + reach - 1) / reach),
-      begins_(size_.area() + 1), points_(points.size()), colors_(points.size())
+    : guide_(guide), reach_(reach), unit_((float)unit),
+      size_((guide.cols + reach - 1) / reach, (guide.rows + reach - 1) / reach), begins_(size_.area() + 1),
+      points_(points.size()), colors_(points.size())
 {
     for (const PriorPoint& point : points)
         ++begins_[cellOf(point.place) + 1];
@@ -49,18 +52,18 @@ Vec3b PointGrid::colorAt(Point place) const
     return guide_.channels() == 1 ? Vec3b::all(*pixel) : Vec3b(pixel);
 }
 
-//! Places and colours of what is gathered, in the order of the image
+//! Places and colours of what is gathered
 void PointGrid::describe(Surroundings& seen) const
 {
-    std::vector<int>& index = seen.index;
-    const auto isBefore = [this](int a, int b) {
-        const Point p = points_[a].place, q = points_[b].place;
-        return p.y != q.y ? p.y < q.y : p.x < q.x;
-    };
-    std::sort(index.begin(), index.end(), isBefore);
+    const std::vector<int>& index = seen.index;
+    const size_t size = alignSize(index.size(), Surroundings::block);
     for (std::vector<short>* values :
          { &seen.x, &seen.y, &seen.channels[0], &seen.channels[1], &seen.channels[2], &seen.squared, &seen.color })
-        values->resize(index.size());
+        values->resize(size);
+    seen.keys.resize(size);
+    seen.placeBits = 0;
+    while (index.size() >> seen.placeBits > 0)
+        ++seen.placeBits;
     for (size_t i = 0; i < index.size(); ++i)
     {
         seen.x[i] = (short)points_[index[i]].place.x;
@@ -70,49 +73,40 @@ void PointGrid::describe(Surroundings& seen) const
     }
 }
 
-void PointGrid::find(Point place, Surroundings& seen) const
+void PointGrid::weigh(Point place, Surroundings& seen) const
 {
-    const Vec3b color = colorAt(place);
-    const int count = (int)seen.index.size();
-    const short x = (short)place.x, y = (short)place.y, blue = color[0], green = color[1], red = color[2];
-    const short *const xs = seen.x.data(), *const ys = seen.y.data(), *const blues = seen.channels[0].data(),
-                       *const greens = seen.channels[1].data(), *const reds = seen.channels[2].data();
-    short *const squared = seen.squared.data(), *const colors = seen.color.data();
-    HDP_VECTORIZED for (int i = 0; i < count; ++i)
+    const float scale = (float)(1 << (27 - seen.placeBits)); // logarithms are less than 16
+    dispatched::weighPoints(place, colorAt(place), scale / unit_, scale / (float)colorScale, reach_, seen);
+}
+
+void PointGrid::find(Surroundings& seen) const
+{
+    double lowest[neighbours]; // in order
+    std::fill_n(lowest, +neighbours, (double)Surroundings::beyondReach);
+    // Without branches, which no processor could predict
+    size_t within = 0;
+    for (const int key : seen.keys)
     {
-        const short dx = (short)(xs[i] - x), dy = (short)(ys[i] - y);
-        squared[i] = (short)(dx * dx + dy * dy);
-        const int ofBlue = std::abs(blues[i] - blue), ofGreen = std::abs(greens[i] - green);
-        const int ofRed = std::abs(reds[i] - red), ofTwo = ofBlue > ofGreen ? ofBlue : ofGreen;
-        colors[i] = (short)(ofTwo > ofRed ? ofTwo : ofRed);
+        seen.keys[within] = key;
+        within += key != Surroundings::beyondReach;
     }
-    // Weights, and in bits that floats do not have, which of them; the heaviest first, of equal ones the first
-    double keys[neighbours] = {};
-    const unsigned lastKey = (1u << 29) - 1;
-    for (int i = 0; i < count; ++i)
+    for (size_t i = 0; i < within; ++i)
     {
-        if (squared[i] > reach_ * reach_)
-            continue;
-        // A float, as the last bits of std::exp() differ between machines.
-        const float weight = (float)(distanceWeights_[squared[i]] * colorWeights_[colors[i]]);
-        Cv64suf key;
-        key.f = weight;
-        key.u |= lastKey - i;
-        for (double& other : keys) // without a branch, which no processor could predict
+        double key = seen.keys[i];
+        for (double& other : lowest)
         {
-            const double larger = std::max(other, key.f);
-            key.f = std::min(other, key.f);
-            other = larger;
+            const double larger = std::max(other, key);
+            other = std::min(other, key);
+            key = larger;
         }
     }
     seen.found.clear();
-    for (int k = 0; k < neighbours && keys[k] > 0; ++k)
+    for (int k = 0; k < neighbours && lowest[k] < Surroundings::beyondReach; ++k)
     {
-        Cv64suf key;
-        key.f = keys[k];
-        const int i = (int)(lastKey - (unsigned)(key.u & lastKey));
-        key.u &= ~(uint64)lastKey;
-        seen.found.push_back({ seen.index[i], (float)key.f, distances_[squared[i]] });
+        const int i = seen.placeOf((int)lowest[k]);
+        // A float, as the last bits of std::exp() differ between machines
+        const float weight = (float)(distanceWeights_[seen.squared[i]] * colorWeights_[seen.color[i]]);
+        seen.found.push_back({ seen.index[i], weight, distanceTo(i, seen) });
     }
 }
 

@@ -23,7 +23,16 @@ struct Surroundings
 {
     std::vector<int> index;
     std::vector<short> x, y, channels[3];
-    std::vector<short> squared, color; // distance to the pixel, difference from its colour
+    // Of one of the pixels: its distance, the difference from its colour, and a key, the logarithm of 1 / weight and behind
+    // it the place in these vectors: so the lowest key is that of the heaviest point, the first one of several
+    std::vector<short> squared, color;
+    std::vector<int> keys;
+    int lowestKey, placeBits;               // these: of a key
+    static const int beyondReach = INT_MAX; // the key of other points
+    static const int block = 32;            // points that are weighed at once: there is memory for whole blocks
+
+    int placeOf(int key) const { return key & ((1 << placeBits) - 1); }
+
     std::vector<Neighbour> found;
 };
 
@@ -72,8 +81,13 @@ public:
         describe(seen);
     }
 
-    //! Finds the points that weigh most for a pixel of the cell, eight at most, the heaviest first.
-    void find(Point place, Surroundings& seen) const;
+    //! Weighs what was gathered for a pixel of the cell.
+    void weigh(Point place, Surroundings& seen) const;
+    //! Finds the heaviest points, eight at most, the heaviest first. After weigh().
+    void find(Surroundings& seen) const;
+    //! That of a point in `seen` from the pixel
+    double distanceTo(int i, const Surroundings& seen) const { return distances_[seen.squared[i]]; }
+    bool isWithinReach(int i, const Surroundings& seen) const { return seen.squared[i] <= reach_ * reach_; }
 
 private:
     Vec3b colorAt(Point place) const;
@@ -81,6 +95,7 @@ private:
 
     const Mat& guide_;
     const int reach_;
+    const float unit_;
     const Size size_;
     std::vector<int> begins_; // of the points of each cell
     std::vector<PriorPoint> points_;

@@ -76,11 +76,15 @@ public:
         grid_.forEachCell([&](const Rect& cell, Surroundings& seen) {
             grid_.gather(
                 cell, [this](int i) { return states_[i] != FAILS; }, seen);
-            const bool anyContested = std::any_of(seen.index.begin(), seen.index.end(), isContested);
+            std::vector<int> contested;
+            for (int i = 0; i < (int)seen.index.size(); ++i)
+                if (isContested(seen.index[i]))
+                    contested.push_back(i);
             for (int y = cell.y; y < cell.br().y; ++y)
                 for (int x = cell.x; x < cell.br().x; ++x)
-                    if (anyContested || !agrees.at<uchar>(y, x)) // or the winner stays
-                        limits.at<float>(y, x) = propose(Point(x, y), maxDisparity, seen, hypotheses.at<ushort>(y, x));
+                    if (!contested.empty() || !agrees.at<uchar>(y, x)) // or the winner stays
+                        limits.at<float>(y, x) =
+                            propose(Point(x, y), maxDisparity, contested, seen, hypotheses.at<ushort>(y, x));
         });
         sumCosts(hypotheses, ofHypotheses);
         parallelForRows(winners_.size(), [&](int y) {
@@ -192,7 +196,8 @@ private:
     //! Whether a third of the points around, by weight, agrees with a point
     bool isSupported(int index, Surroundings& seen) const
     {
-        grid_.find(points_[index].place, seen);
+        grid_.weigh(points_[index].place, seen);
+        grid_.find(seen);
         double supporting = 0, all = 0;
         for (const Neighbour& n : seen.found)
             if (n.index != index)
@@ -204,13 +209,34 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    //! The disparity that the points around a pixel propose; returns by how many bits its cost may be higher. proposed
+    //! Whether the heaviest point speaks for a winner, and none can speak against it: then it stays, as it does for most
+    //! pixels. contested: places of the points that may, in `seen`
+    bool isConfirmed(float winner, const std::vector<int>& contested, const Surroundings& seen) const
+    {
+        if (seen.lowestKey == Surroundings::beyondReach)
+            return true; // nothing is known
+        const int heaviest = seen.placeOf(seen.lowestKey);
+        const auto isNear = [&](int i, float disparity) {
+            return areAlike(winner, disparity, points_[seen.index[i]].sigma, grid_.distanceTo(i, seen));
+        };
+        const int index = seen.index[heaviest];
+        if (states_[index] == CONTRADICTED || !isNear(heaviest, points_[index].disparity))
+            return false;
+        return std::none_of(contested.begin(), contested.end(),
+                            [&](int i) { return grid_.isWithinReach(i, seen) && isNear(i, before_[seen.index[i]]); });
+    }
+
+    //! The disparity that the points around a pixel propose, of which the contested ones have these places in `seen`; returns by how many bits its cost may be higher. proposed
     //! stays the winner if fewer than two points are not contradicted, if as much speaks for it as against it, or if
     //! half of the points, by weight, were contradicted in favour of winners like it.
-    float propose(Point place, int maxDisparity, Surroundings& seen, ushort& proposed) const
+    float propose(Point place, int maxDisparity, const std::vector<int>& contested, Surroundings& seen,
+                  ushort& proposed) const
     {
         const float winner = winners_.ptr<ushort>(place.y)[place.x] * (1.f / subpixelScale);
-        grid_.find(place, seen);
+        grid_.weigh(place, seen);
+        if (isConfirmed(winner, contested, seen))
+            return 0;
+        grid_.find(seen);
         std::vector<Neighbour>& found = seen.found;
         double speaksFor = 0, against = 0, confirming = 0, all = 0;
         for (const Neighbour& n : found)
