@@ -73,11 +73,31 @@ inline int toPython(int value) { return value; }
 inline bool toPython(bool value) { return value; }
 inline double toPython(double value) { return value; }
 
-//! The setter of a field. An int is taken from what is one alone: pybind11 would cut the fractions of numpy's floats off.
-template <typename Class, typename Value> py::cpp_function setterOf(const py::object& type, Value Class::*field)
+inline std::string typeOf(const py::object& object)
 {
-    return py::cpp_function([field](Class& self, const Value& value) { self.*field = value; }, py::is_method(type),
-                            py::arg("value").noconvert(std::is_same<Value, int>::value));
+    return py::type::of(object).attr("__name__").cast<std::string>();
+}
+
+template <typename Value> const char* kindOf()
+{
+    return std::is_same<Value, bool>::value ? "a bool" : std::is_same<Value, int>::value ? "an int" : "a number";
+}
+
+//! The setter of a field. An int is taken from what is one alone: pybind11 would cut the fractions of numpy's floats off,
+//! and take None for False.
+template <typename Class, typename Value>
+py::cpp_function setterOf(const py::object& type, const std::string& name, Value Class::*field)
+{
+    const auto set = [name, field](Class& self, const py::object& value) {
+        const bool isNumber = std::is_arithmetic<Value>::value;
+        py::detail::make_caster<Value> caster;
+        if ((isNumber && value.is_none()) || !caster.load(value, !std::is_same<Value, int>::value))
+            throw py::type_error(name +
+                                 (isNumber ? std::string(" must be ") + kindOf<Value>() + ", not " : " cannot be ") +
+                                 typeOf(value));
+        self.*field = py::cast<Value>(value);
+    };
+    return py::cpp_function(set, py::is_method(type), py::arg("value"));
 }
 
 // Files

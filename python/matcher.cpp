@@ -89,8 +89,6 @@ std::unique_ptr<Matcher> create(int minDisparity, int numDisparities, int preset
     return std::unique_ptr<Matcher>(new Matcher(HDPTreeMatcher::create(minDisparity, numDisparities, preset)));
 }
 
-std::string typeOf(const py::object& object) { return py::type::of(object).attr("__name__").cast<std::string>(); }
-
 //! sgbm: of cv2, whose types this module does not know
 std::unique_ptr<Matcher> createLike(const py::object& sgbm, int preset)
 {
@@ -119,12 +117,20 @@ void addEnumeration(py::object& matcher, const char* name, const char* documenta
 
 py::object enumerator(const char* name, int value) { return py::type::of<Matcher>().attr(name)(value); }
 
+//! An array of numpy.ma is one, too.
+void requirePlain(const py::object& array, const char* name)
+{
+    if (py::isinstance(array, py::module_::import("numpy").attr("ma").attr("MaskedArray")))
+        throw py::type_error(std::string(name) + " must be a plain array, not a masked one: its mask would be ignored");
+}
+
 py::array toImage(const py::object& image, const char* name)
 {
     if (image.is_none())
         throw py::type_error(std::string(name) + " must be a numpy array, not None: could the image be read?");
     if (!py::isinstance<py::array>(image))
         throw py::type_error(std::string(name) + " must be a numpy array, not " + typeOf(image));
+    requirePlain(image, name);
     return py::reinterpret_borrow<py::array>(image);
 }
 

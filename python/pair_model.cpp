@@ -30,7 +30,7 @@ void defNumbers(py::class_<PairModel>& type, const char* name, std::vector<doubl
                 const char* documentation)
 {
     type.def_property(
-        name, [field](const PairModel& self) { return readOnly(toPython(self.*field)); }, setterOf(type, field),
+        name, [field](const PairModel& self) { return readOnly(toPython(self.*field)); }, setterOf(type, name, field),
         documentation);
 }
 
@@ -38,7 +38,7 @@ template <typename Value>
 void defField(py::class_<PairModel>& type, const char* name, Value PairModel::*field, const char* documentation)
 {
     type.def_property(
-        name, [field](const PairModel& self) { return self.*field; }, setterOf(type, field), documentation);
+        name, [field](const PairModel& self) { return self.*field; }, setterOf(type, name, field), documentation);
 }
 
 void defFields(py::class_<PairModel>& type)

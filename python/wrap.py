@@ -133,7 +133,7 @@ class Field:
         if self.enumeration:
             value = 'enumerator("%s", self.%s)' % (self.enumeration, self.name)
         get = '[](const HDPTreeMatcher::%s& self) { return %s; }' % (struct, value)
-        set_ = ' setterOf(%s, &HDPTreeMatcher::%s::%s),' % (wrapped, struct, self.name) if is_writable else ''
+        set_ = ' setterOf(%s, "%s", &HDPTreeMatcher::%s::%s),' % (wrapped, self.name, struct, self.name) if is_writable else ''
         return '%s.def_property%s("%s", %s,%s\n    R"doc(%s)doc");\n' % (
             wrapped, '' if is_writable else '_readonly', self.name, get, set_, self.documentation)
 
@@ -208,7 +208,7 @@ class Method:
             lines.append('        return %s;' % results[0])
         elif results:
             lines.append('        return py::make_tuple(%s);' % ', '.join(results))
-        lines.append('    },%s' % ''.join(' py::arg("%s").noconvert(%d),' % (name, kind == 'int')
+        lines.append('    },%s' % ''.join(' py::arg("%s").noconvert(%d).none(%d),' % (name, kind == 'int', kind not in SCALARS)
                                           for kind, name in self.inputs))  # ints: see setterOf()
         lines.append('    R"doc(%s)doc");' % self.documentation)
         return '\n'.join(lines) + '\n'

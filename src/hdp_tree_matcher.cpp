@@ -4,6 +4,7 @@
 #include "precomp.hpp"
 
 #include "layer_matching.hpp"
+#include "base/result_array.hpp"
 #include "map/disparity_confidence.hpp"
 #include "map/disparity_output.hpp"
 #include "pair/image_levels.hpp"
@@ -179,6 +180,7 @@ public:
     {
         if (!result_.isMatched)
             return confidenceArray.release();
+        requireMat(confidenceArray, result_.plan.size, CV_8UC1, "confidence");
         enlargeToImage(confidenceOfLayer(), INTER_LINEAR_EXACT, confidenceArray);
         if (!known_.ranges.isEmpty())
             confidenceArray.setTo(Scalar(0), moves() > 1);
@@ -190,6 +192,7 @@ public:
     {
         if (!result_.isMatched)
             return sigmaArray.release();
+        requireMat(sigmaArray, result_.plan.size, CV_32FC1, "sigma");
         const LayerPlan& plan = result_.plan.finest();
         Mat mismatch, ofLayer;
         if (plan.cost.isCensus)
@@ -211,6 +214,7 @@ public:
     {
         if (!result_.isMatched)
             return reasonsArray.release();
+        requireMat(reasonsArray, result_.plan.size, CV_8UC1, "reasons");
         const PairPlan& pairPlan = result_.plan;
         const LayerPlan& layer = pairPlan.finest();
         Mat ofLayer;

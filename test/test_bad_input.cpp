@@ -128,7 +128,7 @@ TEST(HDPStereo_BadInput, output_that_cannot_be_written)
             expectRejected([&] { matcher->compute(second.left, second.right, noArray()); },
                            "disparity must be an array");
             expectRejected([&] { matcher->compute(second.left, second.right, small); },
-                           "disparity must have the size of left, 160 x 100, not 12 x 10");
+                           "disparity must have 160 x 100 pixels, not 12 x 10");
             expectRejected([&] { matcher->compute(second.left, second.right, volume); }, "disparity must have two");
             expectRejected([&] { matcher->compute(second.left, second.right, list); }, "disparity must be a Mat");
             expectRejected([&] { matcher->compute(second.left, second.right, several); }, "disparity must be a Mat");
@@ -136,6 +136,35 @@ TEST(HDPStereo_BadInput, output_that_cannot_be_written)
         maps[fails] = match(*matcher, first.left, first.right).clone();
     }
     expectIdentical(maps[0], maps[1]);
+}
+
+TEST(HDPStereo_BadInput, results_that_cannot_be_written)
+{
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 100), 20, 3);
+    const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 20);
+    match(*matcher, pair.left, pair.right);
+    Mat_<double> doubles;
+    std::vector<uchar> list;
+    const auto expectNames = [&](const String& name, const std::function<void(OutputArray)>& get) {
+        expectRejected([&] { get(noArray()); }, name + " must be an array, not noArray()");
+        expectRejected([&] { get(doubles); }, name + " must be CV_");
+        expectRejected([&] { get(list); }, name + " must be a Mat, not a vector");
+    };
+    expectNames("confidence", [&](OutputArray result) { matcher->getConfidence(result); });
+    expectNames("sigma", [&](OutputArray result) { matcher->getDisparitySigma(result); });
+    expectNames("reasons", [&](OutputArray result) { matcher->getReasons(result); });
+}
+
+//! Layers of one column or row have no hulls of intervals.
+TEST(HDPStereo_BadInput, ranges_of_narrow_images)
+{
+    for (const Size& size : { Size(1, 4), Size(2, 23), Size(3, 40), Size(40, 1) })
+    {
+        const Mat image(size, CV_8U, Scalar(9));
+        const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 16);
+        matcher->setDisparityRange(Mat(1, 1, CV_32F, Scalar(3)), noArray());
+        EXPECT_EQ(size, match(*matcher, image, image).size());
+    }
 }
 
 //! A bad value leaves every parameter of the matcher as it was.

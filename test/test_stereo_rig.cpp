@@ -232,12 +232,12 @@ TEST(HDPStereo_StereoRig, depth_of_a_fixed_type)
     Mat_<ushort> millimetres;
     Mat_<float> metres;
     expectRejected([&] { rig->computeDepth(pixels, millimetres); },
-                   "depth must be CV_32FC1 as depthType, not CV_16UC1");
+                   "depth must be CV_32FC1, not CV_16UC1");
     expectRejected([&] { rig->computeDepth(pixels, metres, CV_16U); },
-                   "depth must be CV_16UC1 as depthType, not CV_32FC1");
+                   "depth must be CV_16UC1, not CV_32FC1");
     EXPECT_TRUE(millimetres.empty() && metres.empty());
     expectRejected([&] { rig->computeDepth(pixels, noArray()); }, "depth must be an array, not noArray()");
-    expectRejected([&] { rig->computeDepth(pixels, small); }, "depth must have the size of disparity, 5 x 4");
+    expectRejected([&] { rig->computeDepth(pixels, small); }, "depth must have 5 x 4 pixels, not 5 x 2");
     rig->computeDepth(pixels, millimetres, CV_16U);
     rig->computeDepth(pixels, metres);
     EXPECT_NEAR(1000 * metres(3, 4), millimetres(3, 4), 0.51);

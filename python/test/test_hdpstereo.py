@@ -415,7 +415,13 @@ class Parameters(Test):
         self.assertRaisesText(TypeError, 'numDisparities must be an int, not 16.5', lambda: HDPTreeMatcher(0, 16.5))
         self.assertRaisesText(TypeError, "minDisparity must be an int, not 'two'",
                               lambda: HDPTreeMatcher.create(min_disparity='two'))
-        self.assertRaises(TypeError, lambda: HDPTreeMatcher.Params(numLayers='two'))
+        self.assertRaisesText(TypeError, 'numLayers must be an int, not str', lambda: HDPTreeMatcher.Params(numLayers='two'))
+        self.assertRaisesText(TypeError, 'useSubpixel must be a bool, not NoneType',
+                              lambda: HDPTreeMatcher.create(use_subpixel=None))
+        self.assertRaises(TypeError, lambda: matcher.setUseTemporalPrediction(None))
+        image = np.zeros((50, 60), np.uint8)
+        self.assertRaisesText(TypeError, 'left must be a plain array, not a masked one: its mask would be ignored',
+                              lambda: matcher.compute(np.ma.array(image), image))
 
     def test_create_like(self):
         class Like:  # cv2.StereoSGBM has these, among others

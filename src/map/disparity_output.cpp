@@ -4,6 +4,8 @@
 #include "../precomp.hpp"
 #include "disparity_output.hpp"
 
+#include "../base/result_array.hpp"
+
 #include "left_right_check.hpp"
 #include "../base/vectorized.hpp"
 
@@ -78,17 +80,7 @@ void moveIntoRanges(const PixelRanges& ranges, short invalid, Mat& fixedPoint)
 
 int depthOfOutput(OutputArray disparity, Size size, int usual)
 {
-    if (!disparity.needed())
-        CV_Error(Error::StsBadArg, "disparity must be an array, not noArray()");
-    const int kind = disparity.kind();
-    if (!disparity.isMat() && !disparity.isUMat() && kind != _InputArray::MATX && kind != _InputArray::CUDA_HOST_MEM)
-        CV_Error(Error::StsBadArg, "disparity must be a Mat, not a vector or another array");
-    if (disparity.fixedSize() && disparity.dims() > 2)
-        CV_Error(Error::StsUnmatchedSizes, "disparity must have two dimensions, as its size is fixed");
-    if (disparity.fixedSize() && disparity.size() != size)
-        CV_Error(Error::StsUnmatchedSizes,
-                 format("disparity must have the size of left, %d x %d, not %d x %d, as it is fixed", size.width,
-                        size.height, disparity.size().width, disparity.size().height));
+    requireMat(disparity, size, "disparity");
     const int type = disparity.fixedType() ? disparity.type() : usual;
     if (type != CV_16SC1 && type != CV_32FC1)
         CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1 if its type is fixed");

@@ -64,6 +64,8 @@ void expandRanges(const Mat& smallest, const Mat& largest, Size size, Range disp
 void halveIntervals(const Mat& intervals, Mat& hulls)
 {
     hulls.create(intervals.rows / 2, intervals.cols / 2, CV_16UC2);
+    if (hulls.empty())
+        return;
     parallelForRows(hulls.size(), [&](int y) {
         dispatched::halveIntervals(intervals.ptr<ushort>(2 * y), intervals.ptr<ushort>(2 * y + 1), hulls.cols,
                                    hulls.ptr<ushort>(y));

@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
+#include "../base/result_array.hpp"
 #include "calibration_check.hpp"
 
 #include <cmath>
@@ -45,19 +46,6 @@ void copyIfNeeded(const Mat& result, OutputArray array)
 {
     if (array.needed())
         result.copyTo(array);
-}
-
-//! Throws if the depth cannot be written there.
-void checkDepth(OutputArray depth, Size size, int type)
-{
-    if (!depth.needed())
-        CV_Error(Error::StsBadArg, "depth must be an array, not noArray()");
-    if (depth.fixedType() && depth.type() != type)
-        CV_Error(Error::StsUnmatchedFormats, format("depth must be %s as depthType, not %s, which is fixed",
-                                                    typeToString(type).c_str(), typeToString(depth.type()).c_str()));
-    if (depth.fixedSize() && (depth.dims() > 2 || depth.size() != size))
-        CV_Error(Error::StsUnmatchedSizes,
-                 format("depth must have the size of disparity, %d x %d, as it is fixed", size.width, size.height));
 }
 
 class StereoRigImpl CV_FINAL : public StereoRig
@@ -111,7 +99,7 @@ public:
                             size_.height, disparity.cols, disparity.rows));
         if (depthType != CV_32F && depthType != CV_16U)
             CV_Error(Error::StsBadArg, "depthType must be CV_32F or CV_16U");
-        checkDepth(depth, disparity.size(), depthType);
+        hdp::requireMat(depth, disparity.size(), depthType, "depth");
         Mat metres; // from disparities in pixels; 0 where there is none
         disparity.convertTo(metres, CV_32F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
         for (float& value : Mat_<float>(metres))

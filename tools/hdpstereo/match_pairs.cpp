@@ -101,6 +101,16 @@ static void printProgress(size_t done, size_t total, const String& name)
         std::cerr << std::endl;
 }
 
+//! Of what a file has, by FNV-1a: names do not tell whether it has changed.
+static String fingerprintOf(const String& path)
+{
+    std::ifstream file(path.c_str(), std::ios::binary);
+    uint64 hash = 14695981039346656037ull;
+    for (std::istreambuf_iterator<char> byte(file), end; byte != end; ++byte)
+        hash = (hash ^ (uchar)*byte) * 1099511628211ull;
+    return format("%016llx", (unsigned long long)hash);
+}
+
 //! What the maps in a folder were made with, so that those of other options are not taken for these
 static String optionsFile(const String& out) { return utils::fs::join(out, "hdpstereo.yml"); }
 
@@ -129,7 +139,7 @@ static String newOptions(const CommandLineParser& parser, const HDPTreeMatcher& 
                                                            { "prior", "prior" } };
     for (const auto& input : inputs)
         if (parser.has(input.first))
-            options << input.second << parser.get<String>(input.first);
+            options << input.second << fingerprintOf(parser.get<String>(input.first));
     if (parser.has("prior"))
         options << "priorSigma" << parser.get<String>("prior-sigma");
     rectifier.write(options);

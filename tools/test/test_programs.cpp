@@ -277,6 +277,15 @@ TEST(HDPStereo_Programs, batch_of_folders)
     EXPECT_EQ("error: there is no folder '" + folder.path("nowhere") + "'\n",
               run(folder, program + "--batch " + lefts + " " + folder.path("nowhere") + " " + out).errors);
 
+    // A mask is what it has, by whatever name.
+    const String mask = folder.path("mask.png"), masked = folder.path("masked"),
+                 withMask = program + "--batch " + lefts + " " + rights + " " + masked + " --left-mask=";
+    cv::imwrite(mask, Mat(left.size(), CV_8U, Scalar(255)));
+    EXPECT_EQ(2, run(folder, withMask + mask).status);
+    EXPECT_EQ(2, run(folder, withMask + fs::join(folder.path("."), "mask.png")).status);
+    cv::imwrite(mask, Mat(left.size(), CV_8U, Scalar(0)));
+    EXPECT_EQ(1, run(folder, withMask + mask).status);
+
     // Mistakes of the call are found before any work.
     const String other = " " + folder.path("lefts") + " " + folder.path("rights") + " " + folder.path("other");
     for (const String& wrong : { String("--batch"), "--batch " + lefts + " " + rights, "--batch --preset=none" + other,
