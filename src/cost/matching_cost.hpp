@@ -64,8 +64,8 @@ public:
     @param pixels The pixels, y * width + x each.
     @param count Their number.
     @param first The first of the candidates x.
-    @param lanes The number of candidates, 4, 8, 16, 32 or 64; costs of those past the last one, at most costPadding, mean
-    nothing.
+    @param lanes The number of candidates, 4, 8, 16, 32 or 64; costs of those past the last one, at most costPadding,
+    mean nothing.
     @param cost Receives M(pixels[i], first + k) at [i * lanes + k]. */
     virtual void evaluate(const int* pixels, int count, int first, int lanes, float* cost) const = 0;
 

@@ -23,8 +23,8 @@ struct Surroundings
 {
     std::vector<int> index;
     std::vector<short> x, y, channels[3];
-    // Of one of the pixels: its distance, the difference from its colour, and a key, the logarithm of 1 / weight and behind
-    // it the place in these vectors: so the lowest key is that of the heaviest point, the first one of several
+    // Of one of the pixels: its distance, the difference from its colour, and a key, the logarithm of 1 / weight and
+    // behind it the place in these vectors: so the lowest key is that of the heaviest point, the first one of several
     std::vector<short> squared, color;
     std::vector<int> keys;
     int lowestKey, placeBits;               // these: of a key

@@ -209,8 +209,8 @@ private:
         return supporting > 0 && 3 * supporting >= all;
     }
 
-    //! Whether the heaviest point speaks for a winner, and none can speak against it: then it stays, as it does for most
-    //! pixels. contested: places of the points that may, in `seen`
+    //! Whether the heaviest point speaks for a winner, and none can speak against it: then it stays, as it does for
+    //! most pixels. contested: places of the points that may, in `seen`
     bool isConfirmed(float winner, const std::vector<int>& contested, const Surroundings& seen) const
     {
         if (seen.lowestKey == Surroundings::beyondReach)
@@ -226,9 +226,10 @@ private:
                             [&](int i) { return grid_.isWithinReach(i, seen) && isNear(i, before_[seen.index[i]]); });
     }
 
-    //! The disparity that the points around a pixel propose, of which the contested ones have these places in `seen`; returns by how many bits its cost may be higher. proposed
-    //! stays the winner if fewer than two points are not contradicted, if as much speaks for it as against it, or if
-    //! half of the points, by weight, were contradicted in favour of winners like it.
+    //! The disparity that the points around a pixel propose, of which the contested ones have these places in `seen`;
+    //! returns by how many bits its cost may be higher. proposed stays the winner if fewer than two points are not
+    //! contradicted, if as much speaks for it as against it, or if half of the points, by weight, were contradicted
+    //! in favour of winners like it.
     float propose(Point place, int maxDisparity, const std::vector<int>& contested, Surroundings& seen,
                   ushort& proposed) const
     {

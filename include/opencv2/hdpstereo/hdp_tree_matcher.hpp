@@ -75,7 +75,8 @@ on several parameters or on the images is checked by compute(), before any work.
   32767 pixels, or have 2^31 bytes and more, with the columns that a negative minDisparity adds;
 - speckleWindowSize is > 0 and the images have more than 238609294 pixels;
 - 16 times the disparities, and 16 times (minDisparity - 1), do not fit into CV_16S;
-- scanlines, Params::fillOcclusions, Params::useTemporalPrediction or a prior are used with another cost than COST_CENSUS;
+- scanlines, Params::fillOcclusions, Params::useTemporalPrediction or a prior are used with another cost than
+  COST_CENSUS;
 - Params::predictionModel has too few layers;
 - numDisparities is 0, and the pair has too few corners to find the range: found by some work, before matching;
 - the images are not those of the PairModel that is set;
@@ -92,11 +93,11 @@ time; two matchers never share state. Its buffers are kept for the next pair. cl
 These are as few, 8 to 16, as are enough for all but one in 1024 pixels of the pair; what is brighter, such as
 highlights and defective pixels, is white. So images of 8 bits times 2^k give the same map as without the
 factor, unless they are dark: darker ones gain contrast; or have black borders that are not all 0, see setMasks().
-With COST_CENSUS, a pair of low contrast, as by haze, a black level of the sensor or its exposure, is stretched by up to
-4, with all of its bits. Its darkest and brightest channels are then a sixth of their contrast away from black and white;
-one pixel in 1024 is left out at each end, and so is what is black or white. After that, a dark pair is brightened by a
-factor of 2 or 4, if not more than one pixel in 128 becomes white, and by less and less up to one in 16. Findings are about levels
-that are stretched, and not brightened.
+With COST_CENSUS, a pair of low contrast, as by haze, a black level of the sensor or its exposure, is stretched by up
+to 4, with all of its bits. Its darkest and brightest channels are then a sixth of their contrast away from black and
+white; one pixel in 1024 is left out at each end, and so is what is black or white. After that, a dark pair is
+brightened by a factor of 2 or 4, if not more than one pixel in 128 becomes white, and by less and less up to one in
+16. Findings are about levels that are stretched, and not brightened.
 CV_32FC1 is scaled to CV_16UC1, by one scale for both images: the darkest pixel that counts is black and the brightest
 white, one in 1024 being left out at each end. Pixels that are not finite have no data, as if masked. Findings are then
 about these levels.
@@ -594,11 +595,11 @@ public:
     it falls where fewer frames have had the disparity than elsewhere.
 
     It is no probability: it serves to sort or weight pixels, or to reject those below a threshold. 160 is a high
-    value, 200 is hardly ever reached, and the median of a map is usually between 50 and 100. As a threshold, 20 leaves
-    out about half of the pixels that are wrong by more than one, and a tenth of the right ones; 60 three quarters or
-    more of the wrong ones, and a quarter to a half of the right ones. On KITTI, where errors of one pixel are common, 20
-    leaves out a quarter of them, and 60 two thirds. BENCHMARK.md has the shares. How wrong a
-    disparity is, in pixels, getDisparitySigma() tells.
+    value, 200 is hardly ever reached, and the median of a map is usually between 50 and 100. As a threshold, 20
+    leaves out about half of the pixels that are wrong by more than one, and a tenth of the right ones; 60 three
+    quarters or more of the wrong ones, and a quarter to a half of the right ones. On KITTI, where errors of one pixel
+    are common, 20 leaves out a quarter of them, and 60 two thirds. BENCHMARK.md has the shares. How wrong a disparity
+    is, in pixels, getDisparitySigma() tells.
     @param confidence Receives CV_8UC1 of the left image's size: from 0 to 255, larger is more reliable; 0 where a
     pixel has no data, a filter rejected it or its reason is REASON_RANGE. Empty before the first compute() and after
     one that threw an exception.

@@ -161,8 +161,8 @@ frames of different scenes this becomes angles, and a calibration that fits agai
 After a turn of more than a quarter of a degree do that twice: the matcher expects small ones.
 
 Pitch (up, down) and roll (about the view) move rows by much, and are found to a hundredth of a degree. Yaw (to the
-side) moves rows at the corners only, as another focal length does at the upper and lower border: their deviations tell how
-little is known of them, and they are corrected only beyond two of these. A yaw that is not seen is a
+side) moves rows at the corners only, as another focal length does at the upper and lower border: their deviations
+tell how little is known of them, and they are corrected only beyond two of these. A yaw that is not seen is a
 disparity that is off by focal length times yaw: look at a known distance. A camera that has not turned but moved
 looks like one that has turned.
  */

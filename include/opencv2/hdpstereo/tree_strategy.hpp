@@ -58,10 +58,10 @@ public:
     An edge is a number: edge 2 * i joins pixel i = y * width + x to its right neighbour, edge 2 * i + 1 to the
     neighbour below.
     @param weights The edges' weights: the largest absolute difference over the colour channels, 0..255; of grey
-    images, for HDPTreeMatcher::COST_CENSUS, 9 / 8 of the difference of their levels, rounded up; of the levels that are matched, so after
-    stretching and brightening, see HDPTreeMatcher. CV_8UC2 of the
-    layer's size, continuous, so that weights.ptr()[e] is the weight of edge e. Those of the last column to its right
-    and of the last row below belong to no edge.
+    images, for HDPTreeMatcher::COST_CENSUS, 9 / 8 of the difference of their levels, rounded up; of the levels that
+    are matched, so after stretching and brightening, see HDPTreeMatcher. CV_8UC2 of the layer's size, continuous,
+    so that weights.ptr()[e] is the weight of edge e. Those of the last column to its right and of the last row
+    below belong to no edge.
     @param edges The edges that DT-Rule 1 left, by number; where no intervals are predicted, all edges. To be brought
     into the order in which they are tried. compute() throws cv::Exception if one is added, removed or repeated.
 
