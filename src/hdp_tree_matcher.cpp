@@ -6,9 +6,6 @@
 #include "layer_matching.hpp"
 #include "base/result_array.hpp"
 #include "map/disparity_confidence.hpp"
-#include "map/disparity_output.hpp"
-#include "pair/image_levels.hpp"
-#include "pair/missing_pixels.hpp"
 #include "range_search.hpp"
 #include "video/temporal_prior.hpp"
 
@@ -60,7 +57,8 @@ public:
             CompletePair& pair;
             ~ImageRelease() { pair.left = pair.right = Mat(); }
         } release = { pair_ };
-        completeImages(left, right);
+        clock_.run("missing pixels",
+                   [&] { completePair(left, right, inputs_.leftMask, inputs_.rightMask, pairModel_, pair_); });
         const bool keepsRange = pairPlan.looksForRange && pairPlan.followsVideo;
         if (pairPlan.looksForRange)
             pairPlan = makePlan(withFoundRange(pairPlan));
@@ -279,16 +277,6 @@ private:
         if (layer < 0)
             CV_Error(Error::StsOutOfRange, format("layer must be >= 0, not %d", layer));
         return result_.isMatched && layer >= result_.plan.finest().layer && layer <= result_.plan.top().layer;
-    }
-
-    //! Fills the pixels of the pair that have no data, see completePair(), into pair_
-    void completeImages(const Mat& left, const Mat& right)
-    {
-        const GivenPixels given = toGivenPixels(pairModel_);
-        clock_.run("missing pixels", [&] {
-            completePair(left, right, inputs_.leftMask, inputs_.rightMask, pairModel_.empty() ? nullptr : &given,
-                         pair_);
-        });
     }
 
     //! The parameters with the range that is found in the pair

@@ -4,10 +4,8 @@
 #include "precomp.hpp"
 #include "layer_matching.hpp"
 
-#include "base/units.hpp"
 #include "forest/repeated_surfaces.hpp"
 #include "forest/tree_planes.hpp"
-#include "pair/disparity_ranges.hpp"
 #include "map/left_right_check.hpp"
 #include "map/map_filters.hpp"
 #include "map/occlusion_filling.hpp"
@@ -21,17 +19,18 @@ namespace {
 
 HDP_TUNABLE(int, passMedianSize, 5, "pixels",
             "side of the median between passes of the scanlines: larger loses thin structures, smaller keeps outliers");
-HDP_TUNABLE(int, guideMedianSize, 3, "pixels", "side of the guide's median, as in the M+ systems: larger blurs edges");
+const int guideMedianSize = 3; // pixels, as in the M+ systems: larger blurs edges
 
 //! Carries out the plan of a layer. result.winners are the layer's disparities from the winner-takes-all to the median.
 class LayerMatching
 {
 public:
-    LayerMatching(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
-                  LayerResult& result)
-        : in_(input), plan_(input.plan), own_(own), shared_(shared), clock_(clock), result_(result)
-    {
-    }
+    const LayerInput& in_;
+    const LayerPlan& plan_;
+    LayerScratch& own_;
+    SharedScratch& shared_;
+    StageClock& clock_;
+    LayerResult& result_;
 
     Verdict run()
     {
@@ -360,13 +359,6 @@ private:
         erode(hasData, isFiltered, Mat(), Point(-1, -1), reach); // by a pixel, so many times
         own_.filtered.copyTo(result_.disparity, isFiltered == 0);
     }
-
-    const LayerInput& in_;
-    const LayerPlan& plan_;
-    LayerScratch& own_;
-    SharedScratch& shared_;
-    StageClock& clock_;
-    LayerResult& result_;
 };
 
 } // namespace
@@ -383,7 +375,7 @@ void prepareCost(const LayerPlan& plan, const LayerImages& images, LayerScratch&
 Verdict matchLayer(const LayerInput& input, LayerScratch& own, SharedScratch& shared, StageClock& clock,
                    LayerResult& result)
 {
-    return LayerMatching(input, own, shared, clock, result).run();
+    return LayerMatching{ input, input.plan, own, shared, clock, result }.run();
 }
 
 }}} // namespace cv::stereo::hdp

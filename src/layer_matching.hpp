@@ -9,8 +9,6 @@
 #include "paper/support_points.hpp"
 #include "paper/tree_sums.hpp"
 #include "plan/pair_plan.hpp"
-#include "scanlines/candidate_windows.hpp"
-#include "scanlines/smoothness_weights.hpp"
 #include "video/temporal_join.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -14,13 +14,13 @@
 //! Defines dispatched::function(), which calls the function of a *.simd.hpp for the instruction set of this machine.
 //! After the include of STAGE.simd_declarations.hpp, which names the instruction sets.
 #define HDP_DISPATCH(function)                                                                                         \
-    namespace dispatched {                                                                                             \
+    namespace { namespace dispatched {                                                                                 \
     template <typename... Args>                                                                                        \
     CV_ALWAYS_INLINE auto function(Args&&... args) -> decltype(cpu_baseline::function(args...))                        \
     {                                                                                                                  \
         CV_CPU_DISPATCH(function, (args...), CV_CPU_DISPATCH_MODES_ALL);                                               \
     }                                                                                                                  \
-    }
+    }}
 
 namespace cv { namespace stereo { namespace hdp {
 

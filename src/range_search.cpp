@@ -33,8 +33,6 @@ HDP_TUNABLE(double, leftOut, 0.0005, "share of the disparities", "at each end th
 // The range
 HDP_TUNABLE(double, farMargin, 0.125, "share of the range", "before its first disparity: more costs time");
 HDP_TUNABLE(double, nearMargin, 0.35, "share of the range", "behind its last one: near things are small and missed");
-HDP_TUNABLE(double, zeroReach, 1, "share of the range",
-            "before it, in which it is made to begin with 0: what is far may have no texture");
 HDP_TUNABLE(double, leastMargin, 4, "pixels of the image", "at both ends, at least");
 HDP_TUNABLE(double, keptExcess, 2, "times the range", "that the range of a video may be larger than that of a frame");
 
@@ -174,7 +172,7 @@ Range RangeSearch::find(const Mat& left, const Mat& right, const PairMasks& mask
     if (isFound)
     {
         const double size = found.size(), least = leastMargin;
-        const bool isNearZero = found.start > 0 && found.start <= zeroReach * size;
+        const bool isNearZero = found.start > 0 && found.start <= size; // what is far may have no texture
         const double first = found.start - std::max(farMargin * size, least);
         range = limited(isNearZero ? std::min(first, 0.) : first, found.end - 1 + std::max(nearMargin * size, least),
                         left.cols);

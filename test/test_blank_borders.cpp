@@ -47,7 +47,7 @@ TEST(HDPStereo_BlankBorders, have_no_data)
             SCOPED_TRACE(testing::Message() << "type " << type << ", brightness " << brightness);
             const RectifiedPair pair(type, brightness);
             hdp::CompletePair complete;
-            hdp::completePair(pair.left, pair.right, Mat(), Mat(), nullptr, complete);
+            hdp::completePair(pair.left, pair.right, Mat(), Mat(), PairModel(), complete);
             ASSERT_FALSE(complete.masks.isEmpty());
             expectIdentical(pair.leftMask, complete.masks.left);
             expectIdentical(pair.rightMask, complete.masks.right);
@@ -99,7 +99,7 @@ TEST(HDPStereo_BlankBorders, survive_compression)
         image = cv::imdecode(file, IMREAD_COLOR);
     }
     hdp::CompletePair complete;
-    hdp::completePair(images[0], images[1], Mat(), Mat(), nullptr, complete);
+    hdp::completePair(images[0], images[1], Mat(), Mat(), PairModel(), complete);
     ASSERT_FALSE(complete.masks.isEmpty());
     for (int side = 0; side < 2; ++side)
     {

@@ -260,7 +260,7 @@ TEST(HDPStereo_Masks, floats_are_levels_of_16_bits)
     for (int i = 0; i < 2; ++i)
         images[i].convertTo(floats[i], CV_32F, 1. / 256, -7);
     hdp::CompletePair whole;
-    hdp::completePair(floats[0], floats[1], Mat(), Mat(), nullptr, whole);
+    hdp::completePair(floats[0], floats[1], Mat(), Mat(), PairModel(), whole);
     for (const System& preset : presets)
     {
         const Ptr<HDPTreeMatcher> matcher = createSystem(preset, 45);
@@ -294,7 +294,7 @@ TEST(HDPStereo_Masks, scale_of_floats)
                     values.push_back(images[i].ptr<float>(k / size.width)[k % size.width]);
         }
         hdp::CompletePair whole;
-        hdp::completePair(images[0], images[1], masks.left, masks.right, nullptr, whole);
+        hdp::completePair(images[0], images[1], masks.left, masks.right, PairModel(), whole);
         std::sort(values.begin(), values.end());
         const size_t outliers = values.size() / 1024;
         for (int i = 0; i < 2 && !values.empty(); ++i)
@@ -324,7 +324,7 @@ TEST(HDPStereo_Masks, missing_pixels_get_the_nearest_ones_of_their_row)
             if (rng.uniform(0, 3) == 0)
                 mask.row(y).setTo(0);
         hdp::CompletePair complete;
-        hdp::completePair(image, image, mask, mask, nullptr, complete);
+        hdp::completePair(image, image, mask, mask, PairModel(), complete);
         const auto rowHas = [&](int y) { return y >= 0 && y < size.height && cv::countNonZero(mask.row(y)) > 0; };
         for (int y = 0; y < size.height; ++y)
             for (int x = 0; x < size.width; ++x)

@@ -235,7 +235,7 @@ TEST(HDPStereo_PairModel, floats_of_a_tile)
     match(*matcher, floats[0], floats[1]);
     PairModel model = matcher->getPairModel();
     hdp::CompletePair whole;
-    hdp::completePair(floats[0], floats[1], Mat(), Mat(), nullptr, whole);
+    hdp::completePair(floats[0], floats[1], Mat(), Mat(), PairModel(), whole);
     EXPECT_EQ(whole.floats.black, model.black);
     EXPECT_EQ(whole.floats.white, model.white);
     const Rect tile(48, 16, 100, 120);

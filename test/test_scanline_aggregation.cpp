@@ -176,6 +176,8 @@ TEST_P(HDPStereo_ScanlineAggregation, lanes_without_vectors)
                 layer.mask(rng);
             const hdp::CensusCost cost = layer.cost();
             const float blunt = 52, sharp = 88;
+            for (Mat* ofPairs : { &layer.windows, &layer.smoothness }) // as aggregateScanlines() does
+                cv::copyMakeBorder(*ofPairs, *ofPairs, 0, 0, 0, (size.width + 1) / 2 - ofPairs->cols, BORDER_REPLICATE);
             const hdp::ScanlineProblem problem = {
                 &cost,          &layer.weights,    size,           numDisparities, layer.largest(),
                 &layer.windows, &layer.smoothness, usualPenalties, blunt,          sharp

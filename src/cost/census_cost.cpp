@@ -71,13 +71,13 @@ void CensusCost::prepareImage(const Mat& image, int radius, int tolerance, bool 
                 flip(image.rowRange(from, to), flipped, 1);
             copyMakeBorder(isRight ? flipped : image.rowRange(from, to), bordered, from - first + radius,
                            end + radius - to, radius, radius + cols - width, BORDER_REPLICATE | BORDER_ISOLATED);
-            const CensusWindow window = { radius, tolerance, (ptrdiff_t)bordered.step1() };
             for (int y = first; y < end; ++y)
             {
                 uchar* row = isRight ? right_.ptr(y) + censusMargin : leftPlanes.ptr(y - first);
                 const size_t planeSize = isRight ? right_.step * rows : leftPlanes.step * censusRows;
                 const short* grey = bordered.ptr<short>(y - first + radius) + radius; // all levels are below 32768
-                dispatched::censusRow(window, grey, isRight, cols, row, planeSize);
+                dispatched::censusRow(radius, (short)tolerance, grey, (ptrdiff_t)bordered.step1(), isRight, cols, row,
+                                      planeSize);
                 for (int plane = 0; plane <= planes_ && isRight; ++plane, row += planeSize)
                 {
                     std::fill(row - censusMargin, row, row[0]);

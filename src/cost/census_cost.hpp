@@ -8,14 +8,6 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! What the census of a row of grey levels compares
-struct CensusWindow
-{
-    int radius;     // 1 to 3 pixels
-    int tolerance;  // see CensusCost::prepare()
-    ptrdiff_t step; // from a row to the next, in elements
-};
-
 //! Where the census of a pixel differs from that of its match: a byte of each plane. right: in the first plane;
 //! planeStep: from a plane to the next
 template <int planes>

@@ -15,11 +15,15 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 /** A row of an image: the planes of its census, which have a bit for each pixel of the checkerboard around the centre,
 set if it is clearly darker, and behind them that of the grey levels in 8 bits.
+@param radius Of the window, 1 to 3 pixels.
+@param tolerance See CensusCost::prepare().
 @param grey The first pixel of the row, levels times greyScale; it has a border of the radius, and may be read up to
 column cols.
+@param step From a row to the next, in elements.
 @param mirrored Whether the image is mirrored: so is the window then, so that the bits are the same ones.
 @param row Receives the row of the first plane. */
-void censusRow(const CensusWindow& window, const short* grey, bool mirrored, int cols, uchar* row, size_t planeSize);
+void censusRow(int radius, short tolerance, const short* grey, ptrdiff_t step, bool mirrored, int cols, uchar* row,
+               size_t planeSize);
 
 //! CensusCost::evaluate(), in floats or bytes
 template <typename T>
@@ -34,10 +38,10 @@ void censusCostOfRow(const CensusCost& census, int y, const ushort* disparity, u
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-void censusRow(const CensusWindow& window, const short* grey, bool mirrored, int cols, uchar* row, size_t planeSize)
+void censusRow(int radius, short tolerance, const short* grey, ptrdiff_t step, bool mirrored, int cols, uchar* row,
+               size_t planeSize)
 {
-    const int radius = window.radius, planes = radius, block = 256;
-    const short tolerance = (short)window.tolerance;
+    const int planes = radius, block = 256;
     // Bits that compare nothing stand for the centre, which is not darker than itself.
     ptrdiff_t offsets[24] = { 0 };
     int bits = 0;
@@ -45,7 +49,7 @@ void censusRow(const CensusWindow& window, const short* grey, bool mirrored, int
         for (int dx = -radius; dx <= radius; ++dx)
             if ((dx + dy) % 2 != 0)
             {
-                offsets[bits % planes * 8 + bits / planes] = dy * window.step + (mirrored ? -dx : dx);
+                offsets[bits % planes * 8 + bits / planes] = dy * step + (mirrored ? -dx : dx);
                 ++bits;
             }
     short words[block]; // of a byte: without this memory the compiler narrows each comparison
@@ -154,6 +158,23 @@ template <int planes> struct CensusCosts
     };
 };
 
+template <int planes> void costOfRow(const CensusCost& census, int y, const ushort* disparity, uchar* cost)
+{
+    const int block = 64;
+    const int width = census.size().width;
+    const uchar* left = census.leftPixels(y);
+    const uchar* right = census.rightPlane(0, y) + width - 1;
+    unsigned differences[block];
+    for (int begin = 0; begin < width; begin += block)
+    {
+        const int size = std::min(block, width - begin);
+        for (int i = 0, x = begin; i < size; ++i, ++x)
+            differences[i] =
+                censusDifference<planes>(left + 4 * x, right - x + wholeDisparity(disparity[x]), census.planeStride());
+        HDP_VECTORIZED for (int i = 0; i < size; ++i) cost[begin + i] = (uchar)countCensusBits(differences[i]);
+    }
+}
+
 } // namespace
 
 template <typename T>
@@ -180,27 +201,6 @@ void countTwoLayers(const CensusCost& own, const CensusCost& below, const int* p
     else
         runTask<CensusCosts<1>::OfTwoLayers>(lanes, own, below, pixels, count, first, cost);
 }
-
-namespace {
-
-template <int planes> void costOfRow(const CensusCost& census, int y, const ushort* disparity, uchar* cost)
-{
-    const int block = 64;
-    const int width = census.size().width;
-    const uchar* left = census.leftPixels(y);
-    const uchar* right = census.rightPlane(0, y) + width - 1;
-    unsigned differences[block];
-    for (int begin = 0; begin < width; begin += block)
-    {
-        const int size = std::min(block, width - begin);
-        for (int i = 0, x = begin; i < size; ++i, ++x)
-            differences[i] =
-                censusDifference<planes>(left + 4 * x, right - x + wholeDisparity(disparity[x]), census.planeStride());
-        HDP_VECTORIZED for (int i = 0; i < size; ++i) cost[begin + i] = (uchar)countCensusBits(differences[i]);
-    }
-}
-
-} // namespace
 
 void censusCostOfRow(const CensusCost& census, int y, const ushort* disparity, uchar* cost)
 {

@@ -31,20 +31,15 @@ void CostVolume::create(const Size& layerSize, int candidates, int stepsPerPixel
 
 void CostVolume::fill(const TwoLayerCost& cost, const Size& layerSize, int candidates)
 {
-    struct Row
-    {
-        std::vector<int> pixels;
-        std::vector<uchar> costs; // of a chunk of each pixel
-    };
     create(layerSize, candidates, cost.steps());
-    const Row memory = { std::vector<int>(size.width), std::vector<uchar>(size.width * chunk) };
-    parallelForRows(size, memory, [&](int y, Row& row) {
-        std::iota(row.pixels.begin(), row.pixels.end(), y * size.width);
+    parallelForRows(size, std::vector<int>(size.width), [&](int y, std::vector<int>& pixels) {
+        std::vector<uchar> ofChunk(size.width * chunk);
+        std::iota(pixels.begin(), pixels.end(), y * size.width);
         for (int first = 0; first < numDisparities; first += chunk)
         {
-            cost.evaluate(row.pixels.data(), size.width, first, chunk, row.costs.data());
+            cost.evaluate(pixels.data(), size.width, first, chunk, ofChunk.data());
             for (int x = 0; x < size.width; ++x)
-                std::copy_n(&row.costs[x * chunk], +chunk, &costs[start(row.pixels[x]) + first]);
+                std::copy_n(&ofChunk[x * chunk], +chunk, &costs[start(pixels[x]) + first]);
         }
     });
 }

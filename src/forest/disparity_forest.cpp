@@ -186,19 +186,15 @@ void orderEdges(const TreeStrategy& strategy, const Mat& weights, const Mat& pix
     selectEdges(weights, pixelIntv, rows, edges);
     if (strategy.ordersByWeight())
         return sortByWeight(weights, edges);
-    std::vector<bool> isMissing(weights.total() * 2);
+    std::vector<uchar> isMissing(weights.total() * 2);
     for (int edge : edges)
-        isMissing[edge] = true;
+        isMissing[edge] = 1;
     const size_t count = edges.size();
     strategy.orderEdges(weights, edges);
-    size_t found = 0;
-    for (int edge : edges)
-        if (edge >= 0 && (size_t)edge < isMissing.size() && isMissing[edge])
-        {
-            isMissing[edge] = false;
-            ++found;
-        }
-    if (found != count || edges.size() != count)
+    const auto isFound = [&](int edge) {
+        return edge >= 0 && (size_t)edge < isMissing.size() && isMissing[edge]-- > 0;
+    };
+    if (edges.size() != count || !std::all_of(edges.begin(), edges.end(), isFound))
         CV_Error(Error::StsBadArg, "treeStrategy: orderEdges must leave a permutation of the edges");
 }
 

@@ -18,7 +18,6 @@ namespace {
 const int largestSparedWeight = 7;
 
 HDP_DISPATCH(weighRow)
-HDP_DISPATCH(weighRowOfLevels)
 
 //! DT-Rule 1, without a branch
 int isKept(int weight, const DisparityInterval& a, const DisparityInterval& b)
@@ -34,7 +33,7 @@ void weighEdges(const Mat& image, Mat& weights)
     parallelForRows(image.size(), [&](int y) {
         const int next = std::min(y + 1, image.rows - 1); // the last row itself below it
         if (image.depth() == CV_16U)
-            dispatched::weighRowOfLevels(image.ptr<ushort>(y), image.ptr<ushort>(next), image.cols, weights.ptr(y));
+            dispatched::weighRow(image.ptr<ushort>(y), image.ptr<ushort>(next), image.cols, 1, weights.ptr(y));
         else
             dispatched::weighRow(image.ptr(y), image.ptr(next), image.cols, image.channels(), weights.ptr(y));
     });

@@ -20,10 +20,7 @@ inline int secondPixel(int edge, int width) { return (edge & 1) ? firstPixel(edg
 //! Bits of the neighbours that a pixel is joined to
 struct TreeLink
 {
-    static const int RIGHT = 1;
-    static const int BELOW = 2;
-    static const int LEFT = 4;
-    static const int ABOVE = 8;
+    static const int RIGHT = 1, BELOW = 2, LEFT = 4, ABOVE = 8;
 };
 
 /** w(p, q) of all edges: the largest absolute difference over the colour channels, as in the authors' program; the

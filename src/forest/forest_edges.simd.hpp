@@ -9,11 +9,8 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! weighEdges() for a row of pixels of 1 or 3 channels; next: the row below
-void weighRow(const uchar* row, const uchar* next, int width, int channels, uchar* weights);
-
-//! The same for grey levels
-void weighRowOfLevels(const ushort* row, const ushort* next, int width, uchar* weights);
+//! weighEdges() for a row of pixels of 1 or 3 bytes, or for grey levels of 16 bits; next: the row below
+template <typename T> void weighRow(const T* row, const T* next, int width, int channels, uchar* weights);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -51,15 +48,13 @@ template <int channels, typename T> void weighPixels(const T* row, const T* next
 
 } // namespace
 
-void weighRow(const uchar* row, const uchar* next, int width, int channels, uchar* weights)
+template <typename T> void weighRow(const T* row, const T* next, int width, int channels, uchar* weights)
 {
     channels == 1 ? weighPixels<1>(row, next, width, weights) : weighPixels<3>(row, next, width, weights);
 }
 
-void weighRowOfLevels(const ushort* row, const ushort* next, int width, uchar* weights)
-{
-    weighPixels<1>(row, next, width, weights);
-}
+template void weighRow(const uchar*, const uchar*, int, int, uchar*);
+template void weighRow(const ushort*, const ushort*, int, int, uchar*);
 
 #endif
 

@@ -11,7 +11,6 @@ namespace cv { namespace stereo { namespace hdp {
 namespace {
 
 HDP_TUNABLE(int, fitRise, 12, "cost", "above the lowest one of the pixel: candidates up to it fit");
-HDP_TUNABLE(int, barrierRise, 24, "cost", "above the lowest one: what is between two runs; less splits what is noisy");
 HDP_TUNABLE(int, maxStep, 1, "halves of a candidate", "between runs of a surface: more joins the surface behind");
 HDP_TUNABLE(int, minPiece, 20, "pixels", "of connected runs: smaller ones are noise");
 HDP_TUNABLE(int, maxGap, 16, "pixels", "without runs, that surfaces go on beyond: as the inside of a brick");
@@ -42,7 +41,7 @@ void addRuns(const CostVolume& volume, int pixel, std::vector<Run>& runs)
     {
         if (costs[k] > least + fitRise)
         {
-            isOpen &= costs[k] < least + barrierRise;
+            isOpen &= costs[k] < least + CostVolume::contradiction;
             continue;
         }
         if (!isOpen)

@@ -6,7 +6,6 @@
 #include "tree_means.simd.hpp"
 #include "forest/tree_means.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
-#include "forest_edges.hpp"
 #include "tree_tasks.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -17,7 +17,7 @@ HDP_TUNABLE(
 HDP_TUNABLE(int, triples, 60, "planes", "that are tried: seven of them are right if half of the samples are");
 HDP_TUNABLE(double, tiltCost, 0.2, "cost per disparity",
             "between the ends of the tree: of two planes, the flatter one");
-HDP_TUNABLE(int, fits, 4, "fits", "to the disparities near the plane: then these are the same as before");
+const int fits = 4; // to the disparities near the plane: then these are the same as before
 HDP_TUNABLE(double, fitDistance, 1.5, "disparities", "from the plane: what is farther off is another surface");
 HDP_TUNABLE(double, minShare, 0.5, "share of the samples", "on the plane: a tree of several surfaces gets none");
 HDP_TUNABLE(double, maxRise, 4.5, "cost", "of the mean over the tree: the costs are against a plane that has more");

@@ -5,7 +5,6 @@
 #include "disparity_confidence.hpp"
 
 #include "../base/units.hpp"
-#include "../base/vectorized.hpp"
 #include "../base/window_sums.hpp"
 #include "left_right_check.hpp"
 

@@ -7,7 +7,6 @@
 #include "../base/result_array.hpp"
 
 #include "left_right_check.hpp"
-#include "../base/vectorized.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 

@@ -15,7 +15,6 @@ namespace {
 HDP_TUNABLE(int, likeness, 36, "grey levels",
             "from which on votes count nothing: less is noise, more is another surface");
 HDP_TUNABLE(int, minStep, 2, "pixels", "of disparities at the border of two surfaces: less is the slope of one");
-HDP_TUNABLE(int, reach, 1, "pixels", "beyond both ends of a step, on the same surfaces: more are third ones");
 
 // Rows whose colours are split at once
 const int voteBlock = 64;
@@ -39,7 +38,7 @@ void voteAtEdges(const Mat& image, const Mat& disparity, Mat& voted)
         rows.channels = image.channels();
         rows.likeness = (ushort)likeness;
         rows.minStep = (ushort)(minStep * subpixelScale);
-        rows.reach = (ushort)(reach * subpixelScale);
+        rows.reach = (ushort)subpixelScale;
         for (int y = range.start * voteBlock; y < std::min(range.end * voteBlock, disparity.rows); ++y)
         {
             const int first = std::max(y / voteBlock * voteBlock - border, 0);

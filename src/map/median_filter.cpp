@@ -10,11 +10,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-namespace {
-
 HDP_DISPATCH(medianRow)
-
-} // namespace
 
 void medianDisparity(const Mat& disparity, int size, Mat& filtered)
 {

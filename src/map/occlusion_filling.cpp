@@ -6,16 +6,11 @@
 
 #include "occlusion_filling.simd.hpp"
 #include "map/occlusion_filling.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
-#include "../base/parallel_for.hpp"
 #include "../base/units.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
-namespace {
-
 HDP_DISPATCH(fillOccludedRow)
-
-} // namespace
 
 void fillOccluded(Mat& disparity, const Mat& residual, const PairMasks& masks)
 {

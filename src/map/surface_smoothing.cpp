@@ -12,7 +12,7 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(double, leastNoise, 0.5, "grey levels", "less is below the rounding of the levels");
+const double leastNoise = 0.5; // grey levels: less is below their rounding
 HDP_TUNABLE(int, mostWeight, 64, "noise^-2",
             "of a pixel beside another: more helps surfaces with little texture, less keeps details");
 

@@ -11,20 +11,19 @@ namespace cv { namespace stereo { namespace hdp {
 
 namespace {
 
-HDP_TUNABLE(int, radius, 3, "pixels", "of the window, that of the largest median: more sees other structures");
+const int radius = 3; // of the window, that of the largest median
 HDP_TUNABLE(int, minShare, 30, "percent of the window",
             "of the structure: less restores noise, more only what is thick");
 HDP_TUNABLE(int, minDistance, 5, "pixels",
             "in front of what the median left: nearer ones are rather noise of a surface");
-HDP_TUNABLE(int, maxDifference, 1, "pixels", "inside the structure: 0 fails by rounding, more joins noise");
 const int groupColumns = 64; // that are tested at once: most groups have none, and are left out
 
 //! Whether enough pixels around this one have its disparity
 bool isInStructure(const Mat& disparity, int y, int x)
 {
-    const int reach = radius, maxStep = maxDifference * subpixelScale;
-    const Range rows(std::max(y - reach, 0), std::min(y + reach + 1, disparity.rows));
-    const Range inside(std::max(x - reach, 0), std::min(x + reach + 1, disparity.cols));
+    const int maxStep = subpixelScale; // inside the structure: exact equality fails by rounding
+    const Range rows(std::max(y - radius, 0), std::min(y + radius + 1, disparity.rows));
+    const Range inside(std::max(x - radius, 0), std::min(x + radius + 1, disparity.cols));
     const int own = disparity.at<ushort>(y, x);
     int count = 0;
     for (int v = rows.start; v < rows.end; ++v)

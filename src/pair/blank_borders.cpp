@@ -26,11 +26,12 @@ HDP_TUNABLE(int, minSide, 32, "pixels", "of an image: of fewer, a percent is sin
 int blackOf(const Mat& image) { return image.depth() == CV_8U ? maxBlack : 0; }
 
 //! Of the channels of a pixel
-template <typename T> T brightest(const Mat& image, const Point& p)
+int brightest(const Mat& image, const Point& p)
 {
-    const int channels = image.channels();
-    const T* const pixel = image.ptr<T>(p.y) + (ptrdiff_t)p.x * channels;
-    return channels == 1 ? *pixel : std::max(pixel[0], std::max(pixel[1], pixel[2]));
+    if (image.depth() == CV_16U)
+        return image.at<ushort>(p);
+    const uchar* const pixel = image.ptr(p.y) + (ptrdiff_t)p.x * image.channels();
+    return image.channels() == 1 ? *pixel : std::max(pixel[0], std::max(pixel[1], pixel[2]));
 }
 
 //! A side of an image, and its rows or columns from there to the opposite side
@@ -44,7 +45,7 @@ struct Side
 };
 
 //! The border of an image that begins at one of its sides
-template <typename T> class SideBorder
+class SideBorder
 {
 public:
     SideBorder(const Mat& image, double level, const Side& side)
@@ -86,7 +87,7 @@ private:
     //! first: its pixel at the side
     Line findLine(const Point& first) const
     {
-        const auto brightness = [&](int i) { return (int)brightest<T>(image_, first + side_.inwards * i); };
+        const auto brightness = [&](int i) { return brightest(image_, first + side_.inwards * i); };
         const int length = side_.length;
         int black = 0;
         while (black < length && brightness(black) <= blackOf(image_))
@@ -130,27 +131,6 @@ private:
     std::vector<Line> lines_;
 };
 
-template <typename T> void maskBordersOf(const Mat& image, double level, const ImageFrame& frame, Mat& mask)
-{
-    const int width = image.cols, height = image.rows;
-    const Point end = frame.origin + Point(width, height);
-    const bool isCutLeft = frame.origin.x > 0, isCutRight = end.x < frame.whole.width;
-    const bool isCutAbove = frame.origin.y > 0, isCutBelow = end.y < frame.whole.height;
-    const Point x(1, 0), y(0, 1);
-    const SideBorder<T> left(image, level,
-                             { Point(), y, height, x, width, isCutLeft, isCutRight, isCutAbove, isCutBelow }),
-        right(image, level, { x * (width - 1), y, height, -x, width, isCutRight, isCutLeft, isCutAbove, isCutBelow }),
-        above(image, level, { Point(), x, width, y, height, isCutAbove, isCutBelow, isCutLeft, isCutRight }),
-        below(image, level, { y * (height - 1), x, width, -y, height, isCutBelow, isCutAbove, isCutLeft, isCutRight });
-    for (const SideBorder<T>* border : { &left, &right, &above, &below })
-        border->mask(mask);
-    // Where black rows cross black columns, in a corner
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width && (left.isOpen(row) || right.isOpen(row)); ++column)
-            if (above.isOpen(column) || below.isOpen(column))
-                mask.at<uchar>(row, column) = 0;
-}
-
 //! Whether one of some pixels of the sides is black: every border has one of them, as it is long enough.
 bool hasBlackSide(const Mat& image)
 {
@@ -159,11 +139,8 @@ bool hasBlackSide(const Mat& image)
     {
         const int right = image.cols - 1, bottom = image.rows - 1, x = right * i / parts, y = bottom * i / parts;
         for (const Point& p : { Point(x, 0), Point(x, bottom), Point(0, y), Point(right, y) })
-        {
-            const int level = image.depth() == CV_8U ? +brightest<uchar>(image, p) : +brightest<ushort>(image, p);
-            if (level <= blackOf(image))
+            if (brightest(image, p) <= blackOf(image))
                 return true;
-        }
     }
     return false;
 }
@@ -203,8 +180,23 @@ void maskBorders(const Mat& image, double level, const ImageFrame& frame, Mat& m
 {
     mask.create(image.size(), CV_8U);
     mask.setTo(Scalar(255));
-    const auto maskOfDepth = image.depth() == CV_8U ? maskBordersOf<uchar> : maskBordersOf<ushort>;
-    maskOfDepth(image, level, frame, mask);
+    const int width = image.cols, height = image.rows;
+    const Point end = frame.origin + Point(width, height);
+    const bool isCutLeft = frame.origin.x > 0, isCutRight = end.x < frame.whole.width;
+    const bool isCutAbove = frame.origin.y > 0, isCutBelow = end.y < frame.whole.height;
+    const Point x(1, 0), y(0, 1);
+    const SideBorder left(image, level,
+                          { Point(), y, height, x, width, isCutLeft, isCutRight, isCutAbove, isCutBelow }),
+        right(image, level, { x * (width - 1), y, height, -x, width, isCutRight, isCutLeft, isCutAbove, isCutBelow }),
+        above(image, level, { Point(), x, width, y, height, isCutAbove, isCutBelow, isCutLeft, isCutRight }),
+        below(image, level, { y * (height - 1), x, width, -y, height, isCutBelow, isCutAbove, isCutLeft, isCutRight });
+    for (const SideBorder* border : { &left, &right, &above, &below })
+        border->mask(mask);
+    // Where black rows cross black columns, in a corner
+    for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width && (left.isOpen(row) || right.isOpen(row)); ++column)
+            if (above.isOpen(column) || below.isOpen(column))
+                mask.at<uchar>(row, column) = 0;
 }
 
 }}} // namespace cv::stereo::hdp

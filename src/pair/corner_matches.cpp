@@ -270,6 +270,31 @@ void matchCorners(const Mat& left, const Mat& right, const Mat& mask, const Rang
     });
 }
 
+//! Finds and tracks matches where rows may be off by more than findCornerMatches() sees: if there are too few for a
+//! model, rows farther away are tried, below and above by turns. Their matches take the place of these if they are far
+//! more.
+void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities, int spacing,
+                       int maxRowOffset, SearchWindows& windows, std::vector<CornerMatch>& matches)
+{
+    const auto isValid = [](const CornerMatch& match) { return match.isValid; };
+    const auto count = [&](const std::vector<CornerMatch>& all) {
+        return std::count_if(all.begin(), all.end(), isValid);
+    };
+    findCornerMatches(left, right, masks, disparities, spacing, windows, matches);
+    trackCornerMatches(left, right, matches);
+    if (count(matches) >= moreMatches * CornerMatching::minMatches) // fewer may be by chance
+        return;
+    const int step = SearchArea::rows, farthest = std::min(maxRowOffset, left.rows / 8) + CornerMatching::searchRadius;
+    std::vector<CornerMatch> others = matches; // of the same corners
+    for (int offset = step; offset <= farthest; offset = offset > 0 ? -offset : step - offset)
+    {
+        matchCorners(left, right, masks.right, disparities, offset, windows, others);
+        trackCornerMatches(left, right, others);
+        if (count(others) >= std::max<double>(CornerMatching::minMatches, moreMatches * count(matches)))
+            matches.swap(others);
+    }
+}
+
 } // namespace
 
 void findCornerMatches(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities, int spacing,
@@ -342,35 +367,6 @@ void trackCornerMatches(const Mat& left, const Mat& right, std::vector<CornerMat
             track(left, right, matches[i]);
     });
 }
-
-namespace {
-
-//! Finds and tracks matches where rows may be off by more than findCornerMatches() sees: if there are too few for a
-//! model, rows farther away are tried, below and above by turns. Their matches take the place of these if they are far
-//! more.
-void findMatchesOfRows(const Mat& left, const Mat& right, const PairMasks& masks, const Range& disparities, int spacing,
-                       int maxRowOffset, SearchWindows& windows, std::vector<CornerMatch>& matches)
-{
-    const auto isValid = [](const CornerMatch& match) { return match.isValid; };
-    const auto count = [&](const std::vector<CornerMatch>& all) {
-        return std::count_if(all.begin(), all.end(), isValid);
-    };
-    findCornerMatches(left, right, masks, disparities, spacing, windows, matches);
-    trackCornerMatches(left, right, matches);
-    if (count(matches) >= moreMatches * CornerMatching::minMatches) // fewer may be by chance
-        return;
-    const int step = SearchArea::rows, farthest = std::min(maxRowOffset, left.rows / 8) + CornerMatching::searchRadius;
-    std::vector<CornerMatch> others = matches; // of the same corners
-    for (int offset = step; offset <= farthest; offset = offset > 0 ? -offset : step - offset)
-    {
-        matchCorners(left, right, masks.right, disparities, offset, windows, others);
-        trackCornerMatches(left, right, others);
-        if (count(others) >= std::max<double>(CornerMatching::minMatches, moreMatches * count(matches)))
-            matches.swap(others);
-    }
-}
-
-} // namespace
 
 void matchCoarsely(const std::vector<Mat>& left, const std::vector<Mat>& right, const PairMasks& masks,
                    const Range& disparities, int maxRowOffset, int finer, CoarseMatches& coarse)

@@ -18,8 +18,6 @@ HDP_DISPATCH(stretchRow)
 const int minBits = 8, maxBits = 16;       // of a level
 const int matchedBits = 10, fullBits = 14; // of one that is matched, and of one that will be stretched
 
-HDP_TUNABLE(int, pixelsPerBright, 1024, "pixels",
-            "of which one may be too bright: highlights and defects are fewer, parts of the scene more");
 HDP_TUNABLE(double, lampShare, 1. / 128, "of all pixels",
             "that may become white: as few are lamps and what they shine on");
 HDP_TUNABLE(double, sceneShare, 1. / 16, "of all pixels",
@@ -28,9 +26,8 @@ HDP_TUNABLE(int, rowsThatTell, 64, "rows",
             "of an image, and twice as many columns, about: more cost time and tell the same");
 HDP_TUNABLE(int, margin, 6, "shares of the contrast",
             "of which one is left at each end: more leaves faint texture, less cuts off what few pixels have");
-HDP_TUNABLE(double, mostContrast, 4, "times", "that a pair gets: more would make noise look like texture");
 
-const int maxDoublings = 2;          // of the levels of a dark pair: more would make noise look like texture
+const int maxDoublings = 2;          // of the contrast of a pair, or of its levels: more makes noise look like texture
 const double steps = 64;             // to the next doubling: the brightness is exact in any format of a file
 const int whiteEnd = whiteLevel + 1; // the first level that does not exist
 
@@ -112,7 +109,7 @@ struct LevelCounts
     //! The first step up to which there are more pixels than outliers
     static int firstOf(const std::vector<int>& counts)
     {
-        const int outliers = std::accumulate(counts.begin(), counts.end(), 0) / pixelsPerBright;
+        const int outliers = std::accumulate(counts.begin(), counts.end(), 0) / pixelsPerOutlier;
         int first = 0;
         for (int below = counts[0]; below <= outliers && first + 1 < (int)counts.size(); below += counts[first])
             ++first;
@@ -168,7 +165,7 @@ int bitsInUse(const Mat& left, const Mat& right, double share)
     for (int i = minBits; i < maxBits; ++i)
         ends.push_back(1 << i);
     const std::vector<double> tooBright = countFrom(ends, left, right, 1);
-    while (bits < maxBits && tooBright[bits - minBits] > 2. * left.total() * share / pixelsPerBright)
+    while (bits < maxBits && tooBright[bits - minBits] > 2. * left.total() * share / pixelsPerOutlier)
         ++bits;
     return bits;
 }
@@ -241,7 +238,7 @@ void findEnds(const Mat& left, const Mat& right, const PairMasks& masks, LevelSc
     const int white = LevelScale::end - LevelCounts::firstOf(counts.brightest) * LevelCounts::step;
     if (white <= black) // no pixel counts
         return;
-    const int least = cvRound(LevelScale::end / mostContrast), contrast = white - black,
+    const int least = LevelScale::end >> maxDoublings, contrast = white - black,
               rest = std::max(contrast / margin, (least - contrast + 1) / 2); // at each end
     scale.black = clamped(black - rest, 0, LevelScale::end - least);
     scale.white = clamped(white + rest, scale.black + least, +LevelScale::end);

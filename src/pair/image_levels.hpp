@@ -13,6 +13,9 @@ namespace cv { namespace stereo { namespace hdp {
 
 // All parameters in intensity levels are for images of 8 bits. Images of 16 bits are brought to the same range.
 
+// One of so many pixels may be too dark, and one too bright: defects and highlights are fewer, parts of the scene more.
+const int pixelsPerOutlier = 1024;
+
 //! How the levels of a pair become those that are matched
 struct LevelScale
 {

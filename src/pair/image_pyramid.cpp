@@ -9,11 +9,7 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-namespace {
-
 HDP_DISPATCH(halveRow)
-
-} // namespace
 
 void halveImage(const Mat& image, Mat& half)
 {

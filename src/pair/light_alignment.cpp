@@ -15,7 +15,7 @@ namespace {
 
 const double white = 255 * greyScale; // level 1 of the model
 HDP_TUNABLE(int, meanRadius, 3, "pixels", "of the square around a corner whose mean level counts: noise averages out");
-HDP_TUNABLE(double, levelDeviation, 0.5 / 255, "of white", "by which matched levels differ at best: they are rounded");
+const double levelDeviation = 0.5 / 255; // of white, by which matched levels differ at best: they are rounded
 HDP_TUNABLE(double, maxRest, 4. / 255, "of white", "median difference that a model which fits may leave");
 HDP_TUNABLE(double, maxRestShare, 0.7, "share", "of that difference before the model: one that explains less is none");
 

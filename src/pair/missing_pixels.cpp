@@ -5,16 +5,15 @@
 #include "missing_pixels.hpp"
 
 #include "../base/vectorized.hpp"
+#include "image_levels.hpp"
 
 #include <cfloat>
 #include <cstring>
+#include <numeric>
 
 namespace cv { namespace stereo { namespace hdp {
 
 namespace {
-
-HDP_TUNABLE(int, pixelsPerOutlier, 1024, "pixels",
-            "of a pair of floats, of which one may be too dark and one too bright: defects and highlights are fewer");
 
 //! A mask of 0 and 255 from that of the caller, and where the image has numbers
 Mat maskOf(const Mat& image, const Mat& given)
@@ -23,21 +22,6 @@ Mat maskOf(const Mat& image, const Mat& given)
     if (image.depth() == CV_32F)
         mask &= (image - image) == 0; // neither infinite nor NaN
     return mask;
-}
-
-//! The nearest place with data for each one, the first of two; -1 if there is none
-std::vector<int> nearestWithData(const uchar* has, int count)
-{
-    std::vector<int> nearest(count);
-    for (int i = 0, last = -1; i < count; ++i)
-        nearest[i] = last = has[i] ? i : last;
-    for (int i = count - 1, next = -1; i >= 0; --i)
-    {
-        next = has[i] ? i : next;
-        if (next >= 0 && (nearest[i] < 0 || next - i < i - nearest[i]))
-            nearest[i] = next;
-    }
-    return nearest;
 }
 
 //! Fills the pixels of a row that have no data; returns whether others have. pixel: bytes of one
@@ -66,11 +50,12 @@ void fillMissing(const Mat& image, const Mat& mask, Mat& filled)
     image.copyTo(filled);
     parallelForRows(image.size(),
                     [&](int y) { has[y] = fillRow(filled.ptr(y), mask.ptr(y), image.cols, image.elemSize()); });
-    const std::vector<int> rows = nearestWithData(has.data(), image.rows);
+    std::vector<int> rows(image.rows); // that each one is taken from
+    std::iota(rows.begin(), rows.end(), 0);
+    if (!fillRow(reinterpret_cast<uchar*>(rows.data()), has.data(), image.rows, sizeof(int)))
+        filled.setTo(Scalar::all(0));
     for (int y = 0; y < image.rows; ++y)
-        if (rows[y] < 0)
-            filled.row(y).setTo(Scalar::all(0));
-        else if (rows[y] != y)
+        if (rows[y] != y)
             filled.row(rows[y]).copyTo(filled.row(y));
 }
 
@@ -113,8 +98,8 @@ void wholeLevels(const Mat& image, const Mat& mask, const FloatLevels& floats, M
 
 } // namespace
 
-void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
-                  const GivenPixels* given, CompletePair& complete)
+void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask, const PairModel& model,
+                  CompletePair& complete)
 {
     complete.left = left;
     complete.right = right;
@@ -125,19 +110,20 @@ void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const 
     PairMasks masks;
     if (isFloat || isMasked)
         masks = { maskOf(left, leftMask), maskOf(right, rightMask) };
-    else if (!given)
+    else if (model.empty())
         complete.borderLevel = findBorders(left, right, masks);
-    else if (given->borderLevel > 0)
+    else if (model.borderLevel > 0)
     {
-        complete.borderLevel = given->borderLevel;
-        maskBorders(left, given->borderLevel, given->frame, masks.left);
-        maskBorders(right, given->borderLevel, given->frame, masks.right);
+        const ImageFrame frame(Size(model.width, model.height), Point(model.x, model.y));
+        complete.borderLevel = model.borderLevel;
+        maskBorders(left, model.borderLevel, frame, masks.left);
+        maskBorders(right, model.borderLevel, frame, masks.right);
     }
     if (masks.isEmpty())
         return;
     if (isFloat)
     {
-        complete.floats = given ? given->floats : findLevels(left, right, masks);
+        complete.floats = model.empty() ? findLevels(left, right, masks) : FloatLevels{ model.black, model.white };
         wholeLevels(left, masks.left, complete.floats, complete.left);
         wholeLevels(right, masks.right, complete.floats, complete.right);
     }

@@ -4,6 +4,8 @@
 #ifndef OPENCV_HDPSTEREO_MISSING_PIXELS_HPP
 #define OPENCV_HDPSTEREO_MISSING_PIXELS_HPP
 
+#include "opencv2/hdpstereo/pair_model.hpp"
+
 #include "blank_borders.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -24,24 +26,16 @@ struct CompletePair
     Mat filled[2];      // memory, kept from pair to pair
 };
 
-//! What is known of a pair's pixels: the same as of another pair, or of the whole that it is a tile of
-struct GivenPixels
-{
-    FloatLevels floats;
-    double borderLevel;
-    ImageFrame frame; // of the images
-};
-
 /** Gives the pixels without data levels that depend on the others alone, and images of type CV_32FC1 16 bits. A run of
 pixels without data in a row gets the levels at its ends, each half of it the nearer one's. A row without any gets what
 the nearest row has that has some, the upper one of two; black if there is none. Floats have one scale for both images:
 the darkest pixel becomes black and the brightest white, but for one in 1024 at each end.
 @param leftMask,rightMask CV_8UC1, 0 where there is no data; empty: there is everywhere. If both are empty, and levels
 are whole numbers, black borders are no data, see maskBorders().
-@param given None: what is found in this pair.
+@param model What is known of the pixels; empty: it is found in this pair.
 @param complete Receives the pair: the images themselves if nothing is to be done. */
 CV_EXPORTS void completePair(const Mat& left, const Mat& right, const Mat& leftMask, const Mat& rightMask,
-                             const GivenPixels* given, CompletePair& complete);
+                             const PairModel& model, CompletePair& complete);
 
 }}} // namespace cv::stereo::hdp
 

@@ -5,7 +5,6 @@
 #include "pair_alignment.hpp"
 
 #include "../base/vectorized.hpp"
-#include "image_levels.hpp"
 #include "image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
@@ -15,10 +14,8 @@ namespace {
 HDP_TUNABLE(double, smoothingPerLevel, 32, "1/256 per grey level",
             "weight of a pixel's neighbour by the noise above the threshold: more loses texture, less keeps noise");
 
-bool hasGreyLevels(const std::vector<LayerImages>& images)
-{
-    return images[0].right.depth() == CV_16U;
-} // see greyLevels()
+//! See greyLevels().
+bool hasGreyLevels(const std::vector<LayerImages>& images) { return images[0].right.depth() == CV_16U; }
 
 void findAlignment(const AlignmentPlan& plan, AlignmentBuffers& buffers, const std::vector<LayerImages>& images,
                    PairFindings& findings)
@@ -76,24 +73,6 @@ void smoothNoise(const Mat& image, int neighbour, Mat& smoothed)
     });
 }
 
-namespace {
-
-//! Smooths both images of the matched layers
-void smoothPair(int finestLayer, int neighbour, AlignmentBuffers& buffers, std::vector<LayerImages>& images)
-{
-    buffers.smoothed.resize(images.size());
-    for (size_t layer = finestLayer; layer < images.size(); ++layer)
-    {
-        LayerImages& smoothed = buffers.smoothed[layer];
-        smoothNoise(images[layer].left, neighbour, smoothed.left);
-        smoothNoise(images[layer].right, neighbour, smoothed.right);
-        images[layer].left = smoothed.left;
-        images[layer].right = smoothed.right;
-    }
-}
-
-} // namespace
-
 void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector<LayerImages>& images,
                PairFindings& findings, const GivenPair& given)
 {
@@ -123,8 +102,17 @@ void alignPair(const AlignmentPlan& plan, AlignmentBuffers& buffers, std::vector
         }
 
     const int neighbour = plan.smoothing(findings.noise);
-    if (hasGreyLevels(images) && neighbour > 0)
-        smoothPair(plan.finestLayer, neighbour, buffers, images);
+    if (!hasGreyLevels(images) || neighbour == 0)
+        return;
+    buffers.smoothed.resize(images.size());
+    for (size_t layer = plan.finestLayer; layer < images.size(); ++layer)
+    {
+        LayerImages& smoothed = buffers.smoothed[layer];
+        smoothNoise(images[layer].left, neighbour, smoothed.left);
+        smoothNoise(images[layer].right, neighbour, smoothed.right);
+        images[layer].left = smoothed.left;
+        images[layer].right = smoothed.right;
+    }
 }
 
 }}} // namespace cv::stereo::hdp

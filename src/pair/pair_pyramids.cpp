@@ -5,7 +5,6 @@
 #include "pair_pyramids.hpp"
 
 #include "../base/vectorized.hpp"
-#include "image_levels.hpp"
 #include "image_pyramid.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

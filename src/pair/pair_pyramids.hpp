@@ -4,7 +4,6 @@
 #ifndef OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
 #define OPENCV_HDPSTEREO_PAIR_PYRAMIDS_HPP
 
-#include "../base/mask.hpp"
 #include "block_smoothing.hpp"
 #include "image_levels.hpp"
 

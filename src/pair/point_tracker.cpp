@@ -12,13 +12,13 @@ namespace {
 
 HDP_TUNABLE(int, maxCoarsestWidth, 160, "pixels",
             "of the level that a search begins at: on a larger one it reaches less far, on a smaller one points merge");
-HDP_TUNABLE(int, spacing, 4, "pixels of that level", "of the points: fewer tell less of the motion, more cost time");
-HDP_TUNABLE(int, halfSide, 4, "pixels of any level",
-            "half of the squares that are compared: smaller have more rivals, larger see two surfaces");
+HDP_TUNABLE(
+    int, halfSide, 4, "pixels of any level",
+    "half of the squares that are compared, and between points: smaller have more rivals, larger see two surfaces");
 HDP_TUNABLE(int, searchRadius, 8, "pixels of that level",
             "there, of points that are not nearby: more costs time and finds rivals");
-HDP_TUNABLE(int, refinementRadius, 2, "pixels of the level",
-            "of all other searches: 1 is what the level before rounds away, and 1 is for its errors");
+const int refinementRadius =
+    2; // of all other searches: 1 is what the level before rounds away, and 1 is for its errors
 HDP_TUNABLE(int, minTexture, 3, "grey levels from a pixel to the next",
             "in both directions, on average over a square: in less, noise is tracked");
 
@@ -128,8 +128,8 @@ int trackingLevels(Size size)
 
 void choosePoints(const std::vector<Mat>& before, std::vector<TrackedPoint>& points)
 {
-    const int top = (int)before.size() - 1, cell = spacing << top, minSum = 4 * minTexture * halfSide * halfSide;
-    const Size grid(before[top].cols / spacing, before[top].rows / spacing);
+    const int top = (int)before.size() - 1, cell = halfSide << top, minSum = 4 * minTexture * halfSide * halfSide;
+    const Size grid(before[top].cols / halfSide, before[top].rows / halfSide);
     const auto score = [&](const Point& place) {
         const bool isTracked = isInside(before[top], onLevel(place, top)) && isInside(before[0], place);
         return isTracked ? texture(before[0], place) : 0;

@@ -4,6 +4,8 @@
 #include "../precomp.hpp"
 #include "mixture_training.hpp"
 
+#include "../base/named_values.hpp"
+
 #include <cmath>
 
 namespace cv { namespace stereo {
@@ -115,29 +117,20 @@ public:
             CV_Error(Error::StsParseError, "layerCount must be the number of layers");
         std::vector<GaussianMixture> mixtures;
         for (const FileNode layer : layers)
-            append({ readNumbers(layer, "means"), readNumbers(layer, "sigmas"), readNumbers(layer, "weights") },
-                   mixtures);
+        {
+            if (!layer.isMap())
+                CV_Error(Error::StsParseError, "layers must be a sequence of mixtures");
+            GaussianMixture mixture;
+            const ValueReader read = { layer, "", false };
+            read("means", mixture.means, true, "");
+            read("sigmas", mixture.sigmas, true, "");
+            read("weights", mixture.weights, true, "");
+            append(mixture, mixtures);
+        }
         layers_.swap(mixtures);
     }
 
 private:
-    static std::vector<double> readNumbers(const FileNode& layer, const char* key)
-    {
-        const FileNode node = layer.isMap() ? layer[key] : FileNode();
-        if (node.isInt() || node.isReal()) // a sequence of one number in XML
-            return std::vector<double>(1, (double)node);
-        if (!node.isSeq())
-            CV_Error(Error::StsParseError, format("%s must be a sequence of numbers", key));
-        std::vector<double> numbers;
-        for (const FileNode number : node)
-        {
-            if (!number.isInt() && !number.isReal())
-                CV_Error(Error::StsParseError, format("%s must hold numbers only", key));
-            numbers.push_back((double)number);
-        }
-        return numbers;
-    }
-
     const GaussianMixture& at(int layer) const
     {
         if (layer < 0 || layer >= getNumLayers())

@@ -7,8 +7,6 @@
 #include "paper/tree_sums.simd_declarations.hpp" // of the instruction sets, by CMakeLists.txt
 
 #include "../base/fits.hpp"
-#include "../base/units.hpp"
-#include "../forest/forest_edges.hpp"
 #include "../forest/tree_tasks.hpp"
 
 namespace cv { namespace stereo { namespace hdp {

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "matcher_parameters.hpp"
-#include "named_values.hpp"
+#include "../base/named_values.hpp"
 
 #include "../forest/disparity_forest.hpp"
 #include "../scanlines/scanline_aggregation.hpp"

@@ -3,10 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 #include "../precomp.hpp"
 #include "pair_model.hpp"
-#include "named_values.hpp"
-
-#include "../base/units.hpp"
-#include "../pair/image_levels.hpp"
+#include "../base/named_values.hpp"
 
 #include <algorithm>
 #include <cfloat>
@@ -254,12 +251,6 @@ GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size
     findings.noise.deviation = model.noise * brightness;
     findings.noise.layer = model.noiseLayer;
     return given;
-}
-
-GivenPixels toGivenPixels(const PairModel& model)
-{
-    const Size whole(model.width, model.height);
-    return { { model.black, model.white }, model.borderLevel, ImageFrame(whole, Point(model.x, model.y)) };
 }
 
 PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities, const CompletePair& pair,

@@ -8,7 +8,6 @@
 
 #include "../pair/pair_alignment.hpp"
 #include "../pair/missing_pixels.hpp"
-#include "../pair/pair_pyramids.hpp"
 
 namespace cv { namespace stereo { namespace hdp {
 
@@ -20,9 +19,6 @@ void checkPairModelOf(const PairModel& model, Size size, int type, int layers);
 
 //! From a model to what it says of a pair; if it is empty, that is the frame alone of images of this size
 CV_EXPORTS GivenPair toGivenPair(const PairModel& model, const PyramidPlan& plan, Size size);
-
-//! What a model that is not empty says of the pixels of its images, or of its tile
-GivenPixels toGivenPixels(const PairModel& model);
 
 //! From what was found in a pair to a model. size, depth and numDisparities are those of its images.
 CV_EXPORTS PairModel toPairModel(const PyramidPlan& plan, Size size, int depth, int numDisparities,

@@ -4,7 +4,6 @@
 #include "../precomp.hpp"
 #include "pair_plan.hpp"
 
-#include "../base/units.hpp"
 #include "../base/vectorized.hpp"
 #include "../pair/image_pyramid.hpp"
 
@@ -14,8 +13,8 @@ namespace {
 
 typedef HDPTreeMatcher M;
 
-HDP_TUNABLE(int, largeImageWidth, 1000, "pixels",
-            "from which on images get what the authors' program has for Middlebury's full size, not its half size");
+// Pixels, from which on images get what the authors' program has for Middlebury's full size, not its half size
+const int largeImageWidth = 1000;
 
 // Candidates. A top layer beyond the second one has no fewer: as many as a window of the scanlines.
 const int minTopDisparities = CandidateWindow::candidates;

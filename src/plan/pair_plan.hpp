@@ -5,8 +5,6 @@
 #define OPENCV_HDPSTEREO_PAIR_PLAN_HPP
 
 #include "../map/disparity_output.hpp"
-#include "../pair/pair_alignment.hpp"
-#include "../pair/pair_pyramids.hpp"
 #include "../paper/color_gradient_cost.hpp"
 #include "../scanlines/range_scanlines.hpp"
 #include "../scanlines/scanline_aggregation.hpp"

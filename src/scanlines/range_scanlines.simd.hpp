@@ -4,7 +4,6 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "range_scanlines.hpp"
-#include "../base/vectorized.hpp"
 #include "winner_fraction.hpp"
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "../base/byte_lanes.simd.hpp"
@@ -247,8 +246,8 @@ public:
             for (int r = active.start; r < active.end; ++r)
                 rows_[r].winner = finishPixel(rows_[r], t - r);
             for (int r = active.start; r < active.end; ++r)
-                rows_[r].winners.setWithin(t - r, rows_[r].sums, rows_[r].winner, p_.candidates - 1,
-                                           rows_[r].costRow.interval(t - r));
+                rows_[r].winners.set(t - r, rows_[r].sums, rows_[r].winner, p_.candidates - 1,
+                                     rows_[r].costRow.interval(t - r));
         }
         for (int r = 0; r < height; ++r)
             rows_[r].winners.takeDisparities(width_, bit, 1, disparity.ptr<ushort>(rows.start + r));

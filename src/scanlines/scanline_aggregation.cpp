@@ -71,8 +71,11 @@ void aggregateScanlines(const CensusCost& cost, const Mat& weights, const ImageF
 {
     const Size size = weights.size();
     const float blunt = 4 * (float)bluntSlope, sharp = 4 * (float)sharpSlope; // of sums of four directions
-    const ScanlineProblem problem = { &cost,    &weights,    size,      numDisparities, maxDisparity,
-                                      &windows, &smoothness, penalties, blunt,          sharp };
+    Mat ofPairs[] = { windows, smoothness };
+    for (Mat& pairs : ofPairs) // an odd last column belongs to the pixel of the layer above that the one before does
+        copyMakeBorder(pairs, pairs, 0, 0, 0, (size.width + 1) / 2 - pairs.cols, BORDER_REPLICATE);
+    const ScanlineProblem problem = { &cost,       &weights,    size,      numDisparities, maxDisparity,
+                                      &ofPairs[0], &ofPairs[1], penalties, blunt,          sharp };
     const std::vector<ScanlineStripe> stripes = stripesOf(frame, size.height, stripeHeight);
     disparity.create(size, CV_16U);
     residual.create(size, CV_8U);

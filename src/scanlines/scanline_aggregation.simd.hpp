@@ -101,27 +101,22 @@ private:
                 enter(i, y - i * groups);
                 stored[i] = storedOf(task == FOLLOW ? reach_.start + i * groups : y - i * groups);
             }
-            upward(blocks, task, stored);
+            const int end = countTurns(blocks);
+            Block::Carried h[ScanlineScratch::blocks];
+            for (int t = 0; t < end; t += chunk)
+            {
+                const Range turns(t, std::min(t + chunk, end));
+                for (int i = 0; i < blocks; ++i)
+                    blocks_[i].storeCosts(Range(std::max(t - i * behind, 0), std::min(turns.end - i * behind, steps_)),
+                                          stored[i]);
+                if (task == SUM)
+                    runTurns<true, true>(turns, blocks, stored, h);
+                else if (task == FOLLOW)
+                    runTurns<true, false>(turns, blocks, stored, h);
+            }
             y -= blocks * groups;
         }
         return y;
-    }
-
-    void upward(int blocks, Task task, uchar* const* stored)
-    {
-        const int end = countTurns(blocks);
-        Block::Carried h[ScanlineScratch::blocks];
-        for (int t = 0; t < end; t += chunk)
-        {
-            const Range turns(t, std::min(t + chunk, end));
-            for (int i = 0; i < blocks; ++i)
-                blocks_[i].storeCosts(
-                    Range(std::max(turns.start - i * behind, 0), std::min(turns.end - i * behind, steps_)), stored[i]);
-            if (task == SUM)
-                runTurns<true, true>(turns, blocks, stored, h);
-            else if (task == FOLLOW)
-                runTurns<true, false>(turns, blocks, stored, h);
-        }
     }
 
     //! Runs some turns, in each of which a block takes a step; the second block, if there is one, is behind the first.

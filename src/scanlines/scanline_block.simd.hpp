@@ -20,10 +20,8 @@ const int maxContrast = 23;
 class WindowCosts
 {
 public:
-    static const int limitsBit = 4; // a layout of the costs: the number of planes, and this if they are limited
-
     WindowCosts(const CensusCost& cost, int width)
-        : cost_(cost), planeStride_(cost.planeStride()), lastColumn_(width - 1)
+        : cost_(cost), planeStride_(cost.planeStride()), lastColumn_(width - 1), areLimited_(!cost.limits().isEmpty())
     {
     }
 
@@ -32,16 +30,15 @@ public:
     {
         left_[group] = cost_.leftPixels(row);
         right_[group] = cost_.rightPlane(0, row) + lastColumn_;
-        if (cost_.limits().isEmpty())
+        if (!areLimited_)
             return;
         leftLimits_[group] = cost_.limits().left(row);
         rightLimits_[group] = cost_.limits().right(row) + lastColumn_;
     }
 
     //! Those of the candidates at both columns of a step, and ScanlinePenalties::max
-    template <int layout> CV_ALWAYS_INLINE void of(const ScanlineWindows& windows, int step, ByteLanes (&cost)[2]) const
+    template <int planes> CV_ALWAYS_INLINE void of(const ScanlineWindows& windows, int step, ByteLanes (&cost)[2]) const
     {
-        const int planes = layout & (limitsBit - 1);
         const uchar* left[groups];
         OneRun low;
         for (int r = 0; r < groups; ++r)
@@ -66,7 +63,7 @@ public:
             cost[0] = costs<planes, 0>(left, both);
             cost[1] = costs<planes, 1>(left, both);
         }
-        if (layout & limitsBit)
+        if (areLimited_)
             limit(windows, step, cost);
         const ByteLanes prior = ByteLanes::load(windows.prior(step));
         cost[0] = prior + cost[0];
@@ -125,6 +122,7 @@ private:
     const CensusCost& cost_;
     const size_t planeStride_; // from a plane of the cost to the next
     const int lastColumn_;
+    const bool areLimited_; // by pixels without data
     const uchar *left_[groups], *right_[groups], *leftLimits_[groups], *rightLimits_[groups];
 };
 
@@ -206,14 +204,11 @@ public:
     //! Stores the costs of steps.
     void storeCosts(const Range& steps, uchar* stored) const
     {
-        typedef void (ScanlineBlock::*Method)(const Range&, uchar*) const;
-        const int limited = WindowCosts::limitsBit;
-        static const Method methods[][3] = {
-            { &ScanlineBlock::storeCosts<1>, &ScanlineBlock::storeCosts<2>, &ScanlineBlock::storeCosts<3> },
-            { &ScanlineBlock::storeCosts<limited + 1>, &ScanlineBlock::storeCosts<limited + 2>,
-              &ScanlineBlock::storeCosts<limited + 3> }
-        };
-        (this->*methods[!p_.cost->limits().isEmpty()][p_.cost->planes() - 1])(steps, stored);
+        const int planes = p_.cost->planes();
+        const auto store = planes == 3   ? &ScanlineBlock::storeCosts<3>
+                           : planes == 2 ? &ScanlineBlock::storeCosts<2>
+                                         : &ScanlineBlock::storeCosts<1>;
+        (this->*store)(steps, stored);
     }
 
     /** A step of the direction from below or from above, and if it is to sum, of that from the left or from the right.
@@ -248,12 +243,12 @@ private:
     static const int margin = ScanlineScratch::margin;
     static_assert(groups <= (int)ScanlineScratch::maxRows, "the scratch memory is for larger blocks");
 
-    template <int layout> void storeCosts(const Range& steps, uchar* stored) const
+    template <int planes> void storeCosts(const Range& steps, uchar* stored) const
     {
         for (int t = steps.start; t < steps.end; ++t)
         {
             ByteLanes cost[2];
-            costs_.of<layout>(*tables_, t, cost);
+            costs_.of<planes>(*tables_, t, cost);
             for (int column = 0; column < 2; ++column)
                 cost[column].store(stored + storedAt(t, column));
         }

@@ -97,34 +97,21 @@ private:
 
     // Bytes may alias everything but what is local.
 
-    //! Calls enter(own, x) for the window of each pair of columns. An odd last column belongs to the pixel of the layer
-    //! above that the one before belongs to.
-    template <class Enter> CV_ALWAYS_INLINE void forEachWindow(const Window* row, const Enter& enter) const
-    {
-        const int pairs = pairs_, windows = std::min(pairs, p_.windows->cols);
-        for (int x = 0; x < windows; ++x)
-            enter(row[x], x);
-        for (int x = windows; x < pairs; ++x)
-            enter(row[windows - 1], x);
-    }
-
     //! Where the candidates begin
     void enterColumns(const Window* windows) const
     {
-        const int pairs = pairs_, columns = std::min(pairs, p_.windows->cols), length = Window::runLength;
+        const int pairs = pairs_, length = Window::runLength;
         const short* const members = windows->first; // first, then predicted
         for (int run = 0; run < Window::runs; ++run)
         {
             short *const first = first_[run], *const distance = distance_[run];
-            HDP_VECTORIZED for (int x = 0; x < columns; ++x)
+            HDP_VECTORIZED for (int x = 0; x < pairs; ++x)
             {
                 const short begin = members[4 * x + run];
                 const int predicted = (ushort)members[4 * x + Window::runs + run];
                 first[x] = begin;
                 distance[x] = (short)clamped(begin * subpixelScale - predicted, -mostDistance, mostDistance - 1);
             }
-            std::fill(first + columns, first + pairs, first[columns - 1]);
-            std::fill(distance + columns, distance + pairs, distance[columns - 1]);
             short* const firstOfColumn = firstOfColumn_[run];
             HDP_VECTORIZED for (int x = 0; x < pairs; ++x) firstOfColumn[2 * x] = firstOfColumn[2 * x + 1] = first[x];
         }
@@ -142,23 +129,20 @@ private:
     //! small(p) and large(p); weights: SmoothnessWeight by column of the layer above
     void enterPenalties(const uchar* weights) const
     {
-        const int pairs = pairs_, columns = std::min(pairs, p_.windows->cols);
+        const int pairs = pairs_;
         uchar *const small = small_, *const large = large_, *const least = least_;
         const ushort ofSmall = (ushort)p_.penalties.small, ofLarge = (ushort)p_.penalties.large;
         const auto weighed = [](ushort penalty, ushort weight) {
             const ushort product = (ushort)(penalty * weight + SmoothnessWeight::one / 2);
             return (uchar)std::min<ushort>(product / SmoothnessWeight::one, ScanlinePenalties::max);
         };
-        HDP_VECTORIZED for (int x = 0; x < columns; ++x) small[x] = weighed(ofSmall, weights[x]);
-        std::fill(small + columns, small + pairs, small[columns - 1]);
-        HDP_VECTORIZED for (int x = 0; x < columns; ++x)
+        HDP_VECTORIZED for (int x = 0; x < pairs; ++x) small[x] = weighed(ofSmall, weights[x]);
+        HDP_VECTORIZED for (int x = 0; x < pairs; ++x)
         {
             const uchar own = weighed(ofLarge, weights[x]);
             large[2 * x] = large[2 * x + 1] = own;
             least[2 * x] = least[2 * x + 1] = std::min(small[x], own);
         }
-        std::fill(large + 2 * columns, large + 2 * pairs, large[2 * columns - 1]);
-        std::fill(least + 2 * columns, least + 2 * pairs, least[2 * columns - 1]);
     }
 
     void enterPriors(const uchar* weights) const
@@ -166,12 +150,12 @@ private:
         uchar* const priors = priors_;
         const short *const low = first_[0], *const high = first_[1];
         const short *const ofLow = distance_[0], *const ofHigh = distance_[1];
-        const int pairs = pairs_, lanesUsed = p_.validCandidates(), lastColumn = p_.windows->cols - 1;
+        const int pairs = pairs_, lanesUsed = p_.validCandidates();
         const ushort ofPrior = (ushort)p_.penalties.prior;
         const uchar ofNearer = (uchar)p_.penalties.nearer;
         for (int x = 0; x < pairs; ++x)
         {
-            const ushort slope = (ushort)(ofPrior * weights[std::min(x, lastColumn)]);
+            const ushort slope = (ushort)(ofPrior * weights[x]);
             const bool isNearer = high[x] - low[x] > Window::runLength;
             uchar* const prior = priors - (ptrdiff_t)x * Window::candidates;
             enterPrior(ofLow[x], slope, 0, prior);
@@ -230,27 +214,25 @@ private:
         const bool isUpward = isUpward_;
         Window before = row[0];
         Lanes lanesBefore(before, low, high);
-        forEachWindow(row, [&](const Window& own, int x) {
+        for (int x = 0, pairs = pairs_; x < pairs; ++x)
+        {
             uchar* const here = intoSide - (ptrdiff_t)x * Window::candidates;
-            const Lanes lanes(own, low, high);
+            const Lanes lanes(row[x], low, high);
             if (isUpward)
-                lanesBefore.order(own, here);
+                lanesBefore.order(row[x], here);
             else
                 lanes.order(before, here + Window::candidates);
-            before = own;
+            before = row[x];
             lanesBefore = lanes;
-        });
+        }
     }
 
     void enterNext(const Window* row, const Window* rowBefore)
     {
         const uchar *const low = orders_[0], *const high = orders_[1];
         uchar* const intoNext = intoNext_;
-        const int lastWindow = p_.windows->cols - 1;
-        forEachWindow(row, [&](const Window& own, int x) {
-            Lanes(rowBefore[std::min(x, lastWindow)], low, high)
-                .order(own, intoNext - (ptrdiff_t)x * Window::candidates);
-        });
+        for (int x = 0, pairs = pairs_; x < pairs; ++x)
+            Lanes(rowBefore[x], low, high).order(row[x], intoNext - (ptrdiff_t)x * Window::candidates);
     }
 
     uchar* firstStep(std::vector<uchar>& stored) const

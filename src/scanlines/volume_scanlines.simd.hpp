@@ -4,7 +4,6 @@
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
 #include "volume_scanlines.hpp"
-#include "../base/vectorized.hpp"
 #include "winner_fraction.hpp"
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "../base/sixteen_words.simd.hpp"
@@ -114,7 +113,7 @@ private:
                 const int winner =
                     step<role, vectors>(own, small, large, before + k * lineLength, here + k * lineLength, minima[k]);
                 if (role == LAST)
-                    winners.setWithin(k, total, winner, last, intervals ? intervals + pixel : nullptr);
+                    winners.set(k, total, winner, last, intervals ? intervals + pixel : nullptr);
             }
             if (role == LAST)
                 winners.takeDisparities(scanlines, CostVolume::scale, halving, disparity + first);

@@ -41,11 +41,17 @@ struct Winners
     ushort* whole;
     short *rise, *slope;
 
-    //! Sets number i, candidate first + k of first .. first + last, from the sums of all. Beyond the first and the last
-    //! candidate: the slope beside them, or that which leaves the tip at the end. Less than three have no fraction.
-    template <typename Sum> CV_ALWAYS_INLINE void set(int i, const Sum* sums, int first, int k, int last) const
+    //! Sets number i, a candidate of 0 .. lastOfAll, from the sums of all; of the pixel's own interval alone, if it has
+    //! one and the winner lies in it: costs beyond are not those of candidates. Beyond the first and the last candidate:
+    //! the slope beside them, or that which leaves the tip at the end. Less than three have no fraction.
+    template <typename Sum>
+    CV_ALWAYS_INLINE void set(int i, const Sum* ofAll, int candidate, int lastOfAll, const DisparityInterval* own) const
     {
-        whole[i] = (ushort)(first + k);
+        const bool isInside = own && own->first <= candidate && candidate <= own->last;
+        const int first = isInside ? own->first : 0, k = candidate - first,
+                  last = (isInside ? std::min((int)own->last, lastOfAll) : lastOfAll) - first;
+        const Sum* const sums = ofAll + first;
+        whole[i] = (ushort)candidate;
         rise[i] = 0;
         slope[i] = 1;
         if (last < 2)
@@ -56,18 +62,6 @@ struct Winners
             k < last ? sums[k + 1] : sum + std::max(sums[last - 2] - sums[last - 1], sums[last - 1] - sum);
         rise[i] = (short)(before - after);
         slope[i] = (short)std::max(std::max(before, after) - sum, 1);
-    }
-
-    //! The same for candidate k of 0 .. last, between the ends of the pixel's own interval, if it has one and the
-    //! winner lies in it: costs beyond are not those of candidates.
-    template <typename Sum>
-    CV_ALWAYS_INLINE void setWithin(int i, const Sum* sums, int k, int last, const DisparityInterval* own) const
-    {
-        const int begin = own ? own->first : 0, end = own ? std::min((int)own->last, last) : last;
-        if (begin <= k && k <= end)
-            set(i, sums + begin, begin, k - begin, end - begin);
-        else
-            set(i, sums, 0, k, last);
     }
 
     //! Disparities of a map. bit: what a bit of the census costs in one direction; halving: 1 if there are two

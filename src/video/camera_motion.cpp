@@ -20,7 +20,6 @@ HDP_TUNABLE(double, disparityUnits, 6, "per half width of the image",
 
 // A first guess
 HDP_TUNABLE(int, guesses, 60, "samples of points", "of which the best is taken: more cost time, fewer are all wrong");
-HDP_TUNABLE(int, guessPoints, 7, "points", "of a sample: fewer leave terms open, more are less often all right");
 HDP_TUNABLE(double, goodGuess, 0.7, "share of the points", "that agree with a guess which is good enough");
 
 // Reweighted least squares
@@ -39,6 +38,7 @@ HDP_TUNABLE(double, factorDeviation, 0.02, "difference from 1", "expected of the
 
 // What a motion has: the rows of X, Y and W, but for the 1 that is the last of W
 const int terms = 11;
+const int guessPoints = terms / 2 + 2; // of a sample: fewer leave terms open, more are less often all right
 typedef Matx<double, terms, 1> Terms;
 typedef Matx<double, terms, terms> NormalMatrix;
 

@@ -4,7 +4,6 @@
 #ifndef OPENCV_HDPSTEREO_FRAME_MEMORY_HPP
 #define OPENCV_HDPSTEREO_FRAME_MEMORY_HPP
 
-#include "../base/units.hpp"
 #include "../pair/image_levels.hpp"
 #include "camera_motion.hpp"
 

@@ -20,15 +20,15 @@ namespace {
 HDP_TUNABLE(int, window, 7, "cells",
             "side of the square that costs are compared over: a smaller one decides by noise, a larger one has two "
             "surfaces");
-HDP_TUNABLE(int, sameDistance, 1, "pixels", "up to which disparities are the same: their costs differ by noise");
 HDP_TUNABLE(int, costOffset, 6, "bits of 24",
             "that a measured disparity's cost gets before shares of it are taken: without it, noise decides low ones");
 HDP_TUNABLE(int, stillShare, 26, "percent of that sum",
             "that a disparity may cost more if the camera stands still: more keeps errors, less flickers");
 HDP_TUNABLE(int, nearShare, 60, "percent of that sum",
             "the same if the camera moved: the costs of warped disparities are higher, however right they are");
-HDP_TUNABLE(int, nearDistance, 2, "pixels of the image",
-            "from the measured disparity, up to which it is so: what is farther away is right or wrong");
+HDP_TUNABLE(
+    int, nearDistance, 2, "pixels of the image",
+    "from the measured disparity, up to which it is so, and both agree: what is farther away is right or wrong");
 HDP_TUNABLE(int, apartShare, 10, "percent of that sum, per frame that has agreed with it",
             "of one that is farther away: more keeps what has gone or is covered, less keeps less of what was right");
 HDP_TUNABLE(int, wrongShare, 33, "percent of that sum", "beyond it, a cell contradicts the last frame: less is noise");
@@ -37,7 +37,6 @@ HDP_TUNABLE(int, contradictedShare, 30, "percent of the cells with a source",
 HDP_TUNABLE(int, driftStep, 12, "cells", "between those that correct the predicted disparities: nearer ones cost time");
 
 // How it is joined with the measured one
-HDP_TUNABLE(int, tolerance, 2, "pixels of the image", "between disparities that agree: more joins two surfaces");
 HDP_TUNABLE(int, maxStep, 1, "pixels", "towards the measured one, before its share is taken: it may be an outlier");
 
 const int cell = FrameMemory::cell;
@@ -105,7 +104,7 @@ ChoiceRule choiceRule(const LastFrame& frame)
 {
     const int unit = frame.prediction.key.scale; // of a disparity in pixels of the image
     ChoiceRule rule;
-    rule.same = sameDistance * subpixelScale;
+    rule.same = subpixelScale; // a pixel: costs of these differ by noise
     rule.maxDistance = maxSourceDistance * subpixelScale / unit;
     rule.near = frame.isStill() ? INT_MAX : std::max(nearDistance * subpixelScale / unit, 1);
     rule.nearShare = frame.isStill() ? stillShare | ChoiceRule::KEEPS : +nearShare;
@@ -190,9 +189,9 @@ void joinRow(const LastFrame& frame, const uchar* choices, const Mat& measured, 
         HDP_VECTORIZED for (int x = 0; x < width; ++x) moved[x] = FrameMemory::finer(row.disparity[x], row.detail[x]);
         dispatched::changeDisparities(frame.change, y, 1, width, moved);
     }
-    const int maxDistance = std::max(tolerance / frame.prediction.key.scale, 1) * FrameMemory::scale;
+    const int maxDistance = std::max(nearDistance / frame.prediction.key.scale, 1) * FrameMemory::scale;
     // The motion is an estimate: what it moves counts for one frame.
-    const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale, frame.isStill() ? +TemporalJoin::maxWeight : 1 };
+    const JoinRule rule = { maxDistance, maxStep * FrameMemory::scale, frame.isStill() ? +maxJoinWeight : 1 };
     dispatched::joinRow(measured.ptr<ushort>(y), frame.memory.disparity.ptr<ushort>(y), frame.memory.detail.ptr(y), row,
                         width, rule, next.disparity.ptr<ushort>(y), next.detail.ptr(y));
 }

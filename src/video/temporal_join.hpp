@@ -9,16 +9,10 @@
 
 namespace cv { namespace stereo { namespace hdp {
 
-//! The constants of joinLastFrame() that the compiler needs
-struct TemporalJoin
-{
-    enum
-    {
-        fringe = 2,   // pixels beside one that agrees: what disagrees there, where the motion leads, is measured;
-                      // fewer leave a rim of the last frame, more drop what is right
-        maxWeight = 4 // frames that a disparity counts for, at most: joinRow() divides by one more
-    };
-};
+// What the compiler needs of the constants of joinLastFrame()
+const int joinFringe = 2; // pixels beside one that agrees: what disagrees there, where the motion leads, is measured;
+                          // fewer leave a rim of the last frame, more drop what is right
+const int maxJoinWeight = 4; // frames that a disparity counts for, at most: joinRow() divides by one more
 
 //! What is known of a cell, for each of the two disparities that the last frame may have for it
 enum TemporalEvidence
@@ -54,7 +48,7 @@ struct TemporalRow
 {
     explicit TemporalRow(int width)
         : disparity(width), detail(width), moved(width), different(width), compared(width), choices(width),
-          agrees(width + 2 * TemporalJoin::fringe)
+          agrees(width + 2 * joinFringe)
     {
     }
     std::vector<ushort> disparity; // of FrameMemory, as they were
@@ -63,7 +57,7 @@ struct TemporalRow
     std::vector<uchar> different;  // which sources of the cells have another disparity than the measured one
     std::vector<int> compared;     // cells that have such sources
     std::vector<uchar> choices;
-    std::vector<uchar> agrees; // memory; on both sides of the row are TemporalJoin::fringe elements of 0
+    std::vector<uchar> agrees; // memory; on both sides of the row are joinFringe elements of 0
 };
 
 //! Which disparities of the frame before count as others, and what they may cost more: percent of the measured
@@ -87,7 +81,7 @@ struct ChoiceRule
 struct JoinRule
 {
     int tolerance, maxStep;
-    int maxWeight; // frames that the one before counts for, up to TemporalJoin::maxWeight
+    int maxWeight; // frames that the one before counts for, up to maxJoinWeight
 };
 
 /** Joins the disparities of a pair, before the median, with those of the frame before. Each pixel has up to three: the

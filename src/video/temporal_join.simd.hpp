@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // Compiled once for each instruction set (see CMakeLists.txt): no include guard.
-#include "../base/units.hpp"
 #include "temporal_join.hpp"
 #include "../base/vectorized.hpp"
 
@@ -180,9 +179,9 @@ void joinRow(const ushort* measured, const ushort* unmoved, const uchar* unmoved
     const int half = 1 << (FrameMemory::detailBits - 1);
     const int* const moved = row.moved.data();
     const uchar *const movedDetail = row.detail.data(), *const choices = row.choices.data();
-    uchar* const agreesMoved = row.agrees.data() + TemporalJoin::fringe;
-    static_assert(TemporalJoin::fringe == 2, "There are as many terms on each side.");
-    static_assert(TemporalJoin::maxWeight == 4, "There are as many shares.");
+    uchar* const agreesMoved = row.agrees.data() + joinFringe;
+    static_assert(joinFringe == 2, "There are as many terms on each side.");
+    static_assert(maxJoinWeight == 4, "There are as many shares.");
     HDP_VECTORIZED for (int x = 0; x < width; ++x)
     {
         const int distance = std::abs((measured[x] << FrameMemory::detailBits) - moved[x]);

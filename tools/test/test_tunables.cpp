@@ -36,9 +36,8 @@ TEST(HDPStereo_Tunables, set_changes_maps)
         cv::imwrite(file, moved);
     }
     const String map = mapWith(folder, "");
-    EXPECT_TRUE(map == mapWith(folder, "--set row_alignment.minMatches=24 --set=row_alignment.minMove=.12"));
-    EXPECT_FALSE(map == mapWith(folder, "--set row_alignment.minMatches=100000"));
-    EXPECT_FALSE(map == mapWith(folder, "--set tree_planes.fits=4,row_alignment.minMove=100"));
+    EXPECT_TRUE(map == mapWith(folder, "--set row_alignment.trackedArea=600000 --set=row_alignment.minMove=.12"));
+    EXPECT_FALSE(map == mapWith(folder, "--set tree_planes.triples=60,row_alignment.minMove=100"));
 }
 
 TEST(HDPStereo_Tunables, list)
@@ -49,8 +48,8 @@ TEST(HDPStereo_Tunables, list)
         const Execution result = run(folder, program + " --list-tunables --set tree_planes.minShare=0.25");
         EXPECT_EQ(0, result.status) << result.errors;
         EXPECT_NE(String::npos,
-                  result.output.find("\ntree_planes.minShare = 0.25 (built with 0.4) [share of the samples] "));
-        EXPECT_NE(String::npos, result.output.find("\nrow_alignment.minMatches = 24 [matches] "));
+                  result.output.find("\ntree_planes.minShare = 0.25 (built with 0.5) [share of the samples] "));
+        EXPECT_NE(String::npos, result.output.find("\nrow_alignment.trackedArea = 600000 [pixels] "));
     }
 }
 
@@ -61,7 +60,7 @@ TEST(HDPStereo_Tunables, wrong_settings)
     for (const String program : programs)
         for (const char* wrong : { "minShare=1", "tree_planes.minShare", "tree_planes.minShare=", "=1",
                                    "tree_planes.minShare=half", "tree_planes.minShare=1x", "tree_planes.minShare=inf",
-                                   "tree_planes.minShare=nan", "tree_planes.fits=1.5", "tree_planes.fits=1e10" })
+                                   "tree_planes.minShare=nan", "tree_planes.triples=1.5", "tree_planes.triples=1e10" })
         {
             const Execution result = run(folder, program + " " + folder.path("dataset") + " --set " + wrong);
             EXPECT_EQ(1, result.status) << wrong;
@@ -69,7 +68,7 @@ TEST(HDPStereo_Tunables, wrong_settings)
             EXPECT_EQ(firstLine(result.errors) + "\n", result.errors);
         }
     const Execution unknown = run(folder, "hdp_evaluate --set a.b=1 " + folder.path("dataset"));
-    EXPECT_NE(String::npos, unknown.errors.find("'a.b', there are: light_alignment.")) << unknown.errors;
+    EXPECT_NE(String::npos, unknown.errors.find("'a.b', there are: ")) << unknown.errors;
     EXPECT_NE(String::npos, unknown.errors.find(", tree_planes.triples")) << unknown.errors;
 }
 
@@ -78,13 +77,13 @@ TEST(HDPStereo_Tunables, sweep)
     const DatasetFolder folder;
     writePair(folder);
     const String command = "hdp_parameters --runs=1 --presets=quality " + folder.path("dataset") + " --sweep=";
-    const Execution good = run(folder, command + "tree_planes.fits,tree_planes.minShare=.2:.6 --changes=flip,top1");
+    const Execution good = run(folder, command + "tree_planes.triples,tree_planes.minShare=.2:.6 --changes=flip,top1");
     EXPECT_EQ(0, good.status) << good.errors;
     for (const char* row : { "| dataset: quality with | average error, pixels | D1 % | time |", "\n| quality | ",
-                             "\n| tree_planes.fits = 2 | ", "\n| tree_planes.fits = 8 | ",
+                             "\n| tree_planes.triples = 30 | ", "\n| tree_planes.triples = 120 | ",
                              "\n| tree_planes.minShare = .2 | ", "\n| tree_planes.minShare = .6 | " })
         EXPECT_NE(String::npos, good.output.find(row)) << row << good.output;
-    for (const char* wrong : { "fits", "tree_planes.fits=", "tree_planes.fits=1:x" })
+    for (const char* wrong : { "triples", "tree_planes.triples=", "tree_planes.triples=1:x" })
         EXPECT_EQ(1, run(folder, command + wrong).status) << wrong;
 }
 
@@ -95,14 +94,14 @@ TEST(HDPStereo_Tunables, not_of_this_build)
     const DatasetFolder folder;
     writePair(folder);
     for (const String program : programs)
-        for (const char* option : { " --set tree_planes.fits=4", " --list-tunables" })
+        for (const char* option : { " --set tree_planes.triples=4", " --list-tunables" })
         {
             const Execution result = run(folder, program + " " + folder.path("dataset") + option);
             EXPECT_EQ(1, result.status);
             EXPECT_NE(String::npos, result.errors.find(" needs a library that was built with HDPSTEREO_TUNABLE"));
             EXPECT_EQ(firstLine(result.errors) + "\n", result.errors);
         }
-    EXPECT_EQ(1, run(folder, "hdp_parameters --sweep=tree_planes.fits " + folder.path("dataset")).status);
+    EXPECT_EQ(1, run(folder, "hdp_parameters --sweep=tree_planes.triples " + folder.path("dataset")).status);
 }
 
 #endif

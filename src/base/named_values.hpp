@@ -60,7 +60,7 @@ struct ValueReader
     void operator()(const char* name, std::vector<double>& numbers, bool, const char*) const
     {
         const FileNode node = fn[name];
-        if (!node.isSeq())
+        if (!node.isSeq() && !node.isInt() && !node.isReal()) // a sequence of one number in XML
             CV_Error(Error::StsParseError, format("%s%s must be a sequence of numbers", prefix, name));
         numbers.clear();
         for (const FileNode& number : node)
