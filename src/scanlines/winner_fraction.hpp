@@ -41,9 +41,9 @@ struct Winners
     ushort* whole;
     short *rise, *slope;
 
-    //! Sets number i, a candidate of 0 .. lastOfAll, from the sums of all; of the pixel's own interval alone, if it has
-    //! one and the winner lies in it: costs beyond are not those of candidates. Beyond the first and the last candidate:
-    //! the slope beside them, or that which leaves the tip at the end. Less than three have no fraction.
+    //! Sets number i, a candidate of 0 .. lastOfAll, from the sums of all; of the pixel's own interval alone, if it
+    //! has one and the winner lies in it: costs beyond are not those of candidates. Beyond the first and the last
+    //! candidate: the slope beside them, or that which leaves the tip at the end. Less than three have no fraction.
     template <typename Sum>
     CV_ALWAYS_INLINE void set(int i, const Sum* ofAll, int candidate, int lastOfAll, const DisparityInterval* own) const
     {
