@@ -75,8 +75,9 @@ void PointGrid::describe(Surroundings& seen) const
 
 void PointGrid::weigh(Point place, Surroundings& seen) const
 {
-    const float scale = (float)(1 << (27 - seen.placeBits)); // logarithms are less than 16
-    dispatched::weighPoints(place, colorAt(place), scale / unit_, scale / (float)colorScale, reach_, seen);
+    // Less than 32 is told apart: the weights of what is lighter are next to nothing.
+    const float scale = (float)(1 << (26 - seen.placeBits)), largest = 31.5f * scale;
+    dispatched::weighPoints(place, colorAt(place), scale / unit_, scale / (float)colorScale, largest, reach_, seen);
 }
 
 void PointGrid::find(Surroundings& seen) const

@@ -10,12 +10,14 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! PointGrid::weigh() for a pixel of some colour. perPixel, perLevel: of the logarithm, times its scale in a key
-void weighPoints(const Point& place, const Vec3b& color, float perPixel, float perLevel, int reach, Surroundings& seen);
+//! PointGrid::weigh() for a pixel of some colour. perPixel, perLevel, largest: of the logarithm, times its scale in keys
+void weighPoints(const Point& place, const Vec3b& color, float perPixel, float perLevel, float largest, int reach,
+                 Surroundings& seen);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-void weighPoints(const Point& place, const Vec3b& color, float perPixel, float perLevel, int reach, Surroundings& seen)
+void weighPoints(const Point& place, const Vec3b& color, float perPixel, float perLevel, float largest, int reach,
+                 Surroundings& seen)
 {
     const int count = (int)seen.index.size(), bits = seen.placeBits, farthest = reach * reach;
     const short x = (short)place.x, y = (short)place.y, blue = color[0], green = color[1], red = color[2];
@@ -38,8 +40,9 @@ void weighPoints(const Point& place, const Vec3b& color, float perPixel, float p
         HDP_VECTORIZED for (int k = 0; k < Surroundings::block; ++k) // without branches, so that it can be
         {
             const int i = first + k, isBeyond = (int)(squared[i] > farthest) | (int)(i >= count);
-            const int lightness = (int)(std::sqrt((float)squared[i]) * perPixel + (float)colors[i] * perLevel);
-            const int key = choose(isBeyond, Surroundings::beyondReach, lightness << bits | i);
+            const float lightness =
+                std::sqrt((float)squared[i]) * perPixel + (float)colors[i] * perLevel; // times its scale
+            const int key = choose(isBeyond, Surroundings::beyondReach, (int)std::min(largest, lightness) << bits | i);
             keys[i] = key;
             lowest = std::min(lowest, key);
         }

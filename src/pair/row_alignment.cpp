@@ -20,8 +20,8 @@ HDP_TUNABLE(int, trackedArea, 600000, "pixels", "of the finest layer that is loo
 HDP_TUNABLE(double, ownDeviation, 0.02, "pixels of the layer", "of a match's row, beside what its window says of it");
 HDP_TUNABLE(
     double, slopeDeviation, 2e-3, "rows per pixel",
-    "cameras are turned by a tenth of a degree; lenses and keystones change a slope from border to border by half of "
-    "that");
+    "cameras are turned by a tenth of a degree; yaw changes a slope from border to border by as much, lenses and "
+    "pitch by half of it");
 
 // What moves rows by less costs more by interpolation than it gains.
 HDP_TUNABLE(double, minMove, 0.12, "pixels", "root of the mean square of a model that is applied");
@@ -52,9 +52,9 @@ std::vector<RowMove> toMoves(const std::vector<CornerMatch>& matches, int layer,
 
 RowFit fitRows(const std::vector<RowMove>& moves, Size size)
 {
-    const double curve = slopeDeviation / (2 * size.width);
+    const double keystone = slopeDeviation / size.width;
     FitPrior<RowModel::terms> prior;
-    prior.deviations = Coefficients(size.height, slopeDeviation, slopeDeviation, curve, curve);
+    prior.deviations = Coefficients(size.height, slopeDeviation, slopeDeviation, keystone, keystone / 2);
     const double offset = medianOf(moves, [](const RowMove& move) { return move.value; });
     return fitRobustly(moves, prior, Coefficients(offset));
 }
