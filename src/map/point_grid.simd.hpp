@@ -10,7 +10,7 @@
 namespace cv { namespace stereo { namespace hdp {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-//! PointGrid::weigh() for a pixel of some colour. perPixel, perLevel, largest: of the logarithm, times its scale in keys
+//! PointGrid::weigh() for a pixel of some colour. perPixel, perLevel, largest: of the logarithm, as keys have it
 void weighPoints(const Point& place, const Vec3b& color, float perPixel, float perLevel, float largest, int reach,
                  Surroundings& seen);
 
