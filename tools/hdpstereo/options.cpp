@@ -51,6 +51,10 @@ void checkOutputs(const CommandLineParser& parser)
         const String path = parser.get<String>(option), name = option;
         if (path.empty())
             continue;
+        const String extension = extensionOf(path);
+        if (name == "save-findings" && extension != ".yml" && extension != ".yaml" && extension != ".xml" &&
+            extension != ".json")
+            CV_Error(Error::StsBadArg, "cannot write '" + path + "': --save-findings takes .yml, .xml or .json");
         if (name == "point-cloud" || name == "save-findings")
             requireFolderOf(path);
         else if (name == "picture")

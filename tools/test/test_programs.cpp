@@ -376,6 +376,7 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
         { batch + " --min-disparity=-3", "PNG has no disparities below 0, and --min-disparity=-3 asks for some" },
         { " --batch " + a + " " + a + " " + a, "OUT must be another folder than that of the images, '" + a + "'" },
         { pair + "--save-findings=" + none + "/rig.yml", "cannot write '" + none + "/rig.yml': there is no folder" },
+        { pair + "--save-findings=rig.png", "cannot write 'rig.png': --save-findings takes .yml" },
         { " --tiles " + none + " " + right + " " + out + ".tif", "cannot read the image '" + none + "'" },
         { " --tiles" + pair + out + ".tif --findings=" + none, "filename: '" + none + "' does not hold a pair model" },
         { " --tiles" + pair + out + ".tif --calibration=" + none, "--calibration does not go with --tiles" },

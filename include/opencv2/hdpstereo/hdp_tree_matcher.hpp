@@ -99,8 +99,8 @@ white; one pixel in 1024 is left out at each end, and so is what is black or whi
 brightened by a factor of 2 or 4, if not more than one pixel in 128 becomes white, and by less and less up to one in
 16. Findings are about levels that are stretched, and not brightened.
 CV_32FC1 is scaled to CV_16UC1, by one scale for both images: the darkest pixel that counts is black and the brightest
-white, one in 1024 being left out at each end. Pixels that are not finite have no data, as if masked. Findings are then
-about these levels.
+white, one in 1024 being left out at each end. Pixels that are not finite have no data, as if masked; a number that
+stands for no data, such as -9999, has to be masked, see setMasks(). Findings are then about these levels.
 
 **Files.** cv::Algorithm::save() and write() store all parameters, the prediction model, and the name of the tree
 strategy with what its write() adds. read() takes the value of PRESET_PAPER for a parameter that the file does not have.
