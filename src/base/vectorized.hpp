@@ -12,7 +12,6 @@ operations of: what one writes is neither read nor written in another, but for s
 variable; and GCC does not unroll the loop before it could see that it is one for vectors. HDP_FOR_LANES(k, lanes) is
 such a loop over 4, 8, 16, 32 or 64 lanes, a number that is known to the compiler, in groups of 8 that are unrolled. */
 #if defined(__clang__)
-#pragma clang diagnostic ignored "-Wpass-failed" // a loop that it cannot make vectors of is slower, but not wrong
 #define HDP_VECTORIZED _Pragma("clang loop vectorize(assume_safety)")
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define HDP_SANITIZED // what is unrolled or has many cases takes minutes to compile with all checks
