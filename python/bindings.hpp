@@ -83,8 +83,8 @@ template <typename Value> const char* kindOf()
     return std::is_same<Value, bool>::value ? "a bool" : std::is_same<Value, int>::value ? "an int" : "a number";
 }
 
-//! The setter of a field. An int is taken from what is one alone: pybind11 would cut the fractions of numpy's floats off,
-//! and take None for False.
+//! The setter of a field. An int is taken from what is one alone: pybind11 would cut the fractions of numpy's floats
+//! off, and take None for False.
 template <typename Class, typename Value>
 py::cpp_function setterOf(const py::object& type, const std::string& name, Value Class::*field)
 {

@@ -167,8 +167,8 @@ Rule 1: returns the edges in the order in which they are tried. The default is a
 Edge 2 * i joins pixel i = y * width + x to its right neighbour, edge 2 * i + 1 to the one below.
 
 weights: the largest absolute differences over the colour channels, 0 to 255, or for COST_CENSUS 9 / 8 of those of the
-levels of grey images, rounded up, as they are matched, stretched and brightened: uint8 in two channels, of the layer's size; weights.ravel()[e] is that of edge e.
-They are a copy, and read-only.
+levels of grey images, rounded up, as they are matched, stretched and brightened: uint8 in two channels, of the layer's
+size; weights.ravel()[e] is that of edge e. They are a copy, and read-only.
 edges: the numbers of the edges that there are: int32 in one dimension.
 
 Returns the same numbers in another order. compute() raises ValueError if one is added, removed or repeated.)doc")

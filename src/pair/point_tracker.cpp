@@ -17,8 +17,8 @@ HDP_TUNABLE(
     "half of the squares that are compared, and between points: smaller have more rivals, larger see two surfaces");
 HDP_TUNABLE(int, searchRadius, 8, "pixels of that level",
             "there, of points that are not nearby: more costs time and finds rivals");
-const int refinementRadius =
-    2; // of all other searches: 1 is what the level before rounds away, and 1 is for its errors
+// Pixels of the level, of all other searches: 1 is what the level before rounds away, and 1 is for its errors
+const int refinementRadius = 2;
 HDP_TUNABLE(int, minTexture, 3, "grey levels from a pixel to the next",
             "in both directions, on average over a square: in less, noise is tracked");
 

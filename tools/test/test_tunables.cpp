@@ -68,7 +68,7 @@ TEST(HDPStereo_Tunables, wrong_settings)
             EXPECT_EQ(firstLine(result.errors) + "\n", result.errors);
         }
     const Execution unknown = run(folder, "hdp_evaluate --set a.b=1 " + folder.path("dataset"));
-    EXPECT_NE(String::npos, unknown.errors.find("'a.b', there are: ")) << unknown.errors;
+    EXPECT_NE(String::npos, unknown.errors.find("'a.b', there are: blank_borders.maxBlack, ")) << unknown.errors;
     EXPECT_NE(String::npos, unknown.errors.find(", tree_planes.triples")) << unknown.errors;
 }
 

@@ -598,8 +598,8 @@ public:
     value, 200 is hardly ever reached, and the median of a map is usually between 50 and 100. As a threshold, 20
     leaves out about half of the pixels that are wrong by more than one, and a tenth of the right ones; 60 three
     quarters or more of the wrong ones, and a quarter to a half of the right ones. On KITTI, where errors of one pixel
-    are common, 20 leaves out a quarter of them, and 60 two thirds. BENCHMARK.md has the shares. How wrong a disparity
-    is, in pixels, getDisparitySigma() tells.
+    are common, these are a sixth (ULTRAFAST) to two fifths, and half to three quarters. BENCHMARK.md has the shares.
+    How wrong a disparity is, in pixels, getDisparitySigma() tells.
     @param confidence Receives CV_8UC1 of the left image's size: from 0 to 255, larger is more reliable; 0 where a
     pixel has no data, a filter rejected it or its reason is REASON_RANGE. Empty before the first compute() and after
     one that threw an exception.
