@@ -150,6 +150,30 @@ TEST(HDPStereo_TreePlanes, no_plane)
     }
 }
 
+//! What each pixel prefers is noise, but one disparity is a bit better than others in all of them.
+TEST(HDPStereo_TreePlanes, noise_stronger_than_texture)
+{
+    const Size size(60, 50);
+    RNG rng(7);
+    for (int noise : { 7, 12 })
+    {
+        Layer layer(Mat(size, CV_8U, Scalar(90)));
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+            {
+                layer.costs(x, y)[12] = flatCost - 3;
+                layer.win(x, y, rng.uniform(13, candidates), flatCost - noise);
+            }
+        if (noise > 3 + hdp::CostVolume::scale) // the costs are against it
+            expectNoPlane(layer);
+        else
+        {
+            EXPECT_EQ(1, layer.takePlanes());
+            EXPECT_EQ(size.area(), countNonZero(layer.disparity == 12 * hdp::subpixelScale));
+        }
+    }
+}
+
 TEST(HDPStereo_TreePlanes, pixels_of_one_row)
 {
     Layer layer(Mat(Size(500, 1), CV_8U, Scalar(90)));

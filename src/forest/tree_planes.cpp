@@ -19,8 +19,10 @@ HDP_TUNABLE(double, tiltCost, 0.2, "cost per disparity",
             "between the ends of the tree: of two planes, the flatter one");
 const int fits = 4; // to the disparities near the plane: then these are the same as before
 HDP_TUNABLE(double, fitDistance, 1.5, "disparities", "from the plane: what is farther off is another surface");
-HDP_TUNABLE(double, minShare, 0.5, "share of the samples", "on the plane: a tree of several surfaces gets none");
+HDP_TUNABLE(double, minShare, 0.5, "share of the samples",
+            "on the plane: where noise decides the disparities, or the tree has several surfaces, there are fewer");
 HDP_TUNABLE(double, maxRise, 4.5, "cost", "of the mean over the tree: the costs are against a plane that has more");
+const double maxFlatRise = CostVolume::scale; // a bit: disparities that follow the noise cost less
 
 //! d = coefficients . (1, x, y)
 typedef Vec3d Plane;
@@ -89,6 +91,16 @@ public:
         for (int i = 0; i < fits; ++i)
             best = fitted(best);
         return best;
+    }
+
+    //! The one disparity of the lowest costs, as if the tree was a pixel
+    Plane flatPlane() const
+    {
+        std::vector<int> sums(candidates_);
+        for (size_t i = 0; i < costs_.size(); i += candidates_)
+            for (int k = 0; k < candidates_; ++k)
+                sums[k] += costs_[i + k];
+        return Plane((int)(std::min_element(sums.begin(), sums.end()) - sums.begin()) / steps_, 0, 0);
     }
 
     //! By how much the plane raises the mean of the costs
@@ -235,8 +247,11 @@ int takeTreePlanes(const DisparityForest& forest, const CostVolume& volume, Mat&
         const TreeSamples of(pixels, tree, disparity, volume);
         if (!of.haveContrast())
             return;
-        const Plane plane = of.findPlane();
-        hasPlane[t] = of.rise(plane) < maxRise && of.shareOn(plane) >= minShare;
+        Plane plane = of.findPlane();
+        const bool agree = of.shareOn(plane) >= minShare;
+        if (!agree) // as noise decides the disparities of the pixels, but not the sums of their costs
+            plane = of.flatPlane();
+        hasPlane[t] = of.rise(plane) < (agree ? +maxRise : maxFlatRise);
         if (hasPlane[t])
             applyPlane(plane, pixels, tree, volume, disparity);
     });

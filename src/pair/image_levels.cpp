@@ -229,10 +229,13 @@ void greyLevels(const Mat& image, const LevelScale& scale, Mat& grey)
 
 void findEnds(const Mat& left, const Mat& right, const PairMasks& masks, LevelScale& scale)
 {
-    LevelCounts counts;
+    LevelCounts counts, ofRight;
     const auto add = left.depth() == CV_8U ? &LevelCounts::add<uchar> : &LevelCounts::add<ushort>;
-    (counts.*add)(left, masks.left, scale.bits);
-    (counts.*add)(right, masks.right, scale.bits);
+    parallelFor(2, [&](int i) {
+        ((i == 0 ? counts : ofRight).*add)(i == 0 ? left : right, i == 0 ? masks.left : masks.right, scale.bits);
+    });
+    cv::add(counts.darkest, ofRight.darkest, counts.darkest);
+    cv::add(counts.brightest, ofRight.brightest, counts.brightest);
     const int black = LevelCounts::firstOf(counts.darkest) * LevelCounts::step;
     std::reverse(counts.brightest.begin(), counts.brightest.end());
     const int white = LevelScale::end - LevelCounts::firstOf(counts.brightest) * LevelCounts::step;

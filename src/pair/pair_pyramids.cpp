@@ -69,8 +69,10 @@ void makeLevels(const Mat& left, const Mat& right, const PairMasks& masks, doubl
         return;
     if (!isKnown)
     {
-        found.leftBlocks = findBlocks(leftLevels, found.scale.gain());
-        found.rightBlocks = findBlocks(rightLevels, found.scale.gain());
+        parallelFor(2, [&](int i) {
+            (i == 0 ? found.leftBlocks : found.rightBlocks) =
+                findBlocks(i == 0 ? leftLevels : rightLevels, found.scale.gain());
+        });
     }
     smoothBlocks(leftLevels, rightLevels, found.leftBlocks, found.rightBlocks);
 }

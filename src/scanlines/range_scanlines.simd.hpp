@@ -40,7 +40,7 @@ public:
     {
         CV_DbgAssert(vectors_ <= mostVectors && (count == 0 || vectors_ == count));
         uchar ends[vector] = {};
-        std::fill(ends + problem.candidates - (vectors_ - 1) * vector, ends + vector, (uchar)UCHAR_MAX);
+        std::fill(ends + (problem.candidates - (vectors_ - 1) * vector), ends + vector, (uchar)UCHAR_MAX);
         tail_ = ByteLanes::load(ends);
     }
 
