@@ -31,6 +31,8 @@ std::string describe(const py::array& array)
 
 cv::Mat toMat(const py::array& array, const char* name, std::vector<py::array>& kept)
 {
+    if (py::isinstance(array, py::module_::import("numpy").attr("ma").attr("MaskedArray"))) // which is a py::array, too
+        throw py::type_error(std::string(name) + " must be a plain array, not a masked one: its mask would be ignored");
     const int depth = depthOf(array.dtype());
     const py::ssize_t dimensions = array.ndim();
     const py::ssize_t channels = dimensions == 3 ? array.shape(2) : 1;

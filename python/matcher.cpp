@@ -117,20 +117,12 @@ void addEnumeration(py::object& matcher, const char* name, const char* documenta
 
 py::object enumerator(const char* name, int value) { return py::type::of<Matcher>().attr(name)(value); }
 
-//! An array of numpy.ma is one, too.
-void requirePlain(const py::object& array, const char* name)
-{
-    if (py::isinstance(array, py::module_::import("numpy").attr("ma").attr("MaskedArray")))
-        throw py::type_error(std::string(name) + " must be a plain array, not a masked one: its mask would be ignored");
-}
-
 py::array toImage(const py::object& image, const char* name)
 {
     if (image.is_none())
         throw py::type_error(std::string(name) + " must be a numpy array, not None: could the image be read?");
     if (!py::isinstance<py::array>(image))
         throw py::type_error(std::string(name) + " must be a numpy array, not " + typeOf(image));
-    requirePlain(image, name);
     return py::reinterpret_borrow<py::array>(image);
 }
 
@@ -274,7 +266,7 @@ sgbm: it is read, and not kept.
 preset: see create().)doc");
 
     matcher.def("compute", &compute, py::arg("left"), py::arg("right"), py::arg("disparity") = py::none(),
-                py::arg("as_float") = false, R"doc(
+                py::arg("as_float").noconvert() = false, R"doc(
 Matches a rectified pair.
 
 left, right: images of one size and type: uint8 with one channel (grey), three (BGR) or four (BGR and alpha, which is

@@ -13,9 +13,13 @@ typedef std::pair<int, int> Pair;
 
 cv::Size toSize(const Pair& size) { return cv::Size(size.first, size.second); }
 
-//! A copy: the object outlives the array.
-cv::Mat toMatrix(const py::array& array, const char* name)
+//! A copy: the object outlives the array. given: an array, or a list
+cv::Mat toMatrix(const py::object& given, const char* name)
 {
+    const py::array array =
+        py::isinstance<py::array>(given) ? py::reinterpret_borrow<py::array>(given) : py::array::ensure(given);
+    if (!array)
+        throw py::type_error(std::string(name) + " must be a numpy array, not " + typeOf(given));
     std::vector<py::array> kept;
     const bool isWhole = array.dtype().kind() == 'i' || array.dtype().kind() == 'u'; // as typed without points
     py::array matrix = isWhole ? py::array(array.attr("astype")("float64")) : array;
@@ -36,12 +40,17 @@ are copies, and read-only: assign others.)doc");
     calibration.def(py::init<>(), "A calibration without matrices");
     calibration.def_property(
         "imageSize", [](const StereoCalibration& self) { return Pair(self.imageSize.width, self.imageSize.height); },
-        [](StereoCalibration& self, const Pair& size) { self.imageSize = toSize(size); },
+        [](StereoCalibration& self, const py::object& size) {
+        py::detail::make_caster<Pair> pair;
+        if (!pair.load(size, false))
+            throw py::type_error("imageSize must be a pair of ints");
+        self.imageSize = toSize(py::cast<Pair>(size));
+        },
         "Width and height of the raw images, in pixels");
     const auto matrix = [&](const char* name, cv::Mat StereoCalibration::*field, const char* documentation) {
         calibration.def_property(
             name, [field](const StereoCalibration& self) { return readOnly(toPython((self.*field).clone())); },
-            [field, name](StereoCalibration& self, const py::array& value) { self.*field = toMatrix(value, name); },
+            [field, name](StereoCalibration& self, const py::object& value) { self.*field = toMatrix(value, name); },
             documentation);
     };
     matrix("cameraMatrix1", &StereoCalibration::cameraMatrix1, "Left camera: 3 x 3, in pixels");
@@ -50,7 +59,9 @@ are copies, and read-only: assign others.)doc");
     matrix("distCoeffs2", &StereoCalibration::distCoeffs2, "Distortion of the right camera");
     matrix("R", &StereoCalibration::R, "Rotation from the left to the right camera: 3 x 3");
     matrix("T", &StereoCalibration::T, "Translation from the left to the right camera: 3 x 1, in metres");
-    calibration.def_readwrite("isFisheye", &StereoCalibration::isFisheye, "Whether distortion is that of cv2.fisheye");
+    calibration.def_property(
+        "isFisheye", [](const StereoCalibration& self) { return self.isFisheye; },
+        setterOf(calibration, "isFisheye", &StereoCalibration::isFisheye), "Whether distortion is that of cv2.fisheye");
 
     module.def(
         "readStereoCalibration",
@@ -130,7 +141,7 @@ left, right: raw images of the calibration's size: uint8, uint16 or float32, 1, 
         self.computeDepth(toMat(array, "disparity", kept), depth, millimetres ? CV_16U : CV_32F, minDisparity);
         return toPython(depth);
         },
-        py::arg("disparity"), py::arg("millimetres") = false, py::arg("minDisparity") = 0, R"doc(
+        py::arg("disparity"), py::arg("millimetres").noconvert() = false, py::arg("minDisparity") = 0, R"doc(
 Returns the depth of each pixel, its distance from the cameras' plane: float32 in metres, NaN where there is none.
 
 disparity: int16, times 16, or float32 in pixels.

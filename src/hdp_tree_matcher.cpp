@@ -42,12 +42,14 @@ public:
     {
         CV_TRACE_FUNCTION();
         result_ = Result(); // until this pair is matched
-        const Mat left = imageOf(leftArray, "left"), right = imageOf(rightArray, "right");
+        Mat left = imageOf(leftArray, "left"), right = imageOf(rightArray, "right");
         checkPair(left, right);
-        checkInputs(inputs_, left.size());
-        const int depth = depthOfOutput(disparityArray, left.size(), p_.disparityDepth);
+        const Size size = left.size();
+        const int type = left.type();
+        checkInputs(inputs_, size);
+        const int depth = depthOfOutput(disparityArray, size, p_.disparityDepth);
         const auto makePlan = [&](const MatcherParameters& parameters) {
-            return plan(parameters, left.size(), left.type(), pairModel_, inputs_);
+            return plan(parameters, size, type, pairModel_, inputs_);
         };
         PairPlan pairPlan = makePlan(p_);
         clock_.restart();
@@ -74,7 +76,8 @@ public:
             matchPair(pairPlan);
         }
 
-        disparityArray.create(left.size(), depth);
+        left = right = pair_.left = pair_.right = Mat(); // a UMat that is the result, too, must not be mapped
+        disparityArray.create(size, depth);
         Mat disparity = disparityArray.getMat();
         const Mat& finest = layers_[pairPlan.finest().layer].disparity;
         clock_.run("output", [&] {
@@ -83,7 +86,7 @@ public:
         result_.isMatched = true;
         result_.model = pairPlan.given.isGiven
                             ? pairModel_
-                            : toPairModel(pairPlan.pyramids, left.size(), left.depth(), pairPlan.numDisparities, pair_,
+                            : toPairModel(pairPlan.pyramids, size, CV_MAT_DEPTH(type), pairPlan.numDisparities, pair_,
                                           pyramids_.levels, result_.findings);
     }
 
@@ -176,9 +179,8 @@ public:
 
     void getConfidence(OutputArray confidenceArray) const CV_OVERRIDE
     {
-        if (!result_.isMatched)
-            return confidenceArray.release();
-        requireMat(confidenceArray, result_.plan.size, CV_8UC1, "confidence");
+        if (!hasResult(confidenceArray, CV_8UC1, "confidence"))
+            return;
         enlargeToImage(confidenceOfLayer(), INTER_LINEAR_EXACT, confidenceArray);
         if (!known_.ranges.isEmpty())
             confidenceArray.setTo(Scalar(0), moves() > 1);
@@ -188,9 +190,8 @@ public:
 
     void getDisparitySigma(OutputArray sigmaArray) const CV_OVERRIDE
     {
-        if (!result_.isMatched)
-            return sigmaArray.release();
-        requireMat(sigmaArray, result_.plan.size, CV_32FC1, "sigma");
+        if (!hasResult(sigmaArray, CV_32FC1, "sigma"))
+            return;
         const LayerPlan& plan = result_.plan.finest();
         Mat mismatch, ofLayer;
         if (plan.cost.isCensus)
@@ -210,9 +211,8 @@ public:
 
     void getReasons(OutputArray reasonsArray) const CV_OVERRIDE
     {
-        if (!result_.isMatched)
-            return reasonsArray.release();
-        requireMat(reasonsArray, result_.plan.size, CV_8UC1, "reasons");
+        if (!hasResult(reasonsArray, CV_8UC1, "reasons"))
+            return;
         const PairPlan& pairPlan = result_.plan;
         const LayerPlan& layer = pairPlan.finest();
         Mat ofLayer;
@@ -269,6 +269,18 @@ private:
     {
         checkParameters(parameters);
         p_ = parameters;
+    }
+
+    //! Whether there is a result for an array, which is emptied if there is none
+    bool hasResult(OutputArray array, int type, const char* name) const
+    {
+        if (result_.isMatched)
+            requireMat(array, result_.plan.size, type, name);
+        else if (array.fixedSize())
+            CV_Error(Error::StsBadArg, format("%s must not have a fixed size, as there is none of a pair yet", name));
+        else
+            array.release();
+        return result_.isMatched;
     }
 
     //! Whether the last compute() matched this layer

@@ -416,6 +416,8 @@ TEST(HDPStereo_DisparityConfidence, minDisparity_does_not_matter)
 TEST(HDPStereo_DisparityConfidence, kinds_of_arrays)
 {
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(0, 48);
+    const Mat fixed(testPair().left.size(), CV_8U);
+    expectRejected([&] { matcher->getConfidence(fixed); }, "confidence must not have a fixed size");
     match(*matcher, testPair().left, testPair().right);
     const Mat expected = confidenceOf(*matcher);
     Mat_<uchar> typed;

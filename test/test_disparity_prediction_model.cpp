@@ -408,6 +408,17 @@ TEST(HDPStereo_ModelFiles, trained_ones)
             << file;
 }
 
+TEST(HDPStereo_ModelFiles, empty_one)
+{
+    for (const char* extension : { ".xml", ".yml", ".json" })
+    {
+        const String path = tempfile(extension);
+        DisparityPredictionModel::create()->save(path);
+        EXPECT_EQ(0, DisparityPredictionModel::load(path)->getNumLayers()) << extension;
+        std::remove(path.c_str());
+    }
+}
+
 //! Reading must throw and change neither a model nor the matcher that has it.
 void expectHostile(const std::string& text)
 {

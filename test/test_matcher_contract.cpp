@@ -447,6 +447,22 @@ TEST_P(HDPStereo_MatcherPreset, umat)
     }
 }
 
+//! The result takes the place of an image, whose memory has another size.
+TEST_P(HDPStereo_MatcherPreset, umat_in_place)
+{
+    const SyntheticPair& pair = testPair();
+    const Ptr<HDPTreeMatcher> matcher = createSystem(GetParam(), disparities);
+    const Mat expected = match(*matcher, pair.left, pair.right);
+    for (int image = 0; image < 2; ++image)
+    {
+        UMat images[2];
+        pair.left.copyTo(images[0]);
+        pair.right.copyTo(images[1]);
+        matcher->compute(images[0], images[1], images[image]);
+        expectIdentical(expected, images[image].getMat(ACCESS_READ));
+    }
+}
+
 //! What a caller does to its images after compute() is none of the matcher's business.
 TEST_P(HDPStereo_MatcherPreset, keeps_no_hold_of_the_input)
 {

@@ -205,15 +205,16 @@ TEST(HDPStereo_StereoRig, computes_depth_of_what_has_a_disparity)
     const Ptr<StereoRig> rig = StereoRig::create(makeCalibration());
     const double product = rig->getBaseline() * rig->getFocalLength();
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    const Mat pixels = (Mat_<float>(1, 7) << 16, 0.5f, 0, -1, nan, inf, 1e-30f);
+    const Mat pixels = (Mat_<float>(1, 8) << 16, 0.5f, 0, -1, nan, inf, 1e-38f, 1e-30f);
     const Mat whole = (Mat_<short>(1, 4) << 256, 8, 0, -16);
     Mat depth;
     rig->computeDepth(pixels, depth);
     ASSERT_EQ(CV_32FC1, depth.type());
     EXPECT_FLOAT_EQ((float)(product / 16), depth.at<float>(0));
     EXPECT_FLOAT_EQ((float)(product / 0.5), depth.at<float>(1));
-    for (int i = 2; i < 6; ++i)
+    for (int i = 2; i < 7; ++i)
         EXPECT_TRUE(cvIsNaN(depth.at<float>(i))) << i;
+    EXPECT_FLOAT_EQ((float)(product / 1e-30f), depth.at<float>(7));
     rig->computeDepth(whole, depth, CV_16U);
     ASSERT_EQ(CV_16UC1, depth.type());
     EXPECT_EQ(cvRound(1000 * product / 16), depth.at<ushort>(0));
@@ -231,16 +232,39 @@ TEST(HDPStereo_StereoRig, depth_of_a_fixed_type)
     const Mat pixels(4, 5, CV_32F, Scalar(16)), small(2, 5, CV_32F);
     Mat_<ushort> millimetres;
     Mat_<float> metres;
-    expectRejected([&] { rig->computeDepth(pixels, millimetres); },
-                   "depth must be CV_32FC1, not CV_16UC1");
-    expectRejected([&] { rig->computeDepth(pixels, metres, CV_16U); },
-                   "depth must be CV_16UC1, not CV_32FC1");
+    expectRejected([&] { rig->computeDepth(pixels, millimetres); }, "depth must be CV_32FC1, not CV_16UC1");
+    expectRejected([&] { rig->computeDepth(pixels, metres, CV_16U); }, "depth must be CV_16UC1, not CV_32FC1");
     EXPECT_TRUE(millimetres.empty() && metres.empty());
     expectRejected([&] { rig->computeDepth(pixels, noArray()); }, "depth must be an array, not noArray()");
     expectRejected([&] { rig->computeDepth(pixels, small); }, "depth must have 5 x 4 pixels, not 5 x 2");
     rig->computeDepth(pixels, millimetres, CV_16U);
     rig->computeDepth(pixels, metres);
     EXPECT_NEAR(1000 * metres(3, 4), millimetres(3, 4), 0.51);
+}
+
+TEST(HDPStereo_StereoRig, results_in_place)
+{
+    const Ptr<StereoRig> rig = StereoRig::create(makeCalibration(), 40, Size(150, 110));
+    const Mat raw(rig->getCalibration().imageSize, CV_8UC3, Scalar(50, 90, 130)), whole(4, 5, CV_16S, Scalar(256));
+    Mat expected, other, depth;
+    rig->rectify(raw, raw, expected, other);
+    rig->computeDepth(whole, depth);
+    UMat left, right, inPlace;
+    raw.copyTo(left);
+    raw.copyTo(right);
+    whole.copyTo(inPlace);
+    rig->rectify(left, right, left, right);
+    rig->computeDepth(inPlace, inPlace);
+    expectIdentical(expected, left.getMat(ACCESS_READ));
+    expectIdentical(other, right.getMat(ACCESS_READ));
+    expectIdentical(depth, inPlace.getMat(ACCESS_READ));
+
+    // Both images or none
+    Mat first;
+    Mat_<float> ofOtherType;
+    expectRejected([&] { rig->rectify(raw, raw, first, noArray()); }, "rectifiedRight must be an array, not noArray()");
+    expectRejected([&] { rig->rectify(raw, raw, first, ofOtherType); }, "rectifiedRight must be CV_8UC3, not CV_32FC1");
+    EXPECT_TRUE(first.empty());
 }
 
 TEST(HDPStereo_StereoRig, results_that_are_not_wanted)

@@ -153,6 +153,13 @@ class Rig(Test):
         other.cameraMatrix1 = np.array([[300, 0, 160], [0, 300, 120], [0, 0, 1]]) # whole numbers, as typed
         self.assertEqual(300., other.cameraMatrix1[0, 0])
         other.cameraMatrix1 = self.calibration.cameraMatrix1
+        other.T = [-0.1, 0, 0]
+        np.testing.assert_array_equal([[-0.1, 0, 0]], other.T)
+        other.T = self.calibration.T
+        for name, value, text in (('imageSize', (3.5, 4), 'imageSize must be a pair of ints'),
+                                  ('T', 'left', 'T must be'), ('isFisheye', None, 'isFisheye must be a bool'),
+                                  ('R', np.ma.array(np.eye(3)), 'R must be a plain array')):
+            self.assertRaisesRegex((TypeError, ValueError), text, setattr, other, name, value)
         self.assertRaises(FileNotFoundError, hdpstereo.readStereoCalibration, 'none.yaml')
         self.assertRaises(IsADirectoryError, hdpstereo.readStereoCalibration, pathlib.Path(__file__).parent)
         for original in other, hdpstereo.StereoCalibration():
@@ -179,6 +186,11 @@ class Rig(Test):
         self.assertEqual(np.uint16, rig.computeDepth(disparity, millimetres=True).dtype)
         with self.assertRaisesRegex(ValueError, 'left'):
             rig.rectify(LEFT[:50], RIGHT[:50])
+        with self.assertRaisesRegex(TypeError, 'right must be a plain array'):
+            rig.rectify(LEFT, np.ma.array(RIGHT))
+        with self.assertRaisesRegex(TypeError, 'disparity must be a plain array'):
+            rig.computeDepth(np.ma.array(disparity))
+        self.assertRaises(TypeError, lambda: rig.computeDepth(disparity, millimetres=None))
 
     def test_drift(self):
         rig = hdpstereo.StereoRig(self.calibration)
@@ -422,6 +434,9 @@ class Parameters(Test):
         image = np.zeros((50, 60), np.uint8)
         self.assertRaisesText(TypeError, 'left must be a plain array, not a masked one: its mask would be ignored',
                               lambda: matcher.compute(np.ma.array(image), image))
+        self.assertRaisesText(TypeError, 'disparity must be a plain array, not a masked one: its mask would be ignored',
+                              lambda: matcher.compute(image, image, np.ma.array(image.astype(np.int16))))
+        self.assertRaises(TypeError, lambda: matcher.compute(image, image, as_float=None))
 
     def test_create_like(self):
         class Like:  # cv2.StereoSGBM has these, among others

@@ -110,7 +110,7 @@ public:
             CV_Error(Error::StsParseError, "name must be " + getDefaultName());
         if (!version.isInt() || (int)version != fileVersion)
             CV_Error(Error::StsParseError, format("version must be %d", fileVersion));
-        if (!layers.isSeq())
+        if (!layers.isSeq() && !layers.isNone()) // XML has none of an empty one
             CV_Error(Error::StsParseError, "layers must be a sequence of mixtures");
         // A file that was cut off between two layers can be read: their number reveals it.
         if (!fn["layerCount"].isInt() || (int)fn["layerCount"] != (int)layers.size())

@@ -68,15 +68,20 @@ public:
                  OutputArray rectifiedRight) const CV_OVERRIDE
     {
         CV_TRACE_FUNCTION();
-        const Mat raw[] = { left.getMat(), right.getMat() };
+        Mat raw[] = { left.getMat(), right.getMat() };
         for (int camera = 0; camera < 2; ++camera)
             checkImage(raw[camera], camera ? "right" : "left");
         if (raw[0].type() != raw[1].type())
             CV_Error(Error::StsUnmatchedFormats, "left and right must be of one type");
+        hdp::requireMat(rectifiedLeft, size_, raw[0].type(), "rectifiedLeft");
+        hdp::requireMat(rectifiedRight, size_, raw[0].type(), "rectifiedRight");
         Mat rectified[2];
         for (int camera = 0; camera < 2; ++camera)
+        {
             remap(raw[camera], rectified[camera], positions_[camera], fractions_[camera], INTER_LINEAR, BORDER_CONSTANT,
                   Scalar());
+            raw[camera].release(); // a UMat that is a result, too, must not be mapped
+        }
         rectified[0].copyTo(rectifiedLeft);
         rectified[1].copyTo(rectifiedRight);
     }
@@ -90,7 +95,7 @@ public:
     void computeDepth(InputArray disparityArray, OutputArray depth, int depthType, int minDisparity) const CV_OVERRIDE
     {
         CV_TRACE_FUNCTION();
-        const Mat disparity = disparityArray.getMat();
+        Mat disparity = disparityArray.getMat();
         if (disparity.type() != CV_16SC1 && disparity.type() != CV_32FC1)
             CV_Error(Error::StsUnsupportedFormat, "disparity must be CV_16SC1 or CV_32FC1");
         if (disparity.empty() || disparity.cols > size_.width || disparity.rows > size_.height)
@@ -102,11 +107,13 @@ public:
         hdp::requireMat(depth, disparity.size(), depthType, "depth");
         Mat metres; // from disparities in pixels; 0 where there is none
         disparity.convertTo(metres, CV_32F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
+        disparity.release(); // a UMat that is the result, too, must not be mapped
+        const float largest = std::numeric_limits<float>::max();
         for (float& value : Mat_<float>(metres))
         {
-            const double pixels = value;
-            const bool isKnown = pixels > 0 && pixels >= minDisparity && pixels <= std::numeric_limits<float>::max();
-            value = isKnown ? (float)(focalLength_ * baseline_ / pixels) : 0;
+            const double pixels = value, distance = focalLength_ * baseline_ / pixels;
+            const bool isKnown = pixels > 0 && pixels >= minDisparity && pixels <= largest && distance <= largest;
+            value = isKnown ? (float)distance : 0;
         }
         metres.convertTo(depth, depthType, depthType == CV_16U ? 1000 : 1);
         if (depthType == CV_16U)
