@@ -93,16 +93,6 @@ public:
         return best;
     }
 
-    //! The one disparity of the lowest costs, as if the tree was a pixel
-    Plane flatPlane() const
-    {
-        std::vector<int> sums(candidates_);
-        for (size_t i = 0; i < costs_.size(); i += candidates_)
-            for (int k = 0; k < candidates_; ++k)
-                sums[k] += costs_[i + k];
-        return Plane((int)(std::min_element(sums.begin(), sums.end()) - sums.begin()) / steps_, 0, 0);
-    }
-
     //! By how much the plane raises the mean of the costs
     double rise(const Plane& plane) const
     {
@@ -216,6 +206,23 @@ private:
     mutable std::vector<int> at_; // memory of costsOf()
 };
 
+//! The one disparity whose costs are lowest in sum over a tree. At most a bit counts of a pixel's: those at the tree's
+//! border see what stands before it, and prefer that by more.
+Plane flatPlane(const int* pixels, const DisparityTree& tree, const CostVolume& volume)
+{
+    const int candidates = volume.numDisparities;
+    std::vector<int> sums(candidates);
+    int* const sum = sums.data();
+    for (int i = 0; i < tree.size; ++i)
+    {
+        const uchar* const costs = &volume.costs[volume.start(pixels[i])];
+        const int most = volume.lowestOf(pixels[i]) + CostVolume::scale;
+        HDP_VECTORIZED for (int k = 0; k < candidates; ++k) sum[k] += std::min<int>(costs[k], most);
+    }
+    const auto least = std::min_element(sums.begin(), sums.end());
+    return Plane((double)(least - sums.begin()) / volume.steps, 0, 0);
+}
+
 //! Gives the pixels of a tree the disparities of its plane, but for those whose costs contradict it. Those that have
 //! its candidates keep their own fractions.
 void applyPlane(const Plane& plane, const int* pixels, const DisparityTree& tree, const CostVolume& volume,
@@ -250,7 +257,7 @@ int takeTreePlanes(const DisparityForest& forest, const CostVolume& volume, Mat&
         Plane plane = of.findPlane();
         const bool agree = of.shareOn(plane) >= minShare;
         if (!agree) // as noise decides the disparities of the pixels, but not the sums of their costs
-            plane = of.flatPlane();
+            plane = flatPlane(pixels, tree, volume);
         hasPlane[t] = of.rise(plane) < (agree ? +maxRise : maxFlatRise);
         if (hasPlane[t])
             applyPlane(plane, pixels, tree, volume, disparity);
