@@ -225,8 +225,8 @@ int matchTiles(const CommandLineParser& parser)
     const Size size = pair.size();
     const String output = parser.get<String>(parser.has("output") ? "output" : "@out");
     const Ptr<HDPTreeMatcher> matcher = createPlainMatcher(parser, size.width);
-    pair.setKnownDisparities(parser, Rect(0, 0, 1, 1), *matcher); // throws if types are wrong
     pair.checkLimits();
+    pair.setKnownDisparities(parser, Rect(0, 0, 1, 1), *matcher); // throws if types are wrong
     for (const String& path : pair.readWhole())
         std::cout << "read whole " << path << std::endl;
     const bool writesTiles = isWrittenByTiles(output);

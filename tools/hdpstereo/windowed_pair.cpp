@@ -5,6 +5,8 @@
 
 #include "files.hpp"
 
+#include <climits>
+
 #include "opencv2/imgproc.hpp"
 
 using namespace cv;
@@ -126,15 +128,23 @@ template <typename Use> bool WindowedPair::forLimits(const Use& use) const
 
 void WindowedPair::checkLimits() const
 {
-    if (!smallest_.windows || !largest_.windows)
+    if (!smallest_.windows && !largest_.windows)
         return;
-    int wrong = 0;
+    const int limit = (SHRT_MAX + 1) / StereoMatcher::DISP_SCALE; // of disparities in CV_16S
+    int64 less = 0, beyond = 0;
     forLimits([&](const Mat& least, const Mat& most) {
-        wrong += countNonZero(most < least);
+        less += least.empty() || most.empty() ? 0 : countNonZero(most < least);
+        beyond += least.empty() ? 0 : countNonZero(least >= limit);
+        beyond += most.empty() ? 0 : countNonZero(most < -limit);
         return true;
     });
-    if (wrong > 0)
-        CV_Error(Error::StsBadArg, format("--largest must not be less than --smallest, as it is in %d pixels", wrong));
+    if (less > 0)
+        CV_Error(Error::StsBadArg,
+                 format("--largest must not be less than --smallest, as it is in %lld pixels", (long long)less));
+    if (beyond > 0)
+        CV_Error(Error::StsOutOfRange,
+                 format("--smallest must be below %d and --largest at least %d, as they are not in %lld pixels", limit,
+                        -limit, (long long)beyond));
 }
 
 bool WindowedPair::limitsAll(double& smallest, double& largest) const

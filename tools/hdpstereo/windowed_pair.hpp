@@ -31,7 +31,7 @@ public:
     PairPart read(const cv::Rect& part) const;
     //! Both images, halved some times
     PairPart reduced(int times) const;
-    //! Throws if --largest is less than --smallest somewhere.
+    //! Throws if --largest is less than --smallest somewhere, or one of them is beyond what a matcher takes.
     void checkLimits() const;
     //! Whether --smallest and --largest limit all pixels, and to which range
     bool limitsAll(double& smallest, double& largest) const;

@@ -142,6 +142,10 @@ TEST(HDPStereo_Tiles, errors_change_no_file)
     writeTiff(folder.path("smallest.tif"), limit);
     limit.at<float>(119, 159) = 7;
     writeTiff(folder.path("largest.tif"), limit);
+    limit.at<float>(119, 159) = 3000;
+    writeTiff(folder.path("beyond.tif"), limit);
+    writeTiff(folder.path("nine.tif"), Mat(120, 160, CV_32F, Scalar(9)));
+    writeTiff(folder.path("below.tif"), Mat(120, 160, CV_32F, Scalar(-3000)));
 
     const std::pair<String, String> wrong[] = {
         { images + left, "cannot write '" + left + "': it is LEFT" },
@@ -164,6 +168,13 @@ TEST(HDPStereo_Tiles, errors_change_no_file)
         { images + out + " --prior=" + left + " --prior-sigma=-1", "--prior-sigma must be >= 0" },
         { images + out + " --smallest=" + folder.path("smallest.tif") + " --largest=" + folder.path("largest.tif"),
           "--largest must not be less than --smallest, as it is in 1 pixels" },
+        { images + out + " --smallest=" + folder.path("nine.tif") + " --largest=" + folder.path("smallest.tif"),
+          "--largest must not be less than --smallest, as it is in 19200 pixels" },
+        { images + out + " --smallest=" + folder.path("beyond.tif") + " --largest=" + folder.path("beyond.tif") +
+              " --save-findings=" + folder.path("found.yml"),
+          "--smallest must be below 2048 and --largest at least -2048, as they are not in 1 pixels" },
+        { images + out + " --largest=" + folder.path("below.tif"),
+          "--smallest must be below 2048 and --largest at least -2048, as they are not in 19200 pixels" },
     };
     folder.writeText("out.tif", "an old map");
     for (const auto& call : wrong)
@@ -176,6 +187,7 @@ TEST(HDPStereo_Tiles, errors_change_no_file)
     }
     EXPECT_TRUE(readText(out) == "an old map");
     EXPECT_TRUE(readText(left) == before);
+    EXPECT_FALSE(fs::exists(folder.path("found.yml")));
     EXPECT_FALSE(fs::exists(out + ".part"));
 }
 
