@@ -21,13 +21,16 @@ static void writeAndTell(const String& path, const std::vector<uchar>& bytes)
     std::cout << "written    " << path << std::endl;
 }
 
-//! For points: in 8 bit, from black to the brightest pixel
-static Mat colorsOf(const Mat& image)
+//! For points: in 8 bit, from black to the brightest of the pixels that have a disparity; others may be no data
+static Mat colorsOf(const Mat& image, const Mat& known)
 {
     if (image.type() == CV_8UC3)
         return image;
+    double least = 0, most = 0;
+    minMaxLoc(image, &least, &most, nullptr, nullptr, known);
+    const double scale = most > least ? 255 / (most - least) : 0;
     Mat colors;
-    normalize(image, colors, 0, 255, NORM_MINMAX, CV_8U);
+    image.convertTo(colors, CV_8U, scale, -scale * least);
     cvtColor(colors, colors, COLOR_GRAY2BGR);
     return colors;
 }
@@ -236,7 +239,7 @@ static void writePicture(const String& path, const Mat& left, const Mat& sgbm, c
         // In one scale of colours
         Mat both, colors;
         hconcat(sgbm, disparity, both);
-        hconcat(colorsOf(left), colorPicture(both, both < none), picture);
+        hconcat(colorsOf(left, disparity < none), colorPicture(both, both < none), picture);
     }
     writeAndTell(path, encode(extensionOf(path), picture));
 }
@@ -325,6 +328,8 @@ void matchPair(const CommandLineParser& parser)
     if (parser.has("depth"))
         writeDepth(parser.get<String>("depth"), *rectifier.rig(), disparity, matcher->getFindings().minDisparity);
     if (parser.has("point-cloud"))
-        writeAndTell(parser.get<String>("point-cloud"),
-                     pointCloud(disparity, disparity < std::numeric_limits<float>::infinity(), colorsOf(left), Q));
+    {
+        const Mat known = disparity < std::numeric_limits<float>::infinity();
+        writeAndTell(parser.get<String>("point-cloud"), pointCloud(disparity, known, colorsOf(left, known), Q));
+    }
 }

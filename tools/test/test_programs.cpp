@@ -579,6 +579,43 @@ TEST(HDPStereo_Programs, read_16_bit)
     EXPECT_EQ(0, run(folder, "example_hdpstereo_hdp_own_tree" + faint.images("faint")).status);
 }
 
+//! Pixels without data do not say what is black and white.
+TEST(HDPStereo_Programs, points_have_colors_of_pixels_with_data)
+{
+    const DatasetFolder folder;
+    const SyntheticPair pair = makeSyntheticPair(Size(160, 120), 32, 22);
+    Mat left, right, mask(120, 160, CV_8U, Scalar(255));
+    cv::cvtColor(pair.left, left, COLOR_BGR2GRAY);
+    cv::cvtColor(pair.right, right, COLOR_BGR2GRAY);
+    left.convertTo(left, CV_32F);
+    right.convertTo(right, CV_32F);
+    mask.rowRange(0, 10).setTo(0);
+    folder.write("right.pfm", right);
+    folder.write("mask.png", mask);
+    const String ply = folder.path("points.ply"), end = "end_header\n";
+    const float levels[] = { std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN(), -9999 };
+    for (const float noData : levels)
+    {
+        SCOPED_TRACE(noData);
+        left.rowRange(0, 10).setTo(noData);
+        folder.write("left.pfm", left);
+        const Execution result =
+            run(folder, "hdpstereo " + folder.path("left.pfm") + " " + folder.path("right.pfm") +
+                            " --num-disparities=32 --focal=100 --baseline=2 --point-cloud=" + ply +
+                            (noData == -9999 ? " --left-mask=" + folder.path("mask.png") : String()));
+        ASSERT_EQ(0, result.status) << result.errors;
+        const String points = readText(ply);
+        std::vector<uchar> colors;
+        for (size_t i = points.find(end) + end.size() + 12; i < points.size(); i += 15)
+            colors.push_back((uchar)points[i]);
+        ASSERT_LT(160u * 100, colors.size());
+        const Mat inside = (Mat(colors) > 0) & (Mat(colors) < 255);
+        EXPECT_LT(0.9 * colors.size(), cv::countNonZero(inside));
+        EXPECT_EQ(0, *std::min_element(colors.begin(), colors.end()));
+        EXPECT_EQ(255, *std::max_element(colors.begin(), colors.end()));
+    }
+}
+
 //! Three frames, as two numbered sequences and as two folders, and the calibration of cameras that are rectified already
 struct CameraFrames
 {
