@@ -51,11 +51,30 @@ void requireFolderOf(const String& path)
         failToWrite(path);
 }
 
-void requireImageWriter(const String& path)
+static void requireImageWriter(const String& path)
 {
     requireFolderOf(path);
     if (!haveImageWriter(path))
         failToWrite(path, "no image format has this extension");
+}
+
+//! Throws if such an image cannot be written: formats differ in what they have, and OpenEXR may be switched off.
+static void requireEncoder(const String& path, const Mat& image, const String& what)
+{
+    try
+    {
+        encode(extensionOf(path), image);
+    }
+    catch (const cv::Exception&)
+    {
+        failToWrite(path, "this OpenCV does not write " + what + extensionOf(path));
+    }
+}
+
+void requirePictureWriter(const String& path)
+{
+    requireImageWriter(path);
+    requireEncoder(path, Mat(64, 64, CV_8UC3, Scalar(0)), "colors as "); // JPEG 2000 takes none below 32 x 32
 }
 
 void requireMapWriter(const String& path)
@@ -65,14 +84,7 @@ void requireMapWriter(const String& path)
     const String formats[] = { ".png", ".pfm", ".tif", ".tiff", ".exr" };
     if (std::count(std::begin(formats), std::end(formats), extension) == 0)
         failToWrite(path, "disparities need .png, .pfm, .tif or .exr");
-    try
-    {
-        encode(extension, Mat(1, 1, extension == ".png" ? CV_16U : CV_32F, Scalar(0)));
-    }
-    catch (const cv::Exception&) // OpenEXR may be switched off
-    {
-        failToWrite(path, "this OpenCV does not write " + extension);
-    }
+    requireEncoder(path, Mat(1, 1, extension == ".png" ? CV_16U : CV_32F, Scalar(0)), "");
 }
 
 bool isSameFile(const String& path, const String& other)

@@ -15,10 +15,10 @@ cv::String extensionOf(const cv::String& path);
 //! Throws if there is no such file, or it is a folder.
 void requireFile(const cv::String& path);
 
-//! Throws if the folder of a file to write is not there, or there is no image format of its extension.
-void requireImageWriter(const cv::String& path);
+//! Throws if the folder of a file to write is not there, or there is no image format of its extension that has colors.
+void requirePictureWriter(const cv::String& path);
 
-//! The same; the format must have disparities, too.
+//! The same, of maps: the format must have disparities.
 void requireMapWriter(const cv::String& path);
 
 //! Throws if the folder of a file to write is not there, or cannot be written to.

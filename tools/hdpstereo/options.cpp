@@ -58,7 +58,7 @@ void checkOutputs(const CommandLineParser& parser)
         if (name == "point-cloud" || name == "save-findings")
             requireFolderOf(path);
         else if (name == "picture")
-            requireImageWriter(path);
+            requirePictureWriter(path);
         else
             requireMapWriter(path);
         for (const String input : inputs)
