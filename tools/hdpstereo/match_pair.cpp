@@ -39,8 +39,6 @@ static Mat colorsOf(const Mat& image, const Mat& known)
 //! so the images are extended by these.
 static Mat computeLikeSGBM(const HDPTreeMatcher& matcher, const Mat& left, const Mat& right, double& milliseconds)
 {
-    if (left.depth() != CV_8U)
-        CV_Error(Error::StsUnsupportedFormat, "--compare needs images of 8 bit: cv::StereoSGBM takes no others");
     const HDPTreeMatcher::Findings findings = matcher.getFindings();
     const int minDisparity = findings.minDisparity, numDisparities = (findings.numDisparities + 15) / 16 * 16;
     const int added = std::max(minDisparity + numDisparities, 0);
@@ -298,6 +296,8 @@ void matchPair(const CommandLineParser& parser)
     Mat leftMask, rightMask, left = readPicture(parser.get<String>("@left"), leftMask),
                              right = readPicture(parser.get<String>("@right"), rightMask);
     makeAlike(left, right);
+    if (parser.has("compare") && left.depth() != CV_8U)
+        CV_Error(Error::StsUnsupportedFormat, "--compare needs images of 8 bit: cv::StereoSGBM takes no others");
     const Ptr<HDPTreeMatcher> matcher = createMatcher(parser, left.cols);
     if (!rectifier.apply(left, right, leftMask, rightMask, *matcher))
         MaskFiles(parser).apply(leftMask, rightMask, *matcher);

@@ -323,6 +323,10 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
     folder.writeText("image.txt", left + " " + right + " left\n");
     folder.write("unknown.png", Mat(120, 160, CV_16U, Scalar(0)));
     folder.write("truth.pfm", Mat(120, 160, CV_32F, Scalar(3)));
+    Mat deep;
+    cv::cvtColor(cv::imread(left), deep, COLOR_BGR2GRAY);
+    deep.convertTo(deep, CV_16U, 257);
+    folder.write("deep.png", deep);
     folder.write("colors.tif", Mat(120, 160, CV_32FC3, Scalar::all(3)));
     const String colors = folder.path("colors.tif");
     const struct
@@ -352,6 +356,8 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
         { pair + "--preset", "option '--preset' needs a value: --preset=VALUE" },
         { pair + "--prior=", "option '--prior' needs a value: --prior=VALUE" },
         { pair + "--compare=yes", "option '--compare' takes no value" },
+        { " " + folder.path("deep.png") + " " + folder.path("deep.png") + " --compare",
+          "--compare needs images of 8 bit: cv::StereoSGBM takes no others" },
         { pair + "map.tif --sigma=./map.tif", "cannot write './map.tif' twice: each output needs a file of its own" },
         { " --batch " + folder.path("twice.txt") + " " + out, "two pairs have the name 'x'" },
         { " --batch " + folder.path("image.txt") + " " + a, "the map '" + left + "' must not be one of the images" },
