@@ -39,6 +39,24 @@ void requireFile(const String& path)
         CV_Error(Error::StsObjectNotFound, "there is no file '" + path + "'");
 }
 
+//! Whether another file may take the place of what has this name: not of a device or a pipe
+static bool isReplaceable(const String& path)
+{
+#ifdef __unix__
+    struct stat status;
+    return stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode);
+#else
+    (void)path;
+    return true;
+#endif
+}
+
+//! Of the file itself, not of a link to it
+static String targetOf(const String& path) { return utils::fs::exists(path) ? utils::fs::canonical(path) : path; }
+
+//! Where a file is until it is whole
+static String partOf(const String& target) { return isReplaceable(target) ? target + ".part" : target; }
+
 void requireFolderOf(const String& path)
 {
     const String folder = utils::fs::getParent(path);
@@ -46,9 +64,12 @@ void requireFolderOf(const String& path)
         failToWrite(path, "there is no folder '" + folder + "'");
     if (utils::fs::isDirectory(path))
         failToWrite(path, "it is a folder");
-    const PartFile part(path);
-    if (!std::ofstream(part.name().c_str(), std::ios::app))
+    const String part = partOf(targetOf(path));
+    const bool isThere = utils::fs::exists(part);
+    if (!std::ofstream(part.c_str(), std::ios::app))
         failToWrite(path);
+    if (!isThere)
+        std::remove(part.c_str());
 }
 
 static void requireImageWriter(const String& path)
@@ -110,23 +131,7 @@ void writeFile(const String& path, const std::vector<uchar>& bytes)
         failToWrite(path);
 }
 
-//! Whether another file may take the place of what has this name: not of a device or a pipe
-static bool isReplaceable(const String& path)
-{
-#ifdef __unix__
-    struct stat status;
-    return stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode);
-#else
-    (void)path;
-    return true;
-#endif
-}
-
-PartFile::PartFile(const String& path)
-    : path_(utils::fs::exists(path) ? utils::fs::canonical(path) : path), isOpen_(isReplaceable(path_)),
-      name_(isOpen_ ? path_ + ".part" : path_)
-{
-}
+PartFile::PartFile(const String& path) : path_(targetOf(path)), isOpen_(isReplaceable(path_)), name_(partOf(path_)) {}
 
 PartFile::~PartFile()
 {

@@ -416,6 +416,19 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
     }
 }
 
+//! Not even one of the name that a map has until it is whole
+TEST(HDPStereo_Programs, checks_of_outputs_change_no_file)
+{
+    const DatasetFolder folder;
+    folder.writeText("keep.png.part", "kept");
+    const String none = folder.path("none.png") + " ";
+    EXPECT_EQ(1, run(folder, "hdpstereo " + none + none + folder.path("keep.png")).status);
+    EXPECT_EQ("kept", readText(folder.path("keep.png.part")));
+    EXPECT_FALSE(fs::exists(folder.path("keep.png")));
+    EXPECT_EQ(1, run(folder, "hdpstereo " + none + none + folder.path("new.png")).status);
+    EXPECT_FALSE(fs::exists(folder.path("new.png.part")));
+}
+
 TEST(HDPStereo_Programs, stereo_match_takes_masks)
 {
     const DatasetFolder folder;
