@@ -12,6 +12,7 @@
 #include <limits>
 #ifdef __unix__
 #include <sys/stat.h>
+#include <unistd.h>
 #endif
 
 #include "opencv2/core/utils/filesystem.hpp"
@@ -57,6 +58,25 @@ static String targetOf(const String& path) { return utils::fs::exists(path) ? ut
 //! Where a file is until it is whole
 static String partOf(const String& target) { return isReplaceable(target) ? target + ".part" : target; }
 
+//! Of what is there. It is not opened: the reader of a pipe would take that for the end of the file.
+static bool isWritable(const String& path)
+{
+#ifdef __unix__
+    return !utils::fs::isDirectory(path) && access(path.c_str(), W_OK) == 0;
+#else
+    return !!std::ofstream(path.c_str(), std::ios::app);
+#endif
+}
+
+//! Whether a file can be made; it is not kept.
+static bool isCreatable(const String& path)
+{
+    const bool isMade = !!std::ofstream(path.c_str(), std::ios::app);
+    if (isMade)
+        std::remove(path.c_str());
+    return isMade;
+}
+
 void requireFolderOf(const String& path)
 {
     const String folder = utils::fs::getParent(path);
@@ -65,11 +85,8 @@ void requireFolderOf(const String& path)
     if (utils::fs::isDirectory(path))
         failToWrite(path, "it is a folder");
     const String part = partOf(targetOf(path));
-    const bool isThere = utils::fs::exists(part);
-    if (!std::ofstream(part.c_str(), std::ios::app))
+    if (!(utils::fs::exists(part) ? isWritable(part) : isCreatable(part)))
         failToWrite(path);
-    if (!isThere)
-        std::remove(part.c_str());
 }
 
 static void requireImageWriter(const String& path)

@@ -9,6 +9,7 @@
 
 #ifdef __unix__
 #include <cstdio>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace opencv_test { namespace {
@@ -428,6 +429,23 @@ TEST(HDPStereo_Programs, checks_of_outputs_change_no_file)
     EXPECT_EQ(1, run(folder, "hdpstereo " + none + none + folder.path("new.png")).status);
     EXPECT_FALSE(fs::exists(folder.path("new.png.part")));
 }
+
+#ifdef __linux__
+//! Whoever reads a pipe gets the map, and nothing before it.
+TEST(HDPStereo_Programs, stereo_match_writes_to_a_pipe)
+{
+    const DatasetFolder folder;
+    writePair(folder);
+    const String pipe = folder.path("pipe.pfm"), copy = folder.path("copy.pfm"), map = folder.path("map.pfm");
+    ASSERT_EQ(0, mkfifo(pipe.c_str(), 0600));
+    EXPECT_EQ(0, run(folder, "hdpstereo" + pairOf(folder) + " " + map).status);
+    const Execution piped = run(folder, "hdpstereo" + pairOf(folder) + " " + pipe, String(),
+                                "sh -c 'timeout 30 cat " + pipe + " >" + copy +
+                                    " & timeout 30 \"$0\" \"$@\"; status=$?; wait; exit $status'");
+    EXPECT_EQ(0, piped.status) << piped.errors;
+    EXPECT_TRUE(readText(copy) == readText(map));
+}
+#endif
 
 TEST(HDPStereo_Programs, stereo_match_takes_masks)
 {
