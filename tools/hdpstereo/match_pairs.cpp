@@ -156,11 +156,11 @@ static String newOptions(const CommandLineParser& parser, const HDPTreeMatcher& 
     return before.empty() ? text : String();
 }
 
-static void keepOptions(const String& text, const String& out)
+static void makeFolder(const String& out)
 {
     if (!utils::fs::createDirectories(out))
         CV_Error(Error::StsError, "cannot make the folder '" + out + "'");
-    writeWholeFile(optionsFile(out), std::vector<uchar>(text.begin(), text.end()));
+    requireFolderOf(optionsFile(out)); // so that it can be written to
 }
 
 static void checkBatchOptions(const CommandLineParser& parser)
@@ -210,6 +210,8 @@ size_t matchPairs(const CommandLineParser& parser)
     const MaskFiles masks(parser);
     Rectifier rectifier(parser);
     String options = newOptions(parser, *matcher, rectifier, out);
+    if (!options.empty())
+        makeFolder(out);
     size_t done = 0, old = 0, bad = 0;
     for (const NamedPair& pair : pairs)
     {
@@ -238,7 +240,7 @@ size_t matchPairs(const CommandLineParser& parser)
             continue;
         }
         if (!options.empty()) // with the first map
-            keepOptions(options, out);
+            writeWholeFile(optionsFile(out), std::vector<uchar>(options.begin(), options.end()));
         options.clear();
         utils::fs::createDirectories(utils::fs::getParent(path));
         writeWholeFile(path, bytes);

@@ -322,6 +322,7 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
     folder.writeText("leaves.txt", left + " " + right + " ../x\n");
     folder.writeText("twice.txt", left + " " + right + " x\n" + left + " " + right + " ./x\n");
     folder.writeText("image.txt", left + " " + right + " left\n");
+    folder.writeText("torn.txt", none + " " + right + " a\n" + left + " " + right + " b\n");
     folder.write("unknown.png", Mat(120, 160, CV_16U, Scalar(0)));
     folder.write("truth.pfm", Mat(120, 160, CV_32F, Scalar(3)));
     Mat deep;
@@ -339,6 +340,7 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
         { " --batch " + none + " " + out, "there is no file or folder '" + none + "'" },
         { " --batch " + left + " " + out, "'" + left + "': line 1 is not a left image, a right one and a name" },
         { " --batch " + a + " " + a + " " + left, "cannot make the folder '" + left + "'" },
+        { " --batch " + folder.path("torn.txt") + " " + left, "cannot make the folder '" + left + "'" },
         { batch + " --calibration=" + none, "there is no file '" + none + "'" },
         { batch + " --calibration=" + left + " --calibration2=" + none, "there is no file '" + none + "'" },
         { batch + " --findings=" + none, "filename: '" + none + "' does not hold a pair model" },
