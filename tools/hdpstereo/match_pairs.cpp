@@ -217,7 +217,8 @@ size_t matchPairs(const CommandLineParser& parser)
     {
         const String path = mapOf(pair);
         done++;
-        if (utils::fs::exists(path))
+        const bool isFolder = utils::fs::isDirectory(path);
+        if (utils::fs::exists(path) && !isFolder)
         {
             old++;
             continue;
@@ -225,6 +226,8 @@ size_t matchPairs(const CommandLineParser& parser)
         std::vector<uchar> bytes;
         try
         {
+            if (isFolder)
+                CV_Error(Error::StsError, "'" + path + "' is a folder");
             Mat leftMask, rightMask, left = readPicture(pair.left, leftMask),
                                      right = readPicture(pair.right, rightMask);
             makeAlike(left, right);

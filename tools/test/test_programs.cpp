@@ -601,6 +601,12 @@ TEST(HDPStereo_Programs, batch_of_a_list)
         EXPECT_EQ(1, run(folder, program + folder.path("wrong.txt") + " " + folder.path("other")).status) << wrong;
     }
     folder.writeText("tabs.txt", folder.path("no such left.png") + "\t" + folder.path("right.png") + "\tc d\n");
+    fs::createDirectories(folder.path("named/night/01.pfm"));
+    const Execution named = run(folder, program + list(2) + folder.path("named"));
+    EXPECT_EQ(2, named.status);
+    EXPECT_EQ("1 pairs matched, 0 were there, 1 left out\n", named.output);
+    EXPECT_NE(String::npos, named.errors.find("night/01 left out: '" + folder.path("named/night/01.pfm") + "' is a f"))
+        << named.errors;
     const Execution tabs = run(folder, program + folder.path("tabs.txt") + " " + folder.path("other"));
     EXPECT_EQ(2, tabs.status);
     EXPECT_NE(String::npos, tabs.errors.find("1/1 c d left out: ")) << tabs.errors;
