@@ -66,6 +66,8 @@ static std::vector<NamedPair> pairsOfList(const String& list)
     std::string line;
     for (int number = 1; std::getline(file, line); number++)
     {
+        if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // the mark of UTF-8
+            line.erase(0, 3);
         std::istringstream words(line);
         std::vector<String> parts;
         const char delimiter = line.find('\t') != std::string::npos ? '\t' : ' ';

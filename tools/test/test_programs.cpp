@@ -610,6 +610,10 @@ TEST(HDPStereo_Programs, batch_of_a_list)
     const Execution tabs = run(folder, program + folder.path("tabs.txt") + " " + folder.path("other"));
     EXPECT_EQ(2, tabs.status);
     EXPECT_NE(String::npos, tabs.errors.find("1/1 c d left out: ")) << tabs.errors;
+    const String marked = "\xEF\xBB\xBF" + folder.path("dataset/a/left.png") + " "; // as editors of Windows begin files
+    folder.writeText("marked.txt", marked + folder.path("dataset/a/right.png") + " a\r\n");
+    const Execution ofMarked = run(folder, program + folder.path("marked.txt") + " " + folder.path("marked"));
+    EXPECT_EQ(0, ofMarked.status) << ofMarked.errors;
 }
 
 TEST(HDPStereo_Programs, read_16_bit)
