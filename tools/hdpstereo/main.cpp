@@ -72,7 +72,7 @@ static const char* const keys =
     "{focal           |      | focal length in pixels; the principal point is the center of the image }"
     "{baseline        |      | distance of the cameras, in the unit of the points }";
 
-//! Options that have no effect without another one
+//! Options that have no effect without another one, or do not go together
 static void checkCompany(int argc, const char* const argv[], const CommandLineParser& parser)
 {
     const String needed[][2] = { { "memory", "tiles" },
@@ -93,6 +93,8 @@ static void checkCompany(int argc, const char* const argv[], const CommandLinePa
         for (int j = i + 1; j < 4 && parser.has(ways[i]); ++j)
             if (parser.has(ways[j]))
                 CV_Error(Error::StsBadArg, "--" + ways[j] + " does not go with --" + ways[i]);
+    if (parser.has("prior") && parser.get<String>("preset") == "paper") // whose cost is not the census
+        CV_Error(Error::StsBadArg, "--prior does not go with --preset=paper");
 }
 
 int main(int argc, char** argv)

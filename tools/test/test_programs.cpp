@@ -406,6 +406,10 @@ TEST(HDPStereo_Programs, stereo_match_names_what_is_not_there)
           "--focal does not go with --reprojection" },
         { " " + colors + " " + right + " " + out + ".tif", "'" + colors + "' has colours of floats: " },
         { " --tiles " + left + " " + colors + " " + out + ".tif", "'" + colors + "' has colours of floats: " },
+        { " --preset=paper --prior=" + none + " " + none + " " + none, "--prior does not go with --preset=paper" },
+        { " --preset=paper --prior=" + none + " --tiles " + none + " " + none + " " + out + ".tif",
+          "--prior does not go with --preset=paper" },
+        { batch + " --preset=paper --prior=" + truth, "--prior does not go with --preset=paper" },
         { pair + out + ".tif --field-of-view=80", "--field-of-view needs --calibration" },
     };
     for (const auto& c : cases)
@@ -531,7 +535,7 @@ TEST(HDPStereo_Programs, stereo_match_takes_ranges_and_a_prior)
         { " --prior=" + folder.path("small.pfm"), "the disparity of the prior must have the size of the images" },
         { prior + " --prior-sigma=-1", "sigma must be finite and >= 0" },
         { prior + " --prior-sigma=much", "--prior-sigma=much is not a number" },
-        { prior + " --preset=paper", "matchingCost must be COST_CENSUS for setPriorDisparity()" },
+        { prior + " --preset=paper", "--prior does not go with --preset=paper" },
         { " --prior=" + folder.path("none.pfm"), "cannot read the image" },
         { " --smallest=" + folder.path("bytes.png"), "must have disparities of 16 bit, times 256, or floats" },
         { " --smallest=" + folder.path("large.pfm"), "smallest and largest must have at most the size of the images" },
