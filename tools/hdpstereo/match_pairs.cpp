@@ -131,7 +131,7 @@ static String newOptions(const CommandLineParser& parser, const HDPTreeMatcher& 
     {
         options << "findings"
                 << "{";
-        cv::stereo::PairModel::load(parser.get<String>("findings")).write(options);
+        findingsOf(parser).write(options);
         options << "}";
     }
     const std::pair<const char*, const char*> inputs[] = { { "left-mask", "leftMask" },

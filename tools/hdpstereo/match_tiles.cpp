@@ -115,7 +115,7 @@ void takeRange(const CommandLineParser& parser, const WindowedPair& pair, double
 {
     if (parser.has("findings"))
     {
-        const PairModel model = PairModel::load(parser.get<String>("findings"));
+        const PairModel model = findingsOf(parser);
         matcher.setMinDisparity(model.minDisparity);
         matcher.setNumDisparities(model.numDisparities);
     }
@@ -153,7 +153,7 @@ PairModel findModel(const CommandLineParser& parser, const WindowedPair& pair, c
     Ptr<HDPTreeMatcher> ofPart = matchAlone(parser, size.width, pair.read(part), min, count);
     layers = (int)ofPart->getFindings().searchRatios.size();
     if (parser.has("findings"))
-        return PairModel::load(parser.get<String>("findings"));
+        return findingsOf(parser);
     const PairModel found = ofPart->getPairModel();
     ofPart.release(); // its memory, before that of the next one
     if (times == 0)
@@ -197,7 +197,7 @@ void checkFindings(const CommandLineParser& parser, const WindowedPair& pair)
     if (!parser.has("findings"))
         return;
     const String path = parser.get<String>("findings");
-    const PairModel model = PairModel::load(path);
+    const PairModel model = findingsOf(parser);
     const Size size(model.width, model.height), tile(model.tileWidth, model.tileHeight);
     if (tile != size)
         CV_Error(Error::StsBadArg, "--findings=" + path + " is of a tile; it must be of whole images");

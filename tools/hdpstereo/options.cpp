@@ -40,6 +40,18 @@ int numDisparitiesOf(const CommandLineParser& parser, int width)
                                          : std::max((width / 5 + 15) / 16 * 16, 16);
 }
 
+cv::stereo::PairModel findingsOf(const CommandLineParser& parser)
+{
+    try
+    {
+        return cv::stereo::PairModel::load(parser.get<String>("findings"));
+    }
+    catch (const cv::Exception& e) // names the file, after a parameter
+    {
+        CV_Error(e.code, "--findings=" + e.err.substr(std::min(e.err.find('\''), e.err.size())));
+    }
+}
+
 void checkOutputs(const CommandLineParser& parser)
 {
     const char* const inputs[] = { "@left", "@right", "left-mask",   "right-mask",   "smallest", "largest",
@@ -112,7 +124,7 @@ Ptr<HDPTreeMatcher> createPlainMatcher(const CommandLineParser& parser, int widt
         CV_Error(Error::StsBadArg, "--min-disparity does not go with --num-disparities=0, which finds it, too");
     const Ptr<HDPTreeMatcher> matcher = HDPTreeMatcher::create(minDisparity, numDisparities, preset->second);
     if (parser.has("findings"))
-        matcher->setPairModel(cv::stereo::PairModel::load(parser.get<String>("findings")));
+        matcher->setPairModel(findingsOf(parser));
     return matcher;
 }
 

@@ -15,6 +15,9 @@ int integerOf(const cv::CommandLineParser& parser, const cv::String& option);
 //! --num-disparities, or what is usual for images of a width
 int numDisparitiesOf(const cv::CommandLineParser& parser, int width);
 
+//! --findings
+cv::stereo::PairModel findingsOf(const cv::CommandLineParser& parser);
+
 //! Whether what is to be written for one pair can be, and is no input; before any work
 void checkOutputs(const cv::CommandLineParser& parser);
 
