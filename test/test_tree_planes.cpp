@@ -150,28 +150,34 @@ TEST(HDPStereo_TreePlanes, no_plane)
     }
 }
 
-//! What each pixel prefers is noise, but one disparity is a bit better than others in all of them.
+//! What each pixel prefers is noise, of so many units, but some disparities cost 3 units less than others in all pixels.
+//! Expects the whole tree to take the first of these, or none.
+void expectOfNoise(int noise, const std::vector<int>& better, bool isTaken)
+{
+    SCOPED_TRACE(cv::format("noise %d, from disparity %d on", noise, better[0]));
+    const Size size(60, 50);
+    Layer layer(Mat(size, CV_8U, Scalar(90)));
+    RNG rng(7);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+        {
+            for (int disparity : better)
+                layer.costs(x, y)[disparity] = flatCost - 3;
+            layer.win(x, y, rng.uniform(0, candidates), flatCost - noise);
+        }
+    if (!isTaken)
+        return expectNoPlane(layer);
+    EXPECT_EQ(1, layer.takePlanes());
+    EXPECT_EQ(size.area(), countNonZero(layer.disparity == better[0] * hdp::subpixelScale));
+}
+
 TEST(HDPStereo_TreePlanes, noise_stronger_than_texture)
 {
-    const Size size(60, 50);
-    RNG rng(7);
-    for (int noise : { 7, 12 })
-    {
-        Layer layer(Mat(size, CV_8U, Scalar(90)));
-        for (int y = 0; y < size.height; ++y)
-            for (int x = 0; x < size.width; ++x)
-            {
-                layer.costs(x, y)[12] = flatCost - 3;
-                layer.win(x, y, rng.uniform(13, candidates), flatCost - noise);
-            }
-        if (noise > 3 + hdp::CostVolume::scale) // the costs are against it
-            expectNoPlane(layer);
-        else
-        {
-            EXPECT_EQ(1, layer.takePlanes());
-            EXPECT_EQ(size.area(), countNonZero(layer.disparity == 12 * hdp::subpixelScale));
-        }
-    }
+    expectOfNoise(7, { 12 }, true);
+    expectOfNoise(7, { 12, 30 }, false); // one is as good as the other
+    expectOfNoise(7, { 2 }, false);      // what is beyond the range may be better
+    expectOfNoise(7, { candidates - 3 }, false);
+    expectOfNoise(3 + hdp::CostVolume::scale + 1, { 12 }, false); // the costs are against it
 }
 
 TEST(HDPStereo_TreePlanes, pixels_of_one_row)

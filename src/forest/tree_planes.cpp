@@ -22,7 +22,9 @@ HDP_TUNABLE(double, fitDistance, 1.5, "disparities", "from the plane: what is fa
 HDP_TUNABLE(double, minShare, 0.5, "share of the samples",
             "on the plane: where noise decides the disparities, or the tree has several surfaces, there are fewer");
 HDP_TUNABLE(double, maxRise, 4.5, "cost", "of the mean over the tree: the costs are against a plane that has more");
-const double maxFlatRise = CostVolume::scale; // a bit: disparities that follow the noise cost less
+HDP_TUNABLE(
+    double, minMargin, 0.2, "cost",
+    "by which the tree's one disparity is better in the mean: less is chance, as in skies, more leaves walls out");
 
 //! d = coefficients . (1, x, y)
 typedef Vec3d Plane;
@@ -206,11 +208,12 @@ private:
     mutable std::vector<int> at_; // memory of costsOf()
 };
 
-//! The one disparity whose costs are lowest in sum over a tree. At most a bit counts of a pixel's: those at the tree's
-//! border see what stands before it, and prefer that by more.
-Plane flatPlane(const int* pixels, const DisparityTree& tree, const CostVolume& volume)
+//! The one disparity whose costs are lowest in sum over a tree; false if others are about as good, or it is next to an
+//! end of the range, as a better one may be beyond. At most a bit counts of a pixel's costs: those at the tree's border
+//! see what stands before it, and prefer that by more.
+bool findFlatPlane(const int* pixels, const DisparityTree& tree, const CostVolume& volume, Plane& plane)
 {
-    const int candidates = volume.numDisparities;
+    const int candidates = volume.numDisparities, reach = cvRound(fitDistance * volume.steps);
     std::vector<int> sums(candidates);
     int* const sum = sums.data();
     for (int i = 0; i < tree.size; ++i)
@@ -220,7 +223,13 @@ Plane flatPlane(const int* pixels, const DisparityTree& tree, const CostVolume& 
         HDP_VECTORIZED for (int k = 0; k < candidates; ++k) sum[k] += std::min<int>(costs[k], most);
     }
     const auto least = std::min_element(sums.begin(), sums.end());
-    return Plane((double)(least - sums.begin()) / volume.steps, 0, 0);
+    const int at = (int)(least - sums.begin());
+    plane = Plane((double)at / volume.steps, 0, 0);
+    if (at <= reach || at + reach >= candidates - 1)
+        return false;
+    const int rival =
+        std::min(*std::min_element(sums.begin(), least - reach), *std::min_element(least + reach + 1, sums.end()));
+    return rival - *least >= minMargin * tree.size;
 }
 
 //! Gives the pixels of a tree the disparities of its plane, but for those whose costs contradict it. Those that have
@@ -255,10 +264,10 @@ int takeTreePlanes(const DisparityForest& forest, const CostVolume& volume, Mat&
         if (!of.haveContrast())
             return;
         Plane plane = of.findPlane();
-        const bool agree = of.shareOn(plane) >= minShare;
-        if (!agree) // as noise decides the disparities of the pixels, but not the sums of their costs
-            plane = flatPlane(pixels, tree, volume);
-        hasPlane[t] = of.rise(plane) < (agree ? +maxRise : maxFlatRise);
+        if (of.shareOn(plane) >= minShare)
+            hasPlane[t] = of.rise(plane) < maxRise;
+        else // noise may decide the disparities of the pixels, and not the sums of their costs
+            hasPlane[t] = findFlatPlane(pixels, tree, volume, plane) && of.rise(plane) < CostVolume::scale;
         if (hasPlane[t])
             applyPlane(plane, pixels, tree, volume, disparity);
     });
