@@ -638,7 +638,8 @@ void checkOutput(const HDPTreeMatcher& matcher, const Known& known, Size size, c
     require(matcher.getNumDisparities() == 0 ||
                 (first == matcher.getMinDisparity() && findings.numDisparities == matcher.getNumDisparities()),
             "another range than that which was set");
-    const bool hasInvalid = matcher.getDisp12MaxDiff() > 0 || matcher.getSpeckleWindowSize() > 0 || known.hasInvalid();
+    const bool hasInvalid = matcher.getDisp12MaxDiff() > 0 || matcher.getSpeckleWindowSize() > 0 ||
+                            known.hasInvalid() || matcher.getPairModel().borderLevel > 0;
     Mat pixels;
     disparity.convertTo(pixels, CV_64F, disparity.depth() == CV_16S ? 1. / StereoMatcher::DISP_SCALE : 1);
     for (int y = 0; y < pixels.rows; ++y)
