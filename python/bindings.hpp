@@ -95,7 +95,7 @@ py::cpp_function setterOf(const py::object& type, const std::string& name, Value
             throw py::type_error(name +
                                  (isNumber ? std::string(" must be ") + kindOf<Value>() + ", not " : " cannot be ") +
                                  typeOf(value));
-        self.*field = py::cast<Value>(value);
+        self.*field = py::detail::cast_op<Value>(caster);
     };
     return py::cpp_function(set, py::is_method(type), py::arg("value"));
 }

@@ -44,7 +44,7 @@ are copies, and read-only: assign others.)doc");
         py::detail::make_caster<Pair> pair;
         if (!pair.load(size, false))
             throw py::type_error("imageSize must be a pair of ints");
-        self.imageSize = toSize(py::cast<Pair>(size));
+        self.imageSize = toSize(py::detail::cast_op<Pair>(pair));
         },
         "Width and height of the raw images, in pixels");
     const auto matrix = [&](const char* name, cv::Mat StereoCalibration::*field, const char* documentation) {

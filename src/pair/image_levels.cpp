@@ -229,13 +229,12 @@ void greyLevels(const Mat& image, const LevelScale& scale, Mat& grey)
 
 void findEnds(const Mat& left, const Mat& right, const PairMasks& masks, LevelScale& scale)
 {
-    LevelCounts counts, ofRight;
+    LevelCounts ofImages[2], &counts = ofImages[0]; // then of both
+    const Mat *const images[] = { &left, &right }, *const hasData[] = { &masks.left, &masks.right };
     const auto add = left.depth() == CV_8U ? &LevelCounts::add<uchar> : &LevelCounts::add<ushort>;
-    parallelFor(2, [&](int i) {
-        ((i == 0 ? counts : ofRight).*add)(i == 0 ? left : right, i == 0 ? masks.left : masks.right, scale.bits);
-    });
-    cv::add(counts.darkest, ofRight.darkest, counts.darkest);
-    cv::add(counts.brightest, ofRight.brightest, counts.brightest);
+    parallelFor(2, [&](int i) { (ofImages[i].*add)(*images[i], *hasData[i], scale.bits); });
+    cv::add(counts.darkest, ofImages[1].darkest, counts.darkest);
+    cv::add(counts.brightest, ofImages[1].brightest, counts.brightest);
     const int black = LevelCounts::firstOf(counts.darkest) * LevelCounts::step;
     std::reverse(counts.brightest.begin(), counts.brightest.end());
     const int white = LevelScale::end - LevelCounts::firstOf(counts.brightest) * LevelCounts::step;
